@@ -1,4 +1,5 @@
-//! Shapes a punch so that it presses uniformly: the force is held, and the heights of its profile follow from derivatives.
+//! Shapes a punch so that it presses uniformly: the force is held, and the heights of its profile follow from
+//! derivatives.
 //!
 //! `cargo run --release --example uniform_pressure [-- CELLS [PICTURE.svg]]`
 
@@ -12,7 +13,8 @@ use signorini::qp::Change;
 use signorini::scene::Answer;
 use signorini::{Error, Model, Prepared, Scene, Settings};
 
-/// Half the width of the punch, which stands in the middle of a block of 1 m: from node to node of 16, 32, 64 or more cells.
+/// Half the width of the punch, which stands in the middle of a block of 1 m: from node to node of 16, 32, 64 or more
+/// cells.
 const HALF: f64 = 3.0 / 16.0;
 
 /// The profile is flat, plus even polynomials up to twice this degree.

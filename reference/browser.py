@@ -13,6 +13,8 @@ from typing import Any
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 PATIENCE = 60.0
 """Seconds to wait for an answer of the browser."""
+READY = "document.documentElement?.dataset.ready"
+"""A page of the program sets this when all of it is drawn."""
 
 
 class NoBrowser(RuntimeError):
@@ -100,15 +102,17 @@ class Browser:
         text, self.left = self.left.split(b"\0", 1)
         return json.loads(text)
 
-    def open(self, page: Path, size: tuple[int, int] = (1280, 900), scheme: str = "light", fragment: str = "") -> float:
-        """Opens a page and waits until it sets `data-ready`. Returns the seconds that this took."""
+    def open(
+        self, page: Path, size: tuple[int, int] = (1280, 900), scheme: str = "light", fragment: str = "", ready: str = READY
+    ) -> float:
+        """Opens a page and waits until an expression is true in it. Returns the seconds that this took."""
         self.send("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=size[0] < 600)
         self.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
         self.send("Page.navigate", url="about:blank")
         self.events.clear()
         began = time.monotonic()
         self.send("Page.navigate", url=page.resolve().as_uri() + fragment)
-        while not self.ask("document.documentElement?.dataset.ready ?? ''"):
+        while not self.ask(f"location.href !== 'about:blank' && !!({ready})"):
             if time.monotonic() > began + PATIENCE:
                 raise NoBrowser(f"{page} is not ready: {self.ask('document.body.innerText')[:500]}; {self.faults()}")
             time.sleep(0.01)

@@ -18,8 +18,8 @@
 //! | p | contact pressure = -lambda / tributary area seen along the row | `pressure` | | Pa | >= 0 |
 //!
 //! Any consistent system of units. A scene file becomes a [`Model`] with its [`ContactProblem`]; a matrix becomes a
-//! [`ContactProblem`] directly. [`solve_qp`] answers with a [`Solution`]; `Ok` means that its [`Certificate`], recomputed
-//! from the problem, meets the tolerance.
+//! [`ContactProblem`] directly. [`solve_qp`] answers with a [`Solution`]; `Ok` means that its [`Certificate`],
+//! recomputed from the problem, meets the tolerance.
 //!
 //! ```
 //! use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix, solve_qp};

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example mortar_speed`
 //!
-//! The slave surface is the unit square seen from below, the master surface covers it with other facets, turned by 0.3. Distorted facets
-//! have inner nodes that are moved by up to a fifth of an edge.
+//! The slave surface is the unit square seen from below, the master surface covers it with other facets, turned by 0.3.
+//! Distorted facets have inner nodes that are moved by up to a fifth of an edge.
 
 use std::time::Instant;
 
@@ -20,7 +20,8 @@ struct Sheet {
 }
 
 impl Sheet {
-    /// Nodes and facets over the square from `-margin` to `1 + margin`, turned by `angle` about its middle, facing up or down.
+    /// Nodes and facets over the square from `-margin` to `1 + margin`, turned by `angle` about its middle, facing up
+    /// or down.
     fn surface(&self, margin: f64, angle: f64, is_up: bool) -> (Vec<[f64; 3]>, Boundary) {
         let ([columns, rows], mut state) = (self.counts, 7_u64);
         let mut random = || {

@@ -1,5 +1,5 @@
-//! Measures the microseconds of a solve with certificate and proof of small problems, least of many, the making of the problem not
-//! included, and the seconds of many of them at once.
+//! Measures the microseconds of a solve with certificate and proof of small problems, least of many, the making of the
+//! problem not included, and the seconds of many of them at once.
 //!
 //! `cargo run --release --example small_problems`
 

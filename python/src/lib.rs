@@ -1,8 +1,8 @@
 //! The Python module `signorini._signorini`, the interface of the library to Python.
 //!
 //! `arrays` and `matrices` read arrays with at most one copy. `work` runs the library without the interpreter, answers
-//! interrupts and catches panics. `errors` makes exceptions, `exceptions` those of the errors of the library. Each class
-//! has a file of its own.
+//! interrupts and catches panics. `errors` makes exceptions, `exceptions` those of the errors of the library. Each
+//! class has a file of its own.
 
 mod answered;
 mod arrays;

@@ -57,7 +57,8 @@ fn shape_of(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
 /// memory.
 const MOST_EMPTY: usize = 1_000_000;
 
-/// Returns `true` if `matrix` is none of scipy but converts itself into one without a copy, as a matrix of dolfinx does.
+/// Returns `true` if `matrix` is none of scipy but converts itself into one without a copy, as a matrix of dolfinx
+/// does.
 fn converts_itself(matrix: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(!matrix.hasattr("format")? && matrix.hasattr("to_scipy")?)
 }

@@ -14,8 +14,8 @@ const PROBLEM_FILES: [&[&str]; 2] =
 /// Bytes that are hashed at a time.
 const PIECE: usize = 1 << 20;
 
-/// The page of `command` on the scene file or problem directory `input`. If there is a folder for the page, the present content of
-/// `input` is hashed.
+/// The page of `command` on the scene file or problem directory `input`. If there is a folder for the page, the present
+/// content of `input` is hashed.
 pub(super) fn about(
     title: &str,
     command: &'static str,

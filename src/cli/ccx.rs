@@ -1,7 +1,7 @@
 //! `signorini ccx`, or the program under the name `ccx`: a deck in, the files of CalculiX out.
 //!
-//! What a program reads that calls it stands on standard output: CalculiX writes its warnings and errors there, and FreeCAD takes any
-//! text on standard error for a failure.
+//! What a program reads that calls it stands on standard output: CalculiX writes its warnings and errors there, and
+//! FreeCAD takes any text on standard error for a failure.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,8 @@ const VERSION: &str = concat!(
 /// Answers a call without a deck; programs look for the name of CalculiX.
 const USAGE: &str = "Usage: ccx -i NAME\n\nsignorini solves the deck NAME.inp of CalculiX and writes NAME.frd.\n";
 
-/// The arguments with the command `ccx`, if the program is called by that name. FreeCAD passes `-i` with a blank behind it.
+/// The arguments with the command `ccx`, if the program is called by that name. FreeCAD passes `-i` with a blank behind
+/// it.
 pub(super) fn named(given: Vec<OsString>) -> Vec<OsString> {
     let stem = given.first().and_then(|program| Path::new(program).file_stem()).unwrap_or_default();
     if !stem.to_string_lossy().to_ascii_lowercase().starts_with("ccx") {
@@ -70,8 +71,8 @@ fn with_ending(stem: &Path, ending: &str) -> PathBuf {
     name.into()
 }
 
-/// Solves the steps of the deck in `file` and writes the files of its name `stem`; `text` gets warnings and reports. The files of an
-/// earlier run are gone from the start, and fields are written last, of certified answers only.
+/// Solves the steps of the deck in `file` and writes the files of its name `stem`; `text` gets warnings and reports.
+/// The files of an earlier run are gone from the start, and fields are written last, of certified answers only.
 fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, text: &mut String) -> Result<Ending, Error> {
     let folder = with_ending(&stem, ".signorini");
     CalculixFiles::remove(&stem)?;

@@ -1,4 +1,5 @@
-//! An interrupt, or a request to terminate: the first asks the work to end with what it has, the second ends the program.
+//! An interrupt, or a request to terminate: the first asks the work to end with what it has, the second ends the
+//! program.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -16,8 +17,8 @@ const PATIENCE: Duration = Duration::from_millis(800);
 /// The message if there is a report.
 const UNTIL_THEN: &str = "interrupted: the report has the results up to there\n";
 
-/// Bytes of the stack of a thread that waits for a signal or a moment: the default of 2 MB would count against a limit of
-/// the address space.
+/// Bytes of the stack of a thread that waits for a signal or a moment: the default of 2 MB would count against a limit
+/// of the address space.
 const STACK: usize = 64 << 10;
 
 /// The report of the best answer so far, for a program that ends before its work notices an interrupt.
@@ -42,8 +43,9 @@ impl Kept {
     }
 }
 
-/// Lets interrupts stop the work that `watch` observes. A factorisation cannot be stopped: work that does not notice in time is ended
-/// at once, with the report of the best answer if one is `kept`. Files remain complete, because every file is written as a whole or not at all.
+/// Lets interrupts stop the work that `watch` observes. A factorisation cannot be stopped: work that does not notice in
+/// time is ended at once, with the report of the best answer if one is `kept`. Files remain complete, because every
+/// file is written as a whole or not at all.
 pub(super) fn listen(watch: &Watch, kept: &Kept) {
     let (watch, kept) = (watch.clone(), kept.clone());
     let mut is_second = false;
@@ -87,7 +89,8 @@ fn on_request(handler: impl FnMut() + Send + 'static) {
     let _ = ctrlc::set_handler(handler);
 }
 
-/// Ends with the report of the best answer so far, if one is kept. The work that ends meanwhile waits, and prints nothing.
+/// Ends with the report of the best answer so far, if one is kept. The work that ends meanwhile waits, and prints
+/// nothing.
 fn end_with(kept: &Kept) -> ! {
     kept.take_to(|report| {
         let Some(report) = report else { end() };

@@ -33,7 +33,8 @@ pub(super) type Pictures = Box<dyn FnOnce() -> Result<(), Error>>;
 /// Erases the current line of a terminal.
 pub(super) const ERASED: &str = "\r\x1b[K";
 
-/// Writes to standard error, on a terminal in place of the line of progress; if standard error is closed, the message is dropped.
+/// Writes to standard error, on a terminal in place of the line of progress; if standard error is closed, the message
+/// is dropped.
 pub(super) fn warn(text: &str) {
     if text.is_empty() {
         return;

@@ -1,5 +1,5 @@
-//! Progress: on request a line for each step on standard error. Otherwise, if standard error is a terminal, one line that is redrawn,
-//! with the share of the work that is done and the time that is left.
+//! Progress: on request a line for each step on standard error. Otherwise, if standard error is a terminal, one line
+//! that is redrawn, with the share of the work that is done and the time that is left.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -116,7 +116,8 @@ fn line(activity: &Activity, elapsed: Duration, left: Option<Duration>) -> Strin
     }
 }
 
-/// The finished share of the work after a part of its expected time, and the time left; `None` if it takes longer than expected.
+/// The finished share of the work after a part of its expected time, and the time left; `None` if it takes longer than
+/// expected.
 fn of_expected(passed: Duration, expected: Duration) -> (f64, Option<Duration>) {
     let share = passed.as_secs_f64() / expected.as_secs_f64();
     (share.min(ALMOST), expected.checked_sub(passed))

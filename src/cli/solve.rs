@@ -19,8 +19,8 @@ use crate::qp::{Goal, Method, Settings, Solution, Start, Watch, read_vector};
 use crate::scene::{Answer, Scene};
 use crate::study::TotalErrorGoal;
 
-/// Assembly that takes at most this many seconds is done even if no time is left: the report can then state the time that the rest
-/// needs.
+/// Assembly that takes at most this many seconds is done even if no time is left: the report can then state the time
+/// that the rest needs.
 const AT_ONCE: f64 = 1e-3;
 
 /// A report sums the assembled data: it takes this share of the assembly time.

@@ -51,7 +51,8 @@ pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome,
     reported(options, watch, about, &measured, &report, remark)
 }
 
-/// Reports the measurements as `shown`, with a remark below them, and their values and pictures in the folder of the options.
+/// Reports the measurements as `shown`, with a remark below them, and their values and pictures in the folder of the
+/// options.
 fn reported(
     options: &options::Tradeoff,
     watch: &Watch,

@@ -1,5 +1,5 @@
-//! Errors of the arguments: an unknown option is answered with the nearest one, or with what is not modelled; a scene without a command
-//! with `solve`.
+//! Errors of the arguments: an unknown option is answered with the nearest one, or with what is not modelled; a scene
+//! without a command with `solve`.
 
 use std::ffi::OsString;
 use std::path::Path;

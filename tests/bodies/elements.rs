@@ -43,8 +43,8 @@ fn twin(formulation: &Formulation) -> Material {
     material.along(first, second).unwrap()
 }
 
-/// The formulations that an element fits. A new element does not compile here until it is tested in one, nor in `degree` below until its
-/// rate is stated.
+/// The formulations that an element fits. A new element does not compile here until it is tested in one, nor in
+/// `degree` below until its rate is stated.
 fn formulations(kind: ElementKind) -> &'static [Formulation] {
     match kind {
         ElementKind::Line2 => &[BAR],
@@ -116,8 +116,8 @@ fn components(stress: &Stress) -> [f64; 6] {
     [stress.sigma_xx, stress.sigma_yy, stress.sigma_zz, stress.sigma_xy, stress.sigma_yz, stress.sigma_zx]
 }
 
-/// The gradient of the harmonic function x^3 y - x y^3: neither a volume nor a body force changes, so that it is in balance in any
-/// material and any model without an axis. In a bar the displacement is x^2.
+/// The gradient of the harmonic function x^3 y - x y^3: neither a volume nor a body force changes, so that it is in
+/// balance in any material and any model without an axis. In a bar the displacement is x^2.
 fn harmonic([x, y, _]: [f64; 3], dimension: usize) -> ExactState {
     if dimension == 1 {
         return ExactState { displacement: [x * x, 0.0, 0.0], strain: [2.0 * x, 0.0, 0.0, 0.0, 0.0, 0.0] };
@@ -126,8 +126,8 @@ fn harmonic([x, y, _]: [f64; 3], dimension: usize) -> ExactState {
     ExactState { displacement, strain: [6.0 * x * y, -6.0 * x * y, 0.0, 3.0 * (x * x - y * y), 0.0, 0.0] }
 }
 
-/// The error in energy on `cells` cells along each side of a unit cube, with the exact displacement on its surface. The answer of a bar
-/// is exact at its nodes.
+/// The error in energy on `cells` cells along each side of a unit cube, with the exact displacement on its surface. The
+/// answer of a bar is exact at its nodes.
 fn error_in_energy(kind: ElementKind, formulation: Formulation, cells: usize) -> f64 {
     let along: Vec<f64> = (0..=cells).map(|line| line as f64 / cells as f64).collect();
     let mesh = match kind.dimension() {

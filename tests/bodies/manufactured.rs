@@ -1,10 +1,9 @@
 //! Blocks with a known exact solution: the solution itself, errors in norms, and rates.
 //!
-//! GOAL        relative errors in energy and L2 on the unit square, and their rates
-//! MESH        n x n cells, T3 and T6 cut from (i,j) to (i+1,j+1)
-//! CONDITIONS  exact displacement left, right and above; contact below
-//! PARAMETERS  E = 1, nu = 0.3, plane strain; smooth k = 3, x0 = 0.5, A = B = 1; edge x0 = 0.53, p0 = 1; Hertz a = 0.53, p0 = 1
-//! REFERENCE   errors of an independent implementation, with its quadrature; theoretical rates
+//! GOAL        relative errors in energy and L2 on the unit square, and their rates MESH        n x n cells, T3 and T6
+//! cut from (i,j) to (i+1,j+1) CONDITIONS  exact displacement left, right and above; contact below PARAMETERS  E = 1,
+//! nu = 0.3, plane strain; smooth k = 3, x0 = 0.5, A = B = 1; edge x0 = 0.53, p0 = 1; Hertz a = 0.53, p0 = 1 REFERENCE
+//! errors of an independent implementation, with its quadrature; theoretical rates
 
 use signorini::fem::ElementKind::{self, Hex20, Q4, Q8, T3, T6, Tet10};
 use signorini::fem::Integration;

@@ -122,7 +122,8 @@ fn redistributed_mass_is_zero_at_contact_nodes_and_definite_at_the_others() {
     }
 }
 
-/// Neither the density nor the unit of mass decides which mesh is too coarse: this body is as light as 1e-20 of the one above.
+/// Neither the density nor the unit of mass decides which mesh is too coarse: this body is as light as 1e-20 of the one
+/// above.
 #[test]
 fn redistributed_mass_scales_bit_for_bit_with_the_density() {
     let of = |body: &ElasticBody, side| {

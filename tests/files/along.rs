@@ -10,7 +10,8 @@ use support::program::Desk;
 /// Rounding of a small solve, relative.
 const ROUNDING: f64 = 1e-9;
 
-/// The table along the lines of a scene: a map from the name of a column without its unit to its cells, NaN for an empty one.
+/// The table along the lines of a scene: a map from the name of a column without its unit to its cells, NaN for an
+/// empty one.
 fn along(scene: &Value, lines: &[&str]) -> BTreeMap<String, Vec<f64>> {
     let desk = Desk::new();
     desk.write("scene.json", scene.to_string());
@@ -45,9 +46,9 @@ fn axis(ends: [f64; 2], cells: usize) -> Value {
     json!({"points": ends, "divisions": [cells]})
 }
 
-/// GOAL: all elements, in the plane, about an axis and in space. CONDITIONS: a block that stretches by a constant strain along its first
-/// axis, or along the axis of revolution; skew lines that begin inside and outside, and the axis. REFERENCE: the linear displacement, the
-/// stress along the load alone, and the length of the line in the block.
+/// GOAL: all elements, in the plane, about an axis and in space. CONDITIONS: a block that stretches by a constant
+/// strain along its first axis, or along the axis of revolution; skew lines that begin inside and outside, and the
+/// axis. REFERENCE: the linear displacement, the stress along the load alone, and the length of the line in the block.
 #[test]
 fn a_block_under_tension_has_its_linear_displacement_along_every_line() {
     let (young, poisson, load) = (1000.0, 0.25, 8.0);
@@ -79,7 +80,8 @@ fn a_block_under_tension_has_its_linear_displacement_along_every_line() {
         if model == "plane-stress" {
             scene["thickness"] = json!(1);
         }
-        // A line, both its ends, and its length in the block: it enters at x = 0, or begins inside and leaves at the top.
+        // A line, both its ends, and its length in the block: it enters at x = 0, or begins inside and leaves at the
+        // top.
         let mut lines = vec![
             ("-0.5,0.1,0.2:2.5,0.7,1.1", [[-0.5, 0.1, 0.2], [2.5, 0.7, 1.1]], 2.0 / 3.0),
             ("0.3,0.2,0.1:0.9,1.8,1.3", [[0.3, 0.2, 0.1], [0.9, 1.8, 1.3]], 0.5),
@@ -126,8 +128,9 @@ fn a_block_under_tension_has_its_linear_displacement_along_every_line() {
     }
 }
 
-/// GOAL: fine meshes far from the origin, and long lines. CONDITIONS: skew lines through thousands of cells of a block at x = 100, and
-/// through the hole of a ring from far away. REFERENCE: the length of the line in the block; the two parts beside the hole.
+/// GOAL: fine meshes far from the origin, and long lines. CONDITIONS: skew lines through thousands of cells of a block
+/// at x = 100, and through the hole of a ring from far away. REFERENCE: the length of the line in the block; the two
+/// parts beside the hole.
 #[test]
 fn no_cell_of_a_fine_mesh_is_lost() {
     let scene = json!({
@@ -151,8 +154,9 @@ fn no_cell_of_a_fine_mesh_is_lost() {
     }
 }
 
-/// GOAL: curved sides, and a line that leaves the body. CONDITIONS: a ring of quadratic elements, a line through its hole and a chord that
-/// cuts off a piece. REFERENCE: the chords of circles; a quadratic side is off the circle by at most r theta^4/128 here.
+/// GOAL: curved sides, and a line that leaves the body. CONDITIONS: a ring of quadratic elements, a line through its
+/// hole and a chord that cuts off a piece. REFERENCE: the chords of circles; a quadratic side is off the circle by at
+/// most r theta^4/128 here.
 #[test]
 fn a_line_through_a_hole_has_a_gap_and_chords_of_their_length() {
     for element in ["t6", "q8"] {
@@ -185,8 +189,8 @@ fn a_line_through_a_hole_has_a_gap_and_chords_of_their_length() {
     }
 }
 
-/// GOAL: both values where materials meet. CONDITIONS: two layers in uniaxial strain under a pressure p. REFERENCE: the lateral stress is
-/// -p nu/(1 - nu) in each.
+/// GOAL: both values where materials meet. CONDITIONS: two layers in uniaxial strain under a pressure p. REFERENCE: the
+/// lateral stress is -p nu/(1 - nu) in each.
 #[test]
 fn the_lateral_stress_jumps_where_materials_meet() {
     let table = along(&layers(), &["0.3,0:0.3,2"]);
@@ -197,8 +201,9 @@ fn the_lateral_stress_jumps_where_materials_meet() {
     at_interface.iter().zip(expected).for_each(|(found, expected)| assert!((found - expected).abs() < ROUNDING));
 }
 
-/// GOAL: lines across and along the contact of two bodies. CONDITIONS: a block on a block, pressed flat. REFERENCE: the pressure p on both
-/// bodies along their contact, none across it; a gap of the line between the bodies before they touch.
+/// GOAL: lines across and along the contact of two bodies. CONDITIONS: a block on a block, pressed flat. REFERENCE: the
+/// pressure p on both bodies along their contact, none across it; a gap of the line between the bodies before they
+/// touch.
 #[test]
 fn both_bodies_have_their_pressure_along_their_contact() {
     let block =
@@ -228,8 +233,9 @@ fn both_bodies_have_their_pressure_along_their_contact() {
     assert_eq!((parts(&apart, 1.0), parts(&apart, 0.0)), (vec![[0.0, 1.0]], vec![[1.25, 2.25]]));
 }
 
-/// GOAL: the pressure on the contact of one obstacle, on edges of cells, and nowhere else. CONDITIONS: a block pressed into a corner of
-/// two planes, and a layer of one cell between two planes. REFERENCE: the pressure of each plane is uniform.
+/// GOAL: the pressure on the contact of one obstacle, on edges of cells, and nowhere else. CONDITIONS: a block pressed
+/// into a corner of two planes, and a layer of one cell between two planes. REFERENCE: the pressure of each plane is
+/// uniform.
 #[test]
 fn the_pressure_is_that_of_the_obstacle_on_which_the_line_lies() {
     let cube = |x: f64, planes: Value| {

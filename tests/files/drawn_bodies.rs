@@ -1,5 +1,6 @@
-//! Bodies beside their obstacles, as pictures and pages show them: a rigid obstacle keeps its shape and touches where there is contact,
-//! the eye sees the contact, marks do not hide the pressure, and singular nodes do not take the colours.
+//! Bodies beside their obstacles, as pictures and pages show them: a rigid obstacle keeps its shape and touches where
+//! there is contact, the eye sees the contact, marks do not hide the pressure, and singular nodes do not take the
+//! colours.
 
 use std::fs;
 
@@ -118,7 +119,8 @@ fn page(desk: &Desk) -> Value {
     serde_json::from_str(data).unwrap()
 }
 
-/// A small block on a wide plate, and one below: the eye is beside their contact, on the side of the block, which the plate does not hide.
+/// A small block on a wide plate, and one below: the eye is beside their contact, on the side of the block, which the
+/// plate does not hide.
 #[test]
 fn two_bodies_in_space_are_seen_from_the_side_of_their_contact() {
     for (block, plate, [foot, face, back], approach, side) in [

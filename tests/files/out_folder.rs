@@ -167,8 +167,9 @@ pub fn layers() -> Value {
     })
 }
 
-/// GOAL: the strain energy density of the `.vtu` file. CONDITIONS: a block of two layers in uniaxial strain under a pressure p.
-/// REFERENCE: w = p^2/(2 M) in each layer, M = E (1 - nu)/((1 + nu)(1 - 2 nu)), and their mean where they meet.
+/// GOAL: the strain energy density of the `.vtu` file. CONDITIONS: a block of two layers in uniaxial strain under a
+/// pressure p. REFERENCE: w = p^2/(2 M) in each layer, M = E (1 - nu)/((1 + nu)(1 - 2 nu)), and their mean where they
+/// meet.
 #[test]
 fn the_strain_energy_density_is_that_of_the_material_of_each_element() {
     let desk = Desk::new();

@@ -1,11 +1,11 @@
-//! What the compiler does not hold: the order of the rooms inside a crate, and what stays in one room. The arrows between crates are in
-//! their manifests.
+//! What the compiler does not hold: the order of the rooms inside a crate, and what stays in one room. The arrows
+//! between crates are in their manifests.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::imports::House;
+use crate::imports::{CRATES, House, rust_files};
 
 /// The rooms of each wing, by the names before those of its rooms: a room names only rooms before it.
 const WINGS: [(&[&str], &[&str]); 5] = [
@@ -210,6 +210,29 @@ fn methods_use_no_word_of_mechanics_and_do_not_call_each_other() {
             assert!(!file.ends_with(format!("{method}.rs")) || !calls, "{} calls {other}", file.display());
         }
     }
+}
+
+/// A function ends at the first line that is as far to the right as its first line and ends with a bracket or, if it is
+/// only declared, with a semicolon.
+#[test]
+fn no_function_has_more_than_90_lines() {
+    let mut functions = 0;
+    for file in CRATES.iter().flat_map(|of_crate| rust_files(&root().join(of_crate.0))) {
+        let text = fs::read_to_string(&file).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let indent = |line: &str| line.len() - line.trim_start().len();
+        for (first, line) in lines.iter().enumerate() {
+            let is_function = line.split('(').next().unwrap().split_whitespace().any(|word| word == "fn");
+            if line.trim_start().starts_with("//") || !is_function {
+                continue;
+            }
+            let is_end = |other: &&&str| indent(other) == indent(line) && other.ends_with(['}', ';']);
+            let length = lines[first..].iter().take_while(|other| !is_end(other)).count() + 1;
+            assert!(length <= 90, "{}:{}: {length} lines", file.display(), first + 1);
+            functions += 1;
+        }
+    }
+    assert!(functions > 3000, "{functions} functions");
 }
 
 #[test]

@@ -135,7 +135,8 @@ fn each_crate_has_at_most_ten_dependencies_outside_the_workspace_and_that_of_the
     }
 }
 
-/// Cargo refuses an older compiler with a sentence, in place of an error somewhere in a dependency, also one of a feature.
+/// Cargo refuses an older compiler with a sentence, in place of an error somewhere in a dependency, also one of a
+/// feature.
 #[test]
 fn the_oldest_compiler_is_the_newest_that_a_dependency_asks_for() {
     let version = |package: &Value| -> Option<Vec<u32>> {

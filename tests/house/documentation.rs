@@ -1,5 +1,6 @@
-//! Documentation of what users see: it says more than a name, every array has its shape, its unit and its sign, and every
-//! function that can fail names its errors. No two items of the crates, public or not, begin with the same sentence.
+//! Documentation of what users see: it says more than a name, every array has its shape, its unit and its sign, and
+//! every function that can fail names its errors. No two items of the crates, public or not, begin with the same
+//! sentence.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -80,6 +81,8 @@ impl Item {
         let has_example = self.documentation.contains("```");
         let first = self.words().into_iter().next().unwrap_or_default();
         let errors = self.documentation.split_once("# Errors").map(|(_, errors)| errors);
+        let is_function = self.declaration.split('(').next().is_some_and(|start| start.contains("fn "));
+        let parameters = if is_function { self.declaration.split("->").next().unwrap_or_default() } else { "" };
         let is_array = ["Vec<f64>", "[f64", "[[f64", "Vec<[f64", "Vec<usize>", "[usize]"];
         let is_array = is_array.iter().any(|array| self.declaration.contains(array));
         // Matrices and vectors of `qp/linear` may have any unit.
@@ -90,6 +93,7 @@ impl Item {
             ("repeats its name", self.further_words().len() < if is_page { 6 } else { 2 } && !has_example),
             ("asks", self.prose().contains('?') || ["What", "Which", "How", "Where", "Why"].contains(&first.as_str())),
             ("has no `# Errors`", self.declaration.contains("-> Result<") && !errors.is_some_and(names_errors)),
+            ("has a truth value as a parameter", parameters.contains(": bool")),
             ("has an array without a length or an order", is_array && !self.has(&SHAPE) && !self.prose().contains('[')),
             ("has an array without a unit", needs_unit && !self.has_unit()),
             ("has an array without a sign", needs_sign && !self.has(&SIGN)),
@@ -270,6 +274,34 @@ fn no_two_items_of_the_crates_begin_with_the_same_sentence() {
     let repeated: Vec<String> =
         repeated.map(|(sentence, places)| format!("{sentence}\n  {}", places.join("\n  "))).collect();
     assert!(repeated.is_empty(), "{} sentences stand twice:\n{}", repeated.len(), repeated.join("\n"));
+}
+
+/// Lines of code, formulas and tables in a comment may be longer: they have no place to break.
+#[test]
+fn no_line_of_a_comment_is_longer_than_120_letters() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut long = Vec::new();
+    let mut comments = 0;
+    for path in
+        ["crates", "src", "tests", "tools", "python", "examples"].iter().flat_map(|at| rust_files(&root.join(at)))
+    {
+        let text = fs::read_to_string(&path).unwrap();
+        let mut is_code = false;
+        for (number, line) in text.lines().enumerate() {
+            let Some(comment) = line.trim_start().strip_prefix("//") else {
+                is_code = false;
+                continue;
+            };
+            let comment = comment.trim_start_matches(['/', '!']).trim();
+            is_code ^= comment.starts_with("```");
+            comments += 1;
+            if line.chars().count() > 120 && !is_code && !comment.starts_with('|') {
+                long.push(format!("{}:{}", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(comments > 20_000, "{comments} lines");
+    assert!(long.is_empty(), "{} lines are longer:\n{}", long.len(), long.join("\n"));
 }
 
 #[test]

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A module by its names, as a user of `signorini` knows it: `qp::method::start`, `fem::mesh`, `output::page`, `cli`; `[]` is the crate
-/// of the mechanics, and `lib` what `signorini` re-exports.
+/// A module by its names, as a user of `signorini` knows it: `qp::method::start`, `fem::mesh`, `output::page`, `cli`;
+/// `[]` is the crate of the mechanics, and `lib` what `signorini` re-exports.
 pub type Module = Vec<String>;
 
 /// The sources of a crate, its name in code, and the names that come before those of its modules.

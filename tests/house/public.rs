@@ -191,8 +191,8 @@ fn names(house: &House, module: &[String]) -> BTreeSet<String> {
     source.exports.keys().cloned().chain(defined).collect()
 }
 
-/// A user reads every module and every name: the limit keeps the interface small enough to read. A name that another module already
-/// offers is not counted again.
+/// A user reads every module and every name: the limit keeps the interface small enough to read. A name that another
+/// module already offers is not counted again.
 #[test]
 fn at_most_200_names_are_public_in_all_crates() {
     let house = House::read();

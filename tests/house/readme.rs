@@ -61,8 +61,8 @@ fn the_first_command_leaves_the_files_that_the_readme_names() {
     }
 }
 
-/// Runs `./test.sh needs`, which installs nothing, as a user who is not root, where no programs exist but those given, by
-/// their name and exit code. Returns whether it succeeds, and its lines.
+/// Runs `./test.sh needs`, which installs nothing, as a user who is not root, where no programs exist but those given,
+/// by their name and exit code. Returns whether it succeeds, and its lines.
 fn needs(programs: &[(&str, i32)], variables: &[(&str, &str)]) -> (bool, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let found =
@@ -139,6 +139,18 @@ fn table_of_signs_is_the_same_in_library_readme_and_reference() {
             assert!(text.contains(line), "{file} does not contain {line:?}");
         }
     }
+}
+
+#[test]
+fn the_readme_has_at_most_five_tables_and_names_its_limits_before_line_70() {
+    let readme = read("README.md");
+    let lines: Vec<&str> = readme.lines().collect();
+    let tables = lines.iter().filter(|line| line.starts_with("|--") || line.starts_with("| --")).count();
+    assert!((3..=5).contains(&tables), "{tables} tables");
+    let limits = lines.iter().position(|line| line.starts_with("## Who it is for, and who should")).unwrap();
+    let first_scene = lines.iter().position(|line| line.starts_with("## Your first scene")).unwrap();
+    let symbols = lines.iter().position(|line| line.starts_with("| symbol")).unwrap();
+    assert!(limits < first_scene && first_scene < 70 && first_scene < symbols, "{limits} {first_scene} {symbols}");
 }
 
 /// The documents for users.

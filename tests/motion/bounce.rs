@@ -36,7 +36,8 @@ const FLIGHT: f64 = 1e-2;
 /// 1e-5.
 const BLOW: f64 = 1e-4;
 
-/// Energy that the contact keeps while it lasts, on 100 cells: up to one and a half times that of the contact node. Rounding of a change.
+/// Energy that the contact keeps while it lasts, on 100 cells: up to one and a half times that of the contact node.
+/// Rounding of a change.
 const STOPPED: f64 = 0.0076;
 const ROUNDING: f64 = 1e-10;
 
@@ -136,7 +137,8 @@ fn a_dropped_bar_bounces_in_agreement_with_waves_and_gravity() {
             {"boundary": "left", "approach": "-x", "shape": {"plane": {"point": [-height], "normal": [-1]}}}],
         "analysis": {"dynamic": {"duration": fall + 3.0 * period + 10.0, "initial": []}}
     }));
-    // A contact is a sequence of steps with a force; an interruption shorter than three times that of a wave belongs to it.
+    // A contact is a sequence of steps with a force; an interruption shorter than three times that of a wave belongs to
+    // it.
     let mut contacts: Vec<[f64; 3]> = Vec::new();
     for at in seen.all.iter().filter(|at| at.force > 0.0) {
         let middle = at.time - seen.step / 2.0;

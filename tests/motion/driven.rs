@@ -14,8 +14,8 @@ use support::program::Desk;
 /// Rounding over some hundred steps, relative to the largest force or displacement.
 const ROUNDING: f64 = 1e-9;
 
-/// The force of a hammer over the first one, from its second step on 100 cells: the step is a fifth of the time in which it decays, and the
-/// error is that of central differences.
+/// The force of a hammer over the first one, from its second step on 100 cells: the step is a fifth of the time in
+/// which it decays, and the error is that of central differences.
 const HAMMER: f64 = 0.01;
 
 /// The energy of a damped motion at the start, relative: its first half step is of second order.
@@ -88,8 +88,8 @@ fn a_light_hammer_presses_as_the_wave_in_the_bar_says() {
     assert!((peak / first - 1.0).abs() <= 0.01, "{peak}");
 }
 
-/// A hammer that falls by its force F through the gap g hits with the speed `v = sqrt(2 F g/m)`; then the force approaches F:
-/// `F - (F - 30 v) exp(-30 t/m)`.
+/// A hammer that falls by its force F through the gap g hits with the speed `v = sqrt(2 F g/m)`; then the force
+/// approaches F: `F - (F - 30 v) exp(-30 t/m)`.
 #[test]
 fn a_hammer_falls_by_its_force_until_it_hits() {
     let scene = bar(200, json!({"mass": 50, "force": 400, "gap": 1}), json!({"duration": 0.6}));

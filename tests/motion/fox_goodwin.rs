@@ -1,10 +1,10 @@
 //! GOAL: with the default scheme the peak of the contact force converges for every step, and the energy never grows.
 //!
-//! CONDITIONS: bars that are thrown and dropped, blocks, random motions; steps from 0.3 to 1.5 of the time of a wave through
-//! a cell.
+//! CONDITIONS: bars that are thrown and dropped, blocks, random motions; steps from 0.3 to 1.5 of the time of a wave
+//! through a cell.
 //!
-//! REFERENCE: waves in bars (`closed_forms::ImpactingBar`); the first force of a block, `rho c v` on its whole side; fine
-//! meshes.
+//! REFERENCE: waves in bars (`closed_forms::ImpactingBar`); the first force of a block, `rho c v` on its whole side;
+//! fine meshes.
 
 use serde_json::json;
 use signorini::motion::SchemeSpec;
@@ -54,7 +54,8 @@ fn a_bar_moves_exactly_whatever_step_is_asked_for() {
     }
 }
 
-/// A bar of length L that falls on a wall with the velocity v presses with `rho c v + rho g c t` for the time 2 L/c: 300, rising to 500.
+/// A bar of length L that falls on a wall with the velocity v presses with `rho c v + rho g c t` for the time 2 L/c:
+/// 300, rising to 500.
 #[test]
 fn a_falling_bar_presses_as_wave_and_weight_say() {
     for (cells, close) in [(100, 0.03), (400, 0.015)] {
@@ -100,7 +101,8 @@ fn the_peak_of_a_block_converges_for_every_step() {
     }
 }
 
-/// Bodies of a few dofs with random stiffness, mass, loads and obstacles, at random steps; every second one by central differences as well.
+/// Bodies of a few dofs with random stiffness, mass, loads and obstacles, at random steps; every second one by central
+/// differences as well.
 #[test]
 fn the_energy_of_random_motions_never_grows() {
     let mut state = 7_u64;
@@ -154,7 +156,8 @@ fn the_energy_of_random_motions_never_grows() {
     }
 }
 
-/// The beginnings of the contacts of a bar of length 10 that falls 2 by a weight of 20 on a wall, with their largest forces.
+/// The beginnings of the contacts of a bar of length 10 that falls 2 by a weight of 20 on a wall, with their largest
+/// forces.
 fn bounces(cells: usize) -> Vec<[f64; 2]> {
     let scene = json!({
         "model": "bar", "body": {"bar": {"x": {"points": [0, 10], "divisions": [cells]}}},

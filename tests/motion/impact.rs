@@ -1,6 +1,7 @@
 //! GOAL: bars in impact move in agreement with the closed forms, and every scheme behaves as described.
 //!
-//! CONDITIONS: a free bar that flies against a wall, and a held bar that bounces on it with the period 3; 50 to 400 cells.
+//! CONDITIONS: a free bar that flies against a wall, and a held bar that bounces on it with the period 3; 50 to 400
+//! cells.
 //!
 //! REFERENCE: waves in bars (`closed_forms::ImpactingBar`, `closed_forms::BouncingBar`).
 

@@ -8,7 +8,8 @@
 use signorini::motion::{Observation, SchemeSpec};
 use support::impact::{cases::cases, measure::Run, measure::with_value};
 
-/// Largest displacement of the bar: it flies 5 to the wall, and returns with speed 10 during the time after the contact.
+/// Largest displacement of the bar: it flies 5 to the wall, and returns with speed 10 during the time after the
+/// contact.
 const REACH: f64 = 8.4;
 
 /// Error of the mean force between the wave fronts, compared with the closed form.

@@ -169,7 +169,8 @@ fn every_frame_has_the_velocities_of_its_nodes() {
     }
 }
 
-/// A bar flies to and fro between two walls. Each wall has a line of its own: the integral and the largest value of its own force.
+/// A bar flies to and fro between two walls. Each wall has a line of its own: the integral and the largest value of its
+/// own force.
 #[test]
 fn a_motion_between_two_walls_has_the_impulse_of_each_wall() {
     let desk = Desk::new();

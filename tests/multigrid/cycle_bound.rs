@@ -13,8 +13,8 @@ use support::bodies::{clamped_block, clamped_square};
 use support::oracles::{Draws, random};
 use support::scenes::built;
 
-/// Least rounding error of the reference answer, in the relative energy norm; the bound holds for the exact answer. By a factor of a slender
-/// body it may be as large as the bound of the reference: 1.3e-10 for the plate on an edge.
+/// Least rounding error of the reference answer, in the relative energy norm; the bound holds for the exact answer. By
+/// a factor of a slender body it may be as large as the bound of the reference: 1.3e-10 for the plate on an edge.
 const OF_REFERENCE: f64 = 1e-11;
 
 /// Largest median of bound over true error.
@@ -43,7 +43,8 @@ fn answer(found: Result<Solution, Error>) -> Option<Solution> {
     }
 }
 
-/// Ratio of bound to true error of an answer; `None` if the true error is not above that of the reference, which is given with it.
+/// Ratio of bound to true error of an answer; `None` if the true error is not above that of the reference, which is
+/// given with it.
 fn overestimate(
     problem: &ContactProblem,
     found: &Solution,

@@ -1,9 +1,9 @@
-//! GOAL: multigrid solves bodies with meshes that do not match in few cycles, whichever is the stiffer, with the closed rows of the direct
-//! method.
+//! GOAL: multigrid solves bodies with meshes that do not match in few cycles, whichever is the stiffer, with the closed
+//! rows of the direct method.
 //!
-//! CONDITIONS: two blocks with faces that do not match, pressed together so that they part at one side; the upper one with the finer or the
-//! coarser mesh, as wide as the lower one or wider; rows on the softer or on the stiffer body; beside rigid and pressed obstacles; one
-//! block on two.
+//! CONDITIONS: two blocks with faces that do not match, pressed together so that they part at one side; the upper one
+//! with the finer or the coarser mesh, as wide as the lower one or wider; rows on the softer or on the stiffer body;
+//! beside rigid and pressed obstacles; one block on two.
 
 use serde_json::{Value, json};
 use signorini::qp::Estimate;
@@ -26,8 +26,8 @@ fn block(x: Value, y: Value, z: Value) -> Value {
     json!({"box": {"x": x, "y": y, "z": z, "element": "hex8"}})
 }
 
-/// A slab on a block, `cells` along each side of both; the slab is as wide as `width`, the block 1. The left end of the slab is pushed down
-/// by 0.01 while its right end is lifted by as much.
+/// A slab on a block, `cells` along each side of both; the slab is as wide as `width`, the block 1. The left end of the
+/// slab is pushed down by 0.01 while its right end is lifted by as much.
 fn stacked(cells: [usize; 2], width: f64, young: [f64; 2], side: &str) -> Value {
     let [n, m] = cells;
     let slab = block(lines(0.5 - width / 2.0, 0.5 + width / 2.0, n), lines(0.0, 1.0, n), lines(1.0, 1.5, n / 2));

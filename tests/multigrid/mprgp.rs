@@ -79,8 +79,8 @@ fn stretched_cells_need_few_cycles() {
     assert!(counts.iter().all(|&cycles| cycles <= 60), "{counts:?}");
 }
 
-/// GOAL: where the volume is far stiffer than the shear, quadratic elements need a few times the cycles of others, not ten times. With a smoother
-/// that moves single nodes they took 214 and 225 at nu = 0.499.
+/// GOAL: where the volume is far stiffer than the shear, quadratic elements need a few times the cycles of others, not
+/// ten times. With a smoother that moves single nodes they took 214 and 225 at nu = 0.499.
 #[test]
 fn quadratic_elements_near_the_ratio_one_half_need_few_cycles() {
     for (element, cells, most) in [("tet10", 6, 60), ("hex20", 7, 50)] {
@@ -201,8 +201,8 @@ fn other_units_by_powers_of_two_give_the_same_iterations() {
     assert_eq!(one.multiplier.iter().map(|value| unit * value).collect::<Vec<_>>(), other.multiplier);
 }
 
-/// A block without supports, with rows at the top along z; the problem has the stiffness of all dofs, and declares the rigid-body
-/// modes.
+/// A block without supports, with rows at the top along z; the problem has the stiffness of all dofs, and declares the
+/// rigid-body modes.
 fn unsupported(cells: usize, load: [f64; 3]) -> ContactProblem {
     let model = built(&clamped_block(cells, 0.0));
     let body = model.body();

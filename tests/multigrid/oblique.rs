@@ -1,7 +1,8 @@
-//! GOAL: rows of one node with any angles between them are solved by multigrid, and those that are left out because they are too many are
-//! exchanged until the answer meets all.
+//! GOAL: rows of one node with any angles between them are solved by multigrid, and those that are left out because
+//! they are too many are exchanged until the answer meets all.
 //!
-//! CONDITIONS: three rows on each node of a block, all closed, some closed, none; more rows than a node has dofs; random rows.
+//! CONDITIONS: three rows on each node of a block, all closed, some closed, none; more rows than a node has dofs;
+//! random rows.
 
 use std::f64::consts::TAU;
 
@@ -17,8 +18,8 @@ const SAME: f64 = 1e-6;
 /// Rounding of random problems with condition numbers below 1e4.
 const SAME_AS_ENUMERATED: f64 = 1e-7;
 
-/// A block under a sphere, the row of each top node replaced by rows whose normals lean by `lean` (radians) towards `count`
-/// directions. Their gaps are those of the sphere plus `beyond(row of the node)`.
+/// A block under a sphere, the row of each top node replaced by rows whose normals lean by `lean` (radians) towards
+/// `count` directions. Their gaps are those of the sphere plus `beyond(row of the node)`.
 fn with_normals(n: usize, count: usize, lean: f64, beyond: impl Fn(usize) -> f64) -> ContactProblem {
     let block = built(&clamped_block(n, -0.02)).problem().clone();
     let (mut entries, mut gap) = (Vec::new(), Vec::new());

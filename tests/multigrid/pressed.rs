@@ -1,8 +1,8 @@
 //! GOAL: an obstacle that a force presses is solved by multigrid, at about the price of one at a prescribed place.
 //!
-//! CONDITIONS: a clamped block of Hex8 under a sphere, which a force presses or a gap places; two pressed obstacles; nodes whose dofs are
-//! all held, so that their rows bound the travel alone.
-//! REFERENCE: the method with a factor, and the force that a gap gives.
+//! CONDITIONS: a clamped block of Hex8 under a sphere, which a force presses or a gap places; two pressed obstacles;
+//! nodes whose dofs are all held, so that their rows bound the travel alone. REFERENCE: the method with a factor, and
+//! the force that a gap gives.
 
 use serde_json::{Value, json};
 use signorini::qp::Estimate;

@@ -1,6 +1,7 @@
 //! GOAL: the number of cycles does not depend on how much stiffer one body is than the other that it touches.
 //!
-//! CONDITIONS: two blocks with faces that match, pressed together so that they part at one side; the upper one as stiff, stiffer, softer.
+//! CONDITIONS: two blocks with faces that match, pressed together so that they part at one side; the upper one as
+//! stiff, stiffer, softer.
 
 use serde_json::{Value, json};
 use signorini::{Method, Settings, solve};
@@ -10,7 +11,8 @@ use support::scenes::built;
 /// Largest number of cycles of an answer with faces that match, for every ratio of the stiffnesses. Measured 11.
 const MOST_CYCLES: usize = 16;
 
-/// A slab on a block, `n` cells along each side; its left end is pushed down by 0.01 while its right end is lifted by as much.
+/// A slab on a block, `n` cells along each side; its left end is pushed down by 0.01 while its right end is lifted by
+/// as much.
 fn stacked(n: usize, young: [f64; 2]) -> Value {
     let side = || json!({"points": [0, 1], "divisions": [n]});
     let body = |z: Value| json!({"box": {"x": side(), "y": side(), "z": z, "element": "hex8"}});

@@ -334,7 +334,8 @@ fn contact_forces_without_bound_do_not_excuse_an_open_wall() {
 
 #[test]
 fn an_answer_that_is_right_in_energy_closes_the_rows_that_press() {
-    // Two rows move by 6.5e11 of a dof that nothing else holds: an error of 1e-14 there has no energy and opens them by 0.01.
+    // Two rows move by 6.5e11 of a dof that nothing else holds: an error of 1e-14 there has no energy and opens them by
+    // 0.01.
     let dense = Dense::new(
         &[&[0.1, 0.0], &[0.0, 0.5234632063150445]],
         &[0.883138868957758, -0.46733904257416725],

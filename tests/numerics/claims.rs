@@ -116,8 +116,8 @@ fn a_negative_eigenvalue_is_named_with_the_tolerance_of_its_recheck() {
 
 #[test]
 fn rows_that_contradict_each_other_are_infeasible_although_the_load_drives_a_motion_that_none_stops() {
-    // Two masses that float under a load, and a third dof that is to be below -1 and above 1. A fourth dof above zero takes
-    // part in the second row by 1e-13: no two rows oppose each other.
+    // Two masses that float under a load, and a third dof that is to be below -1 and above 1. A fourth dof above zero
+    // takes part in the second row by 1e-13: no two rows oppose each other.
     let stiffness = [&SPRING[..], &[(2, 2, 1.0), (3, 2, -1.0), (3, 3, 2.0)]].concat();
     let rows: [&[f64]; 3] = [&[0.0, 0.0, 1.0, 0.0], &[0.0, 0.0, -1.0, 1e-13], &[0.0, 0.0, 0.0, -1.0]];
     let problem = problem(&stiffness, &[1.0, 1.0, 0.0, 0.0], &rows, &[-1.0, -1.0, 0.0]);

@@ -1,8 +1,8 @@
-//! GOAL: dense problems, which are solved by the compliance of their rows, have the answers of every enumerated set and of exact
-//! arithmetic.
+//! GOAL: dense problems, which are solved by the compliance of their rows, have the answers of every enumerated set and
+//! of exact arithmetic.
 //!
-//! CONDITIONS: what is certified is within its bound, no proof is wrong, and degenerate, dependent, contradictory and badly scaled rows end
-//! as they do without the compliance.
+//! CONDITIONS: what is certified is within its bound, no proof is wrong, and degenerate, dependent, contradictory and
+//! badly scaled rows end as they do without the compliance.
 
 use nalgebra::{DMatrix, DVector};
 use signorini::qp::{Error, solve_many};
@@ -29,7 +29,8 @@ fn proven() -> Settings {
     Settings::default().with_proof()
 }
 
-/// Judges the ending of a problem by exact arithmetic, for every method; returns that of the method that the program chooses.
+/// Judges the ending of a problem by exact arithmetic, for every method; returns that of the method that the program
+/// chooses.
 fn judged(dense: &Dense, name: &str) -> Result<Solution, Error> {
     let problem = dense.problem().unwrap();
     let case = Case::of(&problem);

@@ -1,7 +1,8 @@
 //! GOAL: equality rows are held, have multipliers of either sign, and make no answer worse.
 //!
-//! CONDITIONS: integers, from which the answer is built first; a stiffness of low rank, which only the rows make definite; equalities
-//! that follow from others; equalities given as they are and as pairs of rows. The oracle is the answer from which a problem was built.
+//! CONDITIONS: integers, from which the answer is built first; a stiffness of low rank, which only the rows make
+//! definite; equalities that follow from others; equalities given as they are and as pairs of rows. The oracle is the
+//! answer from which a problem was built.
 
 use signorini::qp::ContactSet;
 use signorini::{

@@ -274,8 +274,8 @@ fn a_hundred_blocks_in_contact_with_each_other_have_a_bound() {
     Finding::read("stack_of_blocks_101").is_certified_by(&ALL);
 }
 
-/// Asserts that `auto`, the QP and the active set certify the answer, for an accuracy goal as well, and that every error on the way
-/// to it that `tradeoff` prints is at most the bound beside it.
+/// Asserts that `auto`, the QP and the active set certify the answer, for an accuracy goal as well, and that every
+/// error on the way to it that `tradeoff` prints is at most the bound beside it.
 #[test]
 fn an_answer_whose_forces_cancel_is_repaired_before_it_is_certified() {
     let finding = Finding::read("foam_pair_certified_3e-4");
@@ -302,8 +302,8 @@ fn a_body_at_rest_is_certified_by_a_sentence_of_its_own() {
     }
 }
 
-/// The forces on the second part are 1e20 times those that bend the first one: put at rest, the second part would make the whole
-/// wrong by 2e-5.
+/// The forces on the second part are 1e20 times those that bend the first one: put at rest, the second part would make
+/// the whole wrong by 2e-5.
 #[test]
 fn a_part_that_looks_at_rest_is_no_excuse_for_the_error_of_the_whole() {
     let finding = Finding::read("rest_that_is_none_beside_a_small_motion");

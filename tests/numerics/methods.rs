@@ -371,7 +371,8 @@ fn empty_and_unloaded_problems_have_the_answer_zero() {
     }
 }
 
-/// An interior-point method with the tolerance 1e-12 may end far from it. The plan then makes another attempt, and keeps the better answer.
+/// An interior-point method with the tolerance 1e-12 may end far from it. The plan then makes another attempt, and
+/// keeps the better answer.
 #[test]
 fn an_interior_point_that_comes_no_further_is_followed_by_a_better_attempt() {
     const TOLD: InteriorPoint = InteriorPoint { polish: false, tolerance: 1e-12 };

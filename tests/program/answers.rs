@@ -230,7 +230,8 @@ fn solve_and_sweep_tell_the_same_width() {
     assert!((width - report["contact"]["width"].as_f64().unwrap()).abs() > 1e-3, "{report}");
 }
 
-/// Rows between meshes that do not match hold means: the report and the page say so where they speak of closed rows, and nowhere else.
+/// Rows between meshes that do not match hold means: the report and the page say so where they speak of closed rows,
+/// and nowhere else.
 #[test]
 fn closed_and_open_are_said_of_mean_gaps_where_rows_hold_means() {
     let block = |y: f64, cells: usize| json!({"rectangle": {"x": {"points": [0, 1], "divisions": [cells]}, "y": {"points": [y, y + 1.0], "divisions": [2]}}});

@@ -1,4 +1,5 @@
-//! The program in the place of `ccx`: decks in, the files of CalculiX out, and answers that FreeCAD and PrePoMax understand.
+//! The program in the place of `ccx`: decks in, the files of CalculiX out, and answers that FreeCAD and PrePoMax
+//! understand.
 
 use std::fs;
 use std::os::unix::process::CommandExt;
@@ -7,7 +8,8 @@ use std::process::{Command, Output};
 use support::decks::Block;
 use support::program::{Desk, program};
 
-/// A brick of 2 x 1 x 1 whose nodes are not in the order of their numbers, pulled along x by 3: sigma = 3, E = 200, nu = 0.25.
+/// A brick of 2 x 1 x 1 whose nodes are not in the order of their numbers, pulled along x by 3: sigma = 3, E = 200, nu
+/// = 0.25.
 pub const BRICK: &str = "*HEADING
 A brick
 *NODE, NSET=ALL
@@ -394,8 +396,9 @@ fn vectors_of_nodes_with_local_axes_are_printed_along_them() {
     assert!(run.stdout.contains("GLOBAL=NO of *NODE FILE"), "{}", run.stdout);
 }
 
-/// The upper block is glued to the lower one and pulled up by 3: as in CalculiX, the forces of its nodes are those of the load and of the
-/// tie, and cancel; the base pulls down. An answer without ties leaves no multiplier of ties behind.
+/// The upper block is glued to the lower one and pulled up by 3: as in CalculiX, the forces of its nodes are those of
+/// the load and of the tie, and cancel; the base pulls down. An answer without ties leaves no multiplier of ties
+/// behind.
 #[test]
 fn forces_of_ties_are_part_of_the_forces_of_nodes() {
     let desk = Desk::new();
@@ -463,7 +466,8 @@ fn plane_stress_has_the_strain_across_the_plane() {
     }
 }
 
-/// A disc of radius 2 pulled by 3 on its face: fields hold the forces of the ring, tables those of a wedge of two degrees.
+/// A disc of radius 2 pulled by 3 on its face: fields hold the forces of the ring, tables those of a wedge of two
+/// degrees.
 #[test]
 fn forces_of_a_body_of_revolution_are_of_the_ring_and_of_the_wedge() {
     let mesh = Block { element: "CAX4", low: [0.0; 3], high: [2.0, 1.0, 0.0], cells: [4, 2, 0], after: 0 }.mesh();
@@ -488,7 +492,8 @@ fn forces_of_a_body_of_revolution_are_of_the_ring_and_of_the_wedge() {
     assert!(dat.contains("\n        6.981317E-02\n"), "{dat}");
 }
 
-/// A block that walls hold along x and z in plane strain, 50 degrees warmer, free along y, with nu = 0: sigma_x = sigma_z = -E alpha T.
+/// A block that walls hold along x and z in plane strain, 50 degrees warmer, free along y, with nu = 0: sigma_x =
+/// sigma_z = -E alpha T.
 #[test]
 fn the_energy_of_plane_strain_has_the_work_across_the_plane() {
     let mesh = Block { element: "CPE4", low: [0.0; 3], high: [2.0, 1.0, 0.0], cells: [2, 2, 0], after: 0 }.mesh();
@@ -505,8 +510,8 @@ fn the_energy_of_plane_strain_has_the_work_across_the_plane() {
     assert!(read(&desk, "block.dat").contains("\n        1.000000E+00\n"), "{}", read(&desk, "block.dat"));
 }
 
-/// Bending about two axes, which quadratic elements represent: with nu = 0 it has the strains e_x = y + 2 z, e_y = 3 x and
-/// e_xz = 0.1, and no other shear.
+/// Bending about two axes, which quadratic elements represent: with nu = 0 it has the strains e_x = y + 2 z, e_y = 3 x
+/// and e_xz = 0.1, and no other shear.
 fn bent([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x * y + 2.0 * x * z - 1.5 * y * y + 0.2 * z, 3.0 * x * y - x * x / 2.0, -x * x]
 }

@@ -12,8 +12,8 @@ use support::program::{Desk, Problem, Run, matrix, vector};
 /// The estimate and the measured peak may differ by this factor.
 const WITHIN: f64 = 2.0;
 
-/// The address space, in kB, that the program takes to refuse a scene of 1e12 elements, beside that in which it tells its version: most of
-/// both is its own code.
+/// The address space, in kB, that the program takes to refuse a scene of 1e12 elements, beside that in which it tells
+/// its version: most of both is its own code.
 const REFUSAL_KILOBYTES: u32 = 1_000;
 
 /// The address space, in kB, in which hostile files are refused; one announces rows of 800 MB.

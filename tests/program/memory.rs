@@ -260,7 +260,8 @@ fn the_peak_of_a_motion_stays_below_the_limit() {
     assert!((3..10).contains(&solved), "{solved} solved");
 }
 
-/// The length of a mesh file does not tell how many entries its stiffness has: the mesh itself is judged before its assembly.
+/// The length of a mesh file does not tell how many entries its stiffness has: the mesh itself is judged before its
+/// assembly.
 #[test]
 fn a_mesh_from_a_file_is_refused_before_its_assembly() {
     const CELLS: usize = 24;

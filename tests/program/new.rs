@@ -55,7 +55,8 @@ fn the_first_scene_of_every_mesh_is_certified_without_changes() {
     }
 }
 
-/// The normals of a bore along the way of the plate are all perpendicular to it; those of a whole bore face all directions.
+/// The normals of a bore along the way of the plate are all perpendicular to it; those of a whole bore face all
+/// directions.
 #[test]
 fn a_bore_is_pressed_only_where_it_faces_the_plate() {
     let desk = Desk::new();

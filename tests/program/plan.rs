@@ -1,4 +1,5 @@
-//! GOAL: `solve --plan` says what would be tried, in order, without solving; `--method`, `--memory` and the kind of problem show in it.
+//! GOAL: `solve --plan` says what would be tried, in order, without solving; `--method`, `--memory` and the kind of
+//! problem show in it.
 
 use serde_json::Value;
 

@@ -327,8 +327,8 @@ fn no_random_scene_violates_the_guarantee() {
     }
 }
 
-/// On the mesh of the scene the means of the gap exceed the travel of the disc, so that nothing holds the plate between disc and floor in the
-/// stress problem: finer triangles at the contact do.
+/// On the mesh of the scene the means of the gap exceed the travel of the disc, so that nothing holds the plate between
+/// disc and floor in the stress problem: finer triangles at the contact do.
 #[test]
 fn a_plate_between_bodies_is_held_on_a_finer_mesh() {
     let (scene, _) = pair_scenes::scene(32);
@@ -354,8 +354,8 @@ fn the_output_folder_has_fields_meshes_and_pictures() {
     assert!(table.starts_with("elements,dofs,total_error,contact_force,stress_dofs,"), "{table}");
 }
 
-/// A pad of 40 under a roller that is narrower than the pad: its vertical sides lie above the top. It first missed the bound by far,
-/// because a parabola through three heights says nothing about a vertical side.
+/// A pad of 40 under a roller that is narrower than the pad: its vertical sides lie above the top. It first missed the
+/// bound by far, because a parabola through three heights says nothing about a vertical side.
 #[test]
 fn a_circle_narrower_than_the_boundary_before_it_has_a_bound() {
     let scene = |radius: f64| {
@@ -449,7 +449,8 @@ fn a_circle_between_the_nodes_of_the_first_mesh_is_found_and_not_warned_of() {
     assert_eq!(report["warnings"], json!([]));
 }
 
-/// Both searches give an ordinary answer on the last mesh, beside the bound or the estimate: the same numbers as `solve` on that mesh.
+/// Both searches give an ordinary answer on the last mesh, beside the bound or the estimate: the same numbers as
+/// `solve` on that mesh.
 #[test]
 fn a_total_error_comes_with_the_answer_on_the_last_mesh() {
     // The mesh in the file has coordinates of 16 digits, and another order of the unknowns.
@@ -491,8 +492,8 @@ fn a_total_error_comes_with_the_answer_on_the_last_mesh() {
     }
 }
 
-/// The answer of `solve` on the last mesh has a bound of its own: that of the displacement plus the distance from it. The exact column is
-/// quadratic, so that both are exact on the first mesh.
+/// The answer of `solve` on the last mesh has a bound of its own: that of the displacement plus the distance from it.
+/// The exact column is quadratic, so that both are exact on the first mesh.
 #[test]
 fn the_answer_on_the_last_mesh_has_a_guaranteed_error_of_its_own() {
     let (_, report, _) = solved(&column("plane-strain"), &["--total-error", "1e-6"]);

@@ -8,7 +8,8 @@ const OUTER: f64 = 1.0;
 const PRESSURE: f64 = 0.01;
 const POISSON: f64 = 0.3;
 
-/// A thick cylinder of Young's modulus 1 under inner pressure, with springs of this stiffness per area at its outer side.
+/// A thick cylinder of Young's modulus 1 under inner pressure, with springs of this stiffness per area at its outer
+/// side.
 fn cylinder(stiffness: Option<f64>) -> Value {
     let mut scene = json!({
         "model": "axisymmetric",
@@ -24,7 +25,8 @@ fn cylinder(stiffness: Option<f64>) -> Value {
     scene
 }
 
-/// Asserts a guarantee whose energies enclose closely the one with this displacement of the inner side; returns the bound.
+/// Asserts a guarantee whose energies enclose closely the one with this displacement of the inner side; returns the
+/// bound.
 fn bound_with_energy(scene: &Value, moved: f64) -> f64 {
     let (code, report, message) = solved(scene, &["--total-error", "0.01"]);
     assert!(code == 0 && report["total_error"]["guaranteed"] == true, "{message} {}", report["reason"]);

@@ -40,8 +40,8 @@ fn bisected_tetrahedra_need_fewer_unknowns_than_uniform_ones() {
     }
 }
 
-/// The finer meshes are quadratic tetrahedra: a tenth of the unknowns of linear ones, for bricks as well. Materials and boundaries are those
-/// of the scene, on every mesh.
+/// The finer meshes are quadratic tetrahedra: a tenth of the unknowns of linear ones, for bricks as well. Materials and
+/// boundaries are those of the scene, on every mesh.
 #[test]
 fn an_estimate_of_a_tenth_takes_at_most_15000_unknowns() {
     for element in ["tet4", "tet10", "hex8", "hex20"] {

@@ -93,8 +93,8 @@ fn a_load_on_a_part_is_the_same_on_bisected_tetrahedra() {
     assert!((force / -1500.0 - 1.0).abs() < 1e-12, "{loads}");
 }
 
-/// A part with planes of symmetry has bounds of the force and of the energy that meet those of the whole, on meshes that are no images of
-/// each other.
+/// A part with planes of symmetry has bounds of the force and of the energy that meet those of the whole, on meshes
+/// that are no images of each other.
 #[test]
 fn a_half_and_a_quarter_have_guaranteed_bounds_that_meet_those_of_the_whole() {
     let half = |scene: &Value, axes: &[&str], divisions: usize| {
@@ -133,8 +133,8 @@ fn a_half_and_a_quarter_have_guaranteed_bounds_that_meet_those_of_the_whole() {
     }
 }
 
-/// An isotropic material written as one whose axes turn around a point has the same energy and force; where the point lies in the body there
-/// is no guarantee.
+/// An isotropic material written as one whose axes turn around a point has the same energy and force; where the point
+/// lies in the body there is no guarantee.
 #[test]
 fn axes_around_a_point_of_an_isotropic_material_change_nothing() {
     let energies = [None, Some([-0.2, 0.3]), Some([0.4, 0.3])].map(|point| {

@@ -7,7 +7,8 @@ fn line(from: f64, to: f64, divisions: usize) -> Value {
     json!({"points": [from, to], "divisions": [divisions]})
 }
 
-/// A block of two layers under a round obstacle: two tied bodies whose meshes do not match in the plane, or one body of two materials.
+/// A block of two layers under a round obstacle: two tied bodies whose meshes do not match in the plane, or one body of
+/// two materials.
 fn layers(model: &str, is_tied: bool) -> Value {
     let is_in_space = model == "space";
     let (stiff, soft) = (json!({"young": 5e9, "poisson": 0.2}), json!({"young": 1e9, "poisson": 0.3}));
@@ -90,7 +91,8 @@ fn ties_without_a_guarantee_are_estimated_with_the_reason() {
     }
 }
 
-/// A circle narrower than an edge of the first mesh is reached by facets of a finer one; its force is the contact force.
+/// A circle narrower than an edge of the first mesh is reached by facets of a finer one; its force is the contact
+/// force.
 #[test]
 fn a_pressed_circle_narrower_than_an_edge_has_a_guarantee() {
     let scene = json!({

@@ -196,8 +196,8 @@ fn a_peak_pressure_at_the_end_of_a_seat_is_warned_of_as_mesh_dependent() {
     assert!(message.contains("grows with every refinement, and has no uncertainty"), "{message}");
 }
 
-/// A sleeve is pressed on a longer shaft, both elastic. The peak at the end of the sleeve grows with every refinement: no mesh has an
-/// uncertainty of it, and each is warned of.
+/// A sleeve is pressed on a longer shaft, both elastic. The peak at the end of the sleeve grows with every refinement:
+/// no mesh has an uncertainty of it, and each is warned of.
 #[test]
 fn the_end_of_a_sleeve_on_a_shaft_is_warned_of_on_every_mesh() {
     let steel = json!({"young": 210e3, "poisson": 0.3});
@@ -484,8 +484,8 @@ fn a_modulus_in_pascals_beside_millimetres_is_asked_about() {
     }
 }
 
-/// A block of 0.5 x 1 on another one whose mesh does not match. `below` are the ends of the lower block along x, `cells` the
-/// numbers of cells of both, and `gap` their distance.
+/// A block of 0.5 x 1 on another one whose mesh does not match. `below` are the ends of the lower block along x,
+/// `cells` the numbers of cells of both, and `gap` their distance.
 fn blocks(below: [f64; 2], cells: [usize; 2], gap: f64, body: &Value) -> Value {
     let block = |x: [f64; 2], cells: usize, y: [f64; 2]| json!({"rectangle": {"x": {"points": x, "divisions": [cells]}, "y": {"points": y, "divisions": [2]}}});
     let mut shape = json!({"boundary": "base.top"});

@@ -1,4 +1,5 @@
-//! GOAL: `"contact": "auto"` finds the contacts between bodies, what it takes is reported, and bodies that go through each other are named.
+//! GOAL: `"contact": "auto"` finds the contacts between bodies, what it takes is reported, and bodies that go through
+//! each other are named.
 
 use std::sync::Arc;
 
@@ -146,8 +147,8 @@ fn bodies_that_go_through_each_other_without_rows_are_named_and_auto_keeps_them_
     assert!(apart["contact"]["force"].as_f64().unwrap() > 0.0);
 }
 
-/// A stiff block of one facet carries the rows; a round bump under it, of radius 0.6, enters it in its middle by 1/24 of the square of the
-/// facet over the radius, 0.069, less what it yields.
+/// A stiff block of one facet carries the rows; a round bump under it, of radius 0.6, enters it in its middle by 1/24
+/// of the square of the facet over the radius, 0.069, less what it yields.
 #[test]
 fn bodies_that_go_through_each_other_between_rows_are_named() {
     let warnings = |cells: usize| {
@@ -231,8 +232,8 @@ fn a_missing_approach_and_a_motion_are_refused_with_the_remedy() {
     assert!(solve_qp(model.problem()).is_ok());
 }
 
-/// Three blocks, each of which touches both others. By pairs, the first would carry rows against the third, which is 2.9 times as stiff, the
-/// third against the second, and the second against the first, whose facets are larger.
+/// Three blocks, each of which touches both others. By pairs, the first would carry rows against the third, which is
+/// 2.9 times as stiff, the third against the second, and the second against the first, whose facets are larger.
 fn three_blocks(sides: [&str; 3]) -> Value {
     let between = |boundary: &str, other: &str, side: &str| json!({"boundary": boundary, "rule": "closest-point", "shape": {"body": {"boundary": other, "rows": "mortar", "side": side, "reach": 0.1}}});
     let further = |name: &str, body: Value, young: f64| json!({"name": name, "body": body, "material": {"young": young, "poisson": 0.3}});

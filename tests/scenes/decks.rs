@@ -1,4 +1,5 @@
-//! Decks of CalculiX: closed forms of every element, loads and supports as CalculiX reads them, contacts, names of nodes.
+//! Decks of CalculiX: closed forms of every element, loads and supports as CalculiX reads them, contacts, names of
+//! nodes.
 
 use std::fs;
 use std::sync::Arc;
@@ -59,7 +60,8 @@ pub fn compare(answer: &Answer, exact: impl Fn([f64; 3]) -> [f64; 3]) {
     }
 }
 
-/// A block from the origin to (2, 1, 1) of elements of a type, with sets at the planes through the origin, a surface at the end, and steel.
+/// A block from the origin to (2, 1, 1) of elements of a type, with sets at the planes through the origin, a surface at
+/// the end, and steel.
 fn block(element: &'static str) -> String {
     let is_plane = !element.starts_with("C3D");
     let (high, cells) = if is_plane { ([2.0, 1.0, 0.0], [3, 2, 0]) } else { ([2.0, 1.0, 1.0], [3, 2, 2]) };
@@ -110,7 +112,8 @@ fn an_axisymmetric_disc_shrinks_as_in_closed_form() {
     }
 }
 
-/// As CalculiX adds up the loads of a step, within a card and between cards; an amplitude counts at the end of the step.
+/// As CalculiX adds up the loads of a step, within a card and between cards; an amplitude counts at the end of the
+/// step.
 #[test]
 fn loads_of_one_step_add_up() {
     let faces = Block { element: "C3D8", low: [0.0; 3], high: [2.0, 1.0, 1.0], cells: [3, 2, 2], after: 0 }
@@ -201,8 +204,8 @@ fn each_section_has_its_material() {
     compare(&answer(&deck), |[x, ..]| [0.01 * x.min(1.0) + 0.02 * (x - 1.0).max(0.0), 0.0, 0.0]);
 }
 
-/// Axis 1 of the material along y, axis 2 against x: tension along x by 3 stretches by 3/E2, and narrows by nu12 3/E1 along y. A
-/// surface within the body that only prints a force is left out.
+/// Axis 1 of the material along y, axis 2 against x: tension along x by 3 stretches by 3/E2, and narrows by nu12 3/E1
+/// along y. A surface within the body that only prints a force is left out.
 #[test]
 fn material_axes_are_turned_by_an_orientation() {
     const TURNED: &str = "*ORIENTATION, NAME=O, SYSTEM=RECTANGULAR\n0., 2., 0., -1., 1., 0.\n\
@@ -250,8 +253,8 @@ fn material_axes_turn_around_the_line_of_an_orientation() {
     }
 }
 
-/// Directions 1, 2, 3 of all nodes are y, -x, z: supports and forces along them stretch along x. Around a line through (-1, 2) along z the
-/// end moves outwards by 0.01.
+/// Directions 1, 2, 3 of all nodes are y, -x, z: supports and forces along them stretch along x. Around a line through
+/// (-1, 2) along z the end moves outwards by 0.01.
 #[test]
 fn supports_and_forces_are_along_the_axes_of_a_transform() {
     const TURNED: &str = "*TRANSFORM, NSET=ALL, TYPE=R\n0., 3., 0., -1., 1., 0.\n";

@@ -7,8 +7,8 @@ use crate::decks::{answer, refusal, step};
 const MATERIAL: &str =
     "*MATERIAL, NAME=STEEL\n*ELASTIC\n200., 0.\n*EXPANSION\n1E-5\n*SOLID SECTION, ELSET=PART, MATERIAL=STEEL\n";
 
-/// A bar (3, 1, 1), or (3, 1) in the plane, held at both ends along x, at y = 0 and at z = 0, with the surface CUT at x = 1 on the elements before it, and a reference
-/// node 5000.
+/// A bar (3, 1, 1), or (3, 1) in the plane, held at both ends along x, at y = 0 and at z = 0, with the surface CUT at x
+/// = 1 on the elements before it, and a reference node 5000.
 fn bar(element: &'static str) -> String {
     let is_plane = !element.starts_with("C3D");
     let (high, cells) = if is_plane { ([3.0, 1.0, 0.0], [3, 2, 0]) } else { ([3.0, 1.0, 1.0], [3, 2, 2]) };
@@ -71,8 +71,8 @@ fn a_bolt_between_walls_has_the_displacements_of_closed_form() {
     }
 }
 
-/// Drawn together by nothing, a cut bar is the whole bar: under a pressure, its weight, a force on a node of the cut, and a support of
-/// nodes of the cut.
+/// Drawn together by nothing, a cut bar is the whole bar: under a pressure, its weight, a force on a node of the cut,
+/// and a support of nodes of the cut.
 #[test]
 fn a_cut_without_a_shortening_changes_nothing() {
     const LOADS: &str = "*DSLOAD\nOUTSIDE, P, 5.\n*DLOAD\nPART, GRAV, 2., 0., 1., 3.\n*CLOAD\nCORNER, 2, 0.7\n";
@@ -95,8 +95,8 @@ fn a_cut_without_a_shortening_changes_nothing() {
     }
 }
 
-/// A square ring of eight cubes, cut at one place, with its hole around the origin: it stays one body, whose faces of the cut are drawn
-/// over each other by the shortening, without a warning of nodes at one place.
+/// A square ring of eight cubes, cut at one place, with its hole around the origin: it stays one body, whose faces of
+/// the cut are drawn over each other by the shortening, without a warning of nodes at one place.
 #[test]
 fn a_ring_is_drawn_together_at_its_cut() {
     let lattice: Vec<[usize; 3]> =

@@ -7,8 +7,9 @@ use crate::decks::{answer, compare, read, refusal, step};
 
 const E: f64 = 200.0;
 
-/// A bar from the origin to (2, 1, 1), or (2, 1) in the plane, of Young's modulus 200, held at x = 0, y = 0, z = 0 against displacements
-/// across these planes, with the nodes 9001 and 9002 in the middle of its end and 9003 at (3, 1/2, 1/2).
+/// A bar from the origin to (2, 1, 1), or (2, 1) in the plane, of Young's modulus 200, held at x = 0, y = 0, z = 0
+/// against displacements across these planes, with the nodes 9001 and 9002 in the middle of its end and 9003 at (3,
+/// 1/2, 1/2).
 fn bar(element: &'static str, cells: [usize; 3], poisson: f64, held: &str) -> String {
     let z = if element.starts_with("C3D") { 1.0 } else { 0.0 };
     let mesh = Block { element, low: [0.0; 3], high: [2.0, 1.0, z], cells, after: 0 }.mesh();
@@ -38,8 +39,8 @@ fn following(cells: [usize; 3]) -> String {
     String::from("*EQUATION\n") + &end.map(of_node).collect::<String>()
 }
 
-/// A force on a reference node acts on all that follows it; a displacement moves it. Node 9002 moves twice as far as node 9001, so that
-/// half of the force does the same work.
+/// A force on a reference node acts on all that follows it; a displacement moves it. Node 9002 moves twice as far as
+/// node 9001, so that half of the force does the same work.
 #[test]
 fn nodes_follow_a_reference_node_of_equations() {
     let deck = bar("C3D8", [2, 2, 2], 0.25, SYMMETRIC) + &following([2, 2, 2]);
@@ -56,7 +57,8 @@ fn nodes_follow_a_reference_node_of_equations() {
     stretched(&answer(&(deck + &step("*CLOAD\n9001, 2, -3.\n"))), 3.0 / E);
 }
 
-/// The end follows along x only, and may narrow; a moment bends the bar as a beam, exactly for elements with quadratic displacements.
+/// The end follows along x only, and may narrow; a moment bends the bar as a beam, exactly for elements with quadratic
+/// displacements.
 #[test]
 fn a_kinematic_coupling_leaves_directions_free() {
     for (element, cells) in [("C3D4", [2, 2, 2]), ("C3D20", [2, 1, 1]), ("CPS4", [2, 2, 0]), ("CPS8", [2, 2, 0])] {
@@ -101,7 +103,8 @@ fn a_kinematic_coupling_of_all_directions_is_a_rigid_body() {
     }
 }
 
-/// A force in the middle is spread as a traction; a displacement of the reference node is the mean of those of the surface.
+/// A force in the middle is spread as a traction; a displacement of the reference node is the mean of those of the
+/// surface.
 #[test]
 fn a_distributing_coupling_spreads_a_force_over_areas() {
     for (element, cells) in [
@@ -119,8 +122,8 @@ fn a_distributing_coupling_spreads_a_force_over_areas() {
     }
 }
 
-/// One brick: a quarter of the force on each corner of the unit square, and the moment M about z of the middle as forces -M (y - 1/2) along
-/// x; the moment of a force is that about the middle.
+/// One brick: a quarter of the force on each corner of the unit square, and the moment M about z of the middle as
+/// forces -M (y - 1/2) along x; the moment of a force is that about the middle.
 #[test]
 fn a_distributing_coupling_spreads_a_moment_as_forces_that_grow_with_the_distance() {
     let deck = bar("C3D8", [1, 1, 1], 0.25, "X0, 1, 3\n");
@@ -137,7 +140,8 @@ fn a_distributing_coupling_spreads_a_moment_as_forces_that_grow_with_the_distanc
         let nodes = by_hand.model().mesh().nodes().to_vec();
         let place = |at: [f64; 3]| nodes.iter().position(|node| *node == at).unwrap();
         compare(&spread, |at| [0, 1, 2].map(|axis| displacement(3 * place(at) + axis)));
-        // The mean rotation is (u_x below - u_x above) of the means at y = 0 and y = 1; prescribed, it gives the same answer.
+        // The mean rotation is (u_x below - u_x above) of the means at y = 0 and y = 1; prescribed, it gives the same
+        // answer.
         let mean = |y: f64| {
             let own = nodes.iter().enumerate().filter(|(_, at)| at[0] == 2.0 && at[1] == y);
             own.map(|(node, _)| displacement(3 * node) / 2.0).sum::<f64>()
@@ -260,8 +264,8 @@ fn springs_join_two_bodies() {
     }
 }
 
-/// A bar that two opposite forces at the corners of its end bend: the end stays flat as with a coupling; in the plane its edge stays
-/// straight. A link along x moves the plate of another bar.
+/// A bar that two opposite forces at the corners of its end bend: the end stays flat as with a coupling; in the plane
+/// its edge stays straight. A link along x moves the plate of another bar.
 #[test]
 fn constraints_keep_nodes_in_a_plane_on_a_line_and_at_a_distance() {
     let curvature = |inertia: f64| 0.5 / (E * inertia);

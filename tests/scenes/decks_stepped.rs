@@ -142,7 +142,8 @@ fn supports_and_temperatures_of_a_step_are_those_of_one_step() {
     }
 }
 
-/// In a later step of another period a load keeps the factor of its own step; total times go on, and temperatures follow the last step.
+/// In a later step of another period a load keeps the factor of its own step; total times go on, and temperatures
+/// follow the last step.
 #[test]
 fn amplitudes_count_at_the_end_of_the_step_that_names_them() {
     for (first, factor) in [

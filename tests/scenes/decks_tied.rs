@@ -64,8 +64,8 @@ fn tied_surfaces_stretch_as_one_bar() {
     }
 }
 
-/// All nodes of the end follow one of them along x; the force on it is spread as a plate spreads it. The second time, directions 1, 2, 3
-/// of all nodes are y, -x, z.
+/// All nodes of the end follow one of them along x; the force on it is spread as a plate spreads it. The second time,
+/// directions 1, 2, 3 of all nodes are y, -x, z.
 #[test]
 fn equations_make_a_plate() {
     let mesh = Block { element: "C3D8", low: [0.0; 3], high: [2.0, 1.0, 1.0], cells: [2, 2, 2], after: 0 }.mesh();
@@ -111,8 +111,8 @@ fn a_rigid_body_is_pulled_and_turned_at_its_reference_nodes() {
     assert_eq!((motion.displacement, motion.rotation), (vec![0.03, 0.0, 0.0], vec![0.002, 0.0, 0.01]));
 }
 
-/// A loaded set has a node of the part and the reference node of its rigid end, which belongs to the part as well: each carries its force
-/// once.
+/// A loaded set has a node of the part and the reference node of its rigid end, which belongs to the part as well: each
+/// carries its force once.
 #[test]
 fn a_loaded_set_with_a_reference_node_is_loaded_once() {
     let deck = two(["C3D8", "C3D8"]).replace("X0, 1\nY0, 2\nZ0, 3", "X0, 1, 3")

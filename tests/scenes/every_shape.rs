@@ -1,7 +1,8 @@
 //! GOAL: the rows of every obstacle shape of the schema, by both rules, compared with dense samples of its surface.
 //!
-//! BODY: a unit square of 16 x 16 Q4, or a unit cube of 8 x 8 x 8 Hex8; candidates are the nodes of its top. Each shape comes from above
-//! and lies partly inside the body. Its surface is written here as a height over the plane, by its definition, without the library.
+//! BODY: a unit square of 16 x 16 Q4, or a unit cube of 8 x 8 x 8 Hex8; candidates are the nodes of its top. Each shape
+//! comes from above and lies partly inside the body. Its surface is written here as a height over the plane, by its
+//! definition, without the library.
 
 use std::path::Path;
 
@@ -36,7 +37,8 @@ fn in_space(value: Value, height: impl Fn([f64; 2]) -> Option<f64> + 'static) ->
     Shape { value, dimension: 3, height: Box::new(height) }
 }
 
-/// The lower half of a circle of radius r about the height `centre`, at the distance t from its middle; the upper half from inside.
+/// The lower half of a circle of radius r about the height `centre`, at the distance t from its middle; the upper half
+/// from inside.
 fn arc(t: f64, r: f64, centre: f64, side: f64) -> Option<f64> {
     let square = r * r - t * t;
     (square >= 0.0).then(|| centre - side * square.sqrt())
@@ -92,7 +94,8 @@ fn shapes(name: &str, folder: &Path) -> Vec<Shape> {
         })],
         "height-map" => vec![height_map()],
         "torus" => vec![
-            // No node lies on its axis, where the closest point is not unique. The ring lies flat: at the distance t from its axis the tube has the height of a circle about t = major.
+            // No node lies on its axis, where the closest point is not unique. The ring lies flat: at the distance t
+            // from its axis the tube has the height of a circle about t = major.
             in_space(
                 json!({"torus": {"centre": [0.47, 0.53, 1.17], "axis": [0, 0, 1], "major": 0.5, "minor": 0.2}}),
                 |[x, y]| arc((x - 0.47).hypot(y - 0.53) - 0.5, 0.2, 1.17, 1.0),
@@ -127,8 +130,8 @@ fn height_map() -> Shape {
     })
 }
 
-/// A pyramid that points down, from a file in half its size: z = 0.97 + 0.4 max(|x - 0.43|, |y - 0.51|) below its base at z = 2.17. Its
-/// apex is not the origin of the file, so that another scale moves it.
+/// A pyramid that points down, from a file in half its size: z = 0.97 + 0.4 max(|x - 0.43|, |y - 0.51|) below its base
+/// at z = 2.17. Its apex is not the origin of the file, so that another scale moves it.
 fn pyramid(folder: &Path) -> Shape {
     let text = "v 0.05 0.1 0.15\nv -1.45 -1.4 0.75\nv 1.55 -1.4 0.75\nv 1.55 1.6 0.75\nv -1.45 1.6 0.75\n\
                 f 1 3 2\nf 1 4 3\nf 1 5 4\nf 1 2 5\nf 2 3 4 5\n";

@@ -275,8 +275,8 @@ fn further_bodies_have_separate_materials() {
     assert!((loads.force[1] + 110.0).abs() < ROUNDING, "{loads:?}");
 }
 
-/// A quarter of a ring with the radii 1 and 2 of a material whose axes turn around its middle, E1 = 100 along the radius and E2 = 400
-/// around it, under an inner pressure of 3.
+/// A quarter of a ring with the radii 1 and 2 of a material whose axes turn around its middle, E1 = 100 along the
+/// radius and E2 = 400 around it, under an inner pressure of 3.
 fn turned_ring(cells: usize) -> Value {
     json!({
         "model": "plane-stress",
@@ -290,7 +290,8 @@ fn turned_ring(cells: usize) -> Value {
     })
 }
 
-/// The radial displacement in closed form: sigma_r = A r^(k-1) + B r^(-k-1), sigma_t = k A r^(k-1) - k B r^(-k-1), k^2 = E2/E1.
+/// The radial displacement in closed form: sigma_r = A r^(k-1) + B r^(-k-1), sigma_t = k A r^(k-1) - k B r^(-k-1), k^2
+/// = E2/E1.
 ///
 /// # Source
 /// S. G. Lekhnitskii, *Anisotropic Plates*, section on rings with cylindrical anisotropy.
@@ -326,8 +327,9 @@ fn axes_around_a_line_give_the_ring_of_closed_form() {
     assert!(coarse < 2e-3 && fine < coarse / 7.0, "{coarse:e} {fine:e}");
 }
 
-/// In space the line may have any direction: a ring turned in space has the displacements of the ring. The forces of an answer come from
-/// its strains, and balance; warmer by one temperature, a free body whose expansion is the same along all axes keeps its form.
+/// In space the line may have any direction: a ring turned in space has the displacements of the ring. The forces of an
+/// answer come from its strains, and balance; warmer by one temperature, a free body whose expansion is the same along
+/// all axes keeps its form.
 #[test]
 fn axes_turn_around_any_line() {
     let block = |around: Value| {

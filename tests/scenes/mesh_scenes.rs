@@ -102,8 +102,9 @@ fn forces_and_moments_balance_on_curved_quadratic_faces() {
     }
 }
 
-/// A half ball of ten-node tetrahedra fills a socket that is a little smaller: the estimated area is that of its curved facets, which is
-/// 0.3 % larger than that of the straight triangles, and the area of the half ball lies within its uncertainty.
+/// A half ball of ten-node tetrahedra fills a socket that is a little smaller: the estimated area is that of its curved
+/// facets, which is 0.3 % larger than that of the straight triangles, and the area of the half ball lies within its
+/// uncertainty.
 #[test]
 fn the_area_of_a_closed_socket_is_that_of_its_curved_facets() {
     const WIDE: f64 = 0.01;
@@ -193,7 +194,8 @@ fn round_bodies_have_the_peak_pressure_of_hertz() {
 /// CONDITIONS: a quarter of a half ball of radius 1 whose cut is moved down by 0.004; five edges along the radius of
 /// the contact.
 ///
-/// REFERENCE: Hertz, from the total force: p0 = (6 F E*^2 / (pi^3 R^2))^(1/3), a = (3 F R / (4 E*))^(1/3), p = p0 sqrt(1 - (r/a)^2).
+/// REFERENCE: Hertz, from the total force: p0 = (6 F E*^2 / (pi^3 R^2))^(1/3), a = (3 F R / (4 E*))^(1/3), p = p0
+/// sqrt(1 - (r/a)^2).
 #[test]
 fn a_ball_of_unstructured_quadratic_tetrahedra_has_the_pressure_of_hertz() {
     let body = json!({"gmsh": {"file": "quarter-ball-tet10.msh"}});

@@ -20,7 +20,8 @@ fn refusal(scene: &Value, count: usize) -> String {
     scene.modal_analysis(count, &Settings::default()).map(|_| ()).unwrap_err().to_string()
 }
 
-/// A bar of length, modulus, density and area 1, held on the left and pulled with `force` towards a wall at the distance `gap`.
+/// A bar of length, modulus, density and area 1, held on the left and pulled with `force` towards a wall at the
+/// distance `gap`.
 fn bar(cells: usize, gap: f64, force: f64) -> Value {
     json!({
         "model": "bar", "gap": gap,

@@ -1,4 +1,5 @@
-//! GOAL: two bodies with their own meshes pass a uniform pressure without error, and answer like bodies whose meshes match.
+//! GOAL: two bodies with their own meshes pass a uniform pressure without error, and answer like bodies whose meshes
+//! match.
 
 use serde_json::{Value, json};
 use signorini::{Model, Solution, solve_qp};
@@ -86,7 +87,8 @@ impl Blocks {
         }
     }
 
-    /// The largest error of the displacement, relative to the largest displacement, and the largest error of the pressure.
+    /// The largest error of the displacement, relative to the largest displacement, and the largest error of the
+    /// pressure.
     fn errors(&self, state: &mut u64) -> [f64; 2] {
         let (model, solution) = solved(&self.scene(state));
         let nodal = model.nodal_displacement(&solution.displacement).unwrap();
@@ -142,7 +144,8 @@ fn gauss() -> [(f64, f64); 5] {
     [(0.0, 128.0 / 225.0), (a, v), (-a, v), (b, w), (-b, w)].map(|(at, weight)| ((1.0 + at) / 2.0, weight / 2.0))
 }
 
-/// The forces of the pressure 1 against a horizontal edge from `from` to the right, node by node: of a boundary whose nodes are known.
+/// The forces of the pressure 1 against a horizontal edge from `from` to the right, node by node: of a boundary whose
+/// nodes are known.
 fn rest_of_pressure(model: &Model, boundary: &str, from: f64) -> Vec<(usize, f64)> {
     let (mesh, mut forces) = (model.mesh(), Vec::new());
     for facet in mesh.boundary(boundary).unwrap().facets() {

@@ -84,8 +84,8 @@ fn a_bar_between_walls_has_the_tension_and_the_shortening_of_closed_form() {
     }
 }
 
-/// A bar that may not widen at its ends: nothing is uniform, but the answers to a force and to its shortening are one answer, that
-/// depends neither on the order of the sides nor on the length of the direction.
+/// A bar that may not widen at its ends: nothing is uniform, but the answers to a force and to its shortening are one
+/// answer, that depends neither on the order of the sides nor on the length of the direction.
 #[test]
 fn a_force_and_its_shortening_give_one_answer() {
     for element in ["q8", "hex8", "tet10"] {
@@ -106,8 +106,8 @@ fn a_force_and_its_shortening_give_one_answer() {
     }
 }
 
-/// A column (stiffness 1 x E / 2) stands on the ground and carries a cap, which a bolt beside it (stiffness 1 x E / 2 in two halves) draws
-/// down; a load pulls the column up. In the plane, without widening.
+/// A column (stiffness 1 x E / 2) stands on the ground and carries a cap, which a bolt beside it (stiffness 1 x E / 2
+/// in two halves) draws down; a load pulls the column up. In the plane, without widening.
 fn joint(preload: &Value, load: f64) -> Value {
     let body = |x: [f64; 2], y: [f64; 2]| json!({"rectangle": {"x": cells(x[0], x[1], 1), "y": cells(y[0], y[1], 2)}});
     let material = json!({"young": YOUNG, "poisson": 0});
@@ -127,7 +127,8 @@ fn joint(preload: &Value, load: f64) -> Value {
     })
 }
 
-/// Half of a bolt at a plane of symmetry has the answer of supports there; a direction with the rounding of an angle is along the axis.
+/// Half of a bolt at a plane of symmetry has the answer of supports there; a direction with the rounding of an angle is
+/// along the axis.
 #[test]
 fn half_a_bolt_has_the_tension_of_its_half() {
     for direction in [json!([0, 0, 1]), json!([6.123e-17, 0, 1])] {
@@ -148,11 +149,10 @@ fn half_a_bolt_has_the_tension_of_its_half() {
     }
 }
 
-/// GOAL: a preloaded bolted joint under an external load.
-/// CONDITIONS: a bolt and a column of the same stiffness; a given tension, or a given shortening; loads up to and
-/// beyond the opening of the seat.
-/// REFERENCE: two springs in parallel: under a given tension the seat carries 3 - F of a load F, under a given shortening
-/// max(0, 3 - F/2), and the bolt the rest.
+/// GOAL: a preloaded bolted joint under an external load. CONDITIONS: a bolt and a column of the same stiffness; a
+/// given tension, or a given shortening; loads up to and beyond the opening of the seat. REFERENCE: two springs in
+/// parallel: under a given tension the seat carries 3 - F of a load F, under a given shortening max(0, 3 - F/2), and
+/// the bolt the rest.
 #[test]
 fn a_bolted_joint_carries_a_load_until_its_seat_opens() {
     let (column, bolt) = (YOUNG / 2.0, YOUNG / 2.0);
@@ -166,7 +166,8 @@ fn a_bolted_joint_carries_a_load_until_its_seat_opens() {
         near(seat(&answer), 3.0 - load);
         near(tie(&answer).shortening.unwrap(), 3.0 / bolt + (3.0 - load) / column);
     }
-    // A shortening that gives 3 without a load: the load is shared until the seat opens, and then the bolt has all of it.
+    // A shortening that gives 3 without a load: the load is shared until the seat opens, and then the bolt has all of
+    // it.
     let shortening = 3.0 / bolt + 3.0 / column;
     for load in [0.0, 2.0, 5.9, 6.5, 9.0] {
         let answer = answer(&joint(&drawn("shortening", shortening), load));

@@ -325,7 +325,8 @@ fn missing_advice_on_tolerance_and_mesh_names_its_reason() {
     );
 }
 
-/// The scenes of [`an_uncertainty_contains_the_value_of_a_four_times_finer_mesh`], with their divisions multiplied by `finer`.
+/// The scenes of [`an_uncertainty_contains_the_value_of_a_four_times_finer_mesh`], with their divisions multiplied by
+/// `finer`.
 fn smooth_contacts(finer: usize) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for element in ["t3", "q4", "t6", "q8"] {
@@ -351,8 +352,8 @@ fn smooth_contacts(finer: usize) -> Vec<(String, Value)> {
     all
 }
 
-/// Sixteen smooth contacts, each on a mesh and on one four times finer: peak and width lie within their uncertainties in nine of ten, and
-/// these are not wide.
+/// Sixteen smooth contacts, each on a mesh and on one four times finer: peak and width lie within their uncertainties
+/// in nine of ten, and these are not wide.
 #[test]
 fn an_uncertainty_contains_the_value_of_a_four_times_finer_mesh() {
     const MUST: f64 = 0.9;
@@ -373,8 +374,9 @@ fn an_uncertainty_contains_the_value_of_a_four_times_finer_mesh() {
     assert!(shares[shares.len() / 2] < WIDE, "{shares:?}");
 }
 
-/// A shaft squeezed by a hub that covers a part of it: the contact ends with its boundary, and the shaft goes on. The pressure at the ends is
-/// proportional to the inverse square root of the distance: it doubles on a mesh four times finer, and has no uncertainty.
+/// A shaft squeezed by a hub that covers a part of it: the contact ends with its boundary, and the shaft goes on. The
+/// pressure at the ends is proportional to the inverse square root of the distance: it doubles on a mesh four times
+/// finer, and has no uncertainty.
 #[test]
 fn a_peak_at_the_end_of_its_boundary_that_grows_has_no_uncertainty() {
     let press_fit = |finer: usize| {
@@ -398,8 +400,8 @@ fn a_peak_at_the_end_of_its_boundary_that_grows_has_no_uncertainty() {
     }
 }
 
-/// A ring that fills its rigid bore: the whole boundary is closed, and the estimated area is that of the curved facets, with an uncertainty
-/// because they are not the surface itself.
+/// A ring that fills its rigid bore: the whole boundary is closed, and the estimated area is that of the curved facets,
+/// with an uncertainty because they are not the surface itself.
 #[test]
 fn the_area_of_a_closed_boundary_is_that_of_its_facets() {
     const AREA: f64 = 2.0 * std::f64::consts::PI;
@@ -426,7 +428,8 @@ fn the_area_of_a_closed_boundary_is_that_of_its_facets() {
     }
 }
 
-/// A traction pulls the end of a bar against a wall: the stress of the body there is that of both, and the pressure is exact.
+/// A traction pulls the end of a bar against a wall: the stress of the body there is that of both, and the pressure is
+/// exact.
 #[test]
 fn a_load_on_the_boundary_of_a_contact_is_not_taken_for_an_error() {
     let bar = std::fs::read_to_string("examples/bar.json").unwrap();
@@ -435,8 +438,8 @@ fn a_load_on_the_boundary_of_a_contact_is_not_taken_for_an_error() {
     assert!(off < 1e-9 * segment.pressure_max, "{} ± {off}", segment.pressure_max);
 }
 
-/// An eye is pulled onto a pin that is thinner than its hole. Linear triangles are too stiff, so that their peak is too high at all of its
-/// nodes: it does not scatter, and only the stress of the body shows how far it is off.
+/// An eye is pulled onto a pin that is thinner than its hole. Linear triangles are too stiff, so that their peak is too
+/// high at all of its nodes: it does not scatter, and only the stress of the body shows how far it is off.
 #[test]
 fn the_peak_of_a_pin_in_a_hole_of_linear_triangles_lies_within_its_uncertainty() {
     const WIDE: f64 = 0.1;
@@ -463,9 +466,9 @@ fn the_peak_of_a_pin_in_a_hole_of_linear_triangles_lies_within_its_uncertainty()
     }
 }
 
-/// A roller presses a block, and half its contact is half a quadratic tetrahedron wide. Forces of nodes are means over cells, so that the
-/// pressure hardly falls up to the last closed node: the zero of its square lies far beyond the open node, and is no edge. The fine strip in
-/// plane strain has the same area.
+/// A roller presses a block, and half its contact is half a quadratic tetrahedron wide. Forces of nodes are means over
+/// cells, so that the pressure hardly falls up to the last closed node: the zero of its square lies far beyond the open
+/// node, and is no edge. The fine strip in plane strain has the same area.
 #[test]
 fn an_edge_extrapolated_beyond_the_open_node_is_not_taken() {
     let press = |model: &str, body: Value, sides: &[&str], shape: Value, approach: &str| {

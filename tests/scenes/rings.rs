@@ -34,7 +34,8 @@ impl Rings {
         self.young[ring] / (2.0 * (1.0 + self.poisson[ring]))
     }
 
-    /// The mean pressure on the interface: `u_r = A r + B / r` and `stress_rr = 2 G (A / (1 - 2 nu) - B / r^2)` in each ring.
+    /// The mean pressure on the interface: `u_r = A r + B / r` and `stress_rr = 2 G (A / (1 - 2 nu) - B / r^2)` in each
+    /// ring.
     fn mean(&self) -> f64 {
         let displacement = |ring: usize, inside: f64, outside: f64| {
             let (shear, nu) = (self.shear(ring), self.poisson[ring]);
@@ -49,7 +50,8 @@ impl Rings {
     }
 
     /// The amplitude of the pressure on the interface that goes with cos 2t, by the stress function
-    /// `(A r^2 + B r^4 + C / r^2 + D) cos 2t` of each ring (J. H. Michell, 1899), without shear stress at the three radii.
+    /// `(A r^2 + B r^4 + C / r^2 + D) cos 2t` of each ring (J. H. Michell, 1899), without shear stress at the three
+    /// radii.
     fn amplitude(&self) -> f64 {
         let normal = |r: f64| [-2.0, 0.0, -6.0 / r.powi(4), -4.0 / (r * r)];
         let shear = |r: f64| [2.0, 6.0 * r * r, -6.0 / r.powi(4), -2.0 / (r * r)];

@@ -88,7 +88,8 @@ fn a_foundation_carries_the_contact_force_with_every_element() {
     }
 }
 
-/// A spring of 25 along twice the displacement of the end, beside a bar of stiffness 50: to the ground, or to the held node.
+/// A spring of 25 along twice the displacement of the end, beside a bar of stiffness 50: to the ground, or to the held
+/// node.
 #[test]
 fn a_spring_of_terms_has_the_stiffness_along_its_elongation() {
     let bar = |spring: Value| {

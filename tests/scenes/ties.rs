@@ -1,4 +1,5 @@
-//! Ties: surfaces and nodes that move together, compared with linear displacements, with bodies in one piece and with rigid faces.
+//! Ties: surfaces and nodes that move together, compared with linear displacements, with bodies in one piece and with
+//! rigid faces.
 
 use serde_json::{Value, json};
 use signorini::study::Sweep;
@@ -15,8 +16,8 @@ fn cells(from: f64, to: f64, count: usize) -> Value {
     json!({"points": [from, to], "divisions": [count]})
 }
 
-/// A block [0, 1] x [0, 1] (x [0, 1]) on a block below it, tied, and loaded by `traction` on top. The lower body has the nodes of its
-/// bottom at `bottom`, a linear displacement field.
+/// A block [0, 1] x [0, 1] (x [0, 1]) on a block below it, tied, and loaded by `traction` on top. The lower body has
+/// the nodes of its bottom at `bottom`, a linear displacement field.
 struct Stack {
     elements: [&'static str; 2],
     counts: [usize; 2],
@@ -128,7 +129,8 @@ fn two_tied_bodies_with_matching_meshes_are_one_body() {
     }
 }
 
-/// Three bodies that meet at a line, each tied to both others: the equations along the line repeat each other, except for rounding.
+/// Three bodies that meet at a line, each tied to both others: the equations along the line repeat each other, except
+/// for rounding.
 #[test]
 fn bodies_that_are_tied_in_a_ring_have_an_answer() {
     for (elements, counts) in
@@ -183,7 +185,8 @@ fn equations_between_nodes_pull_as_a_plate_does() {
     assert!((of("supports[0]")[0] + 4.0).abs() < 1e-12 && forces.balance < 1e-12);
 }
 
-/// A bar whose end stays 0.01 ahead of its support, which moves by 0.02, in place of any load; so does a tied neighbour.
+/// A bar whose end stays 0.01 ahead of its support, which moves by 0.02, in place of any load; so does a tied
+/// neighbour.
 #[test]
 fn prescribed_displacements_count_in_ties() {
     let bar =

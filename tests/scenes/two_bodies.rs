@@ -327,8 +327,8 @@ fn surfaces_of_different_meshes_are_refused_for_either_finer_side() {
     solved(&wide);
 }
 
-/// The lower block has its nodes at thirds written in seven digits, as an export in single precision has them; with three digits its
-/// nodes are a thousandth of a facet aside.
+/// The lower block has its nodes at thirds written in seven digits, as an export in single precision has them; with
+/// three digits its nodes are a thousandth of a facet aside.
 #[test]
 fn pairs_with_coordinates_of_seven_digits_have_the_answer_of_exact_pairs() {
     // The strain of a body changes by about the share by which a cell does: 1e-7 times the distance from the origin.

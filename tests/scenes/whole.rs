@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 
 use support::program::Desk;
 
-/// Difference of printed numbers of one answer on one mesh, relative: six to ten digits are printed, the last one rounded.
+/// Difference of printed numbers of one answer on one mesh, relative: six to ten digits are printed, the last one
+/// rounded.
 const PRINTED: f64 = 2e-6;
 
 /// Numbers below this share of the largest of their line are rounding.
@@ -37,7 +38,8 @@ fn half_cylinder(is_part: bool) -> Value {
     })
 }
 
-/// A block [-1, 1]^2 x [0, 1] under a ball, or the part that planes of symmetry leave; with `z`, the block [-1, 1]^3 between two balls.
+/// A block [-1, 1]^2 x [0, 1] under a ball, or the part that planes of symmetry leave; with `z`, the block [-1, 1]^3
+/// between two balls.
 fn block(planes: &[&str], is_between: bool) -> Value {
     let along = |name: &str, whole: [i32; 2]| match planes.contains(&name) {
         true => json!({"points": [0, 1], "divisions": [4]}),
@@ -199,7 +201,8 @@ fn check(part: &Value, whole: &Value, sweep: &[&str]) {
         "{table}"
     );
     for (ours, exact) in rows(&table).iter().zip(rows(&exact_table)) {
-        // Between the count and the error are force, pressure and extent; of several obstacles they stand in lines of their own.
+        // Between the count and the error are force, pressure and extent; of several obstacles they stand in lines of
+        // their own.
         let of_whole = |row: &[f64]| [&row[..1], &row[3..row.len() - 1]].concat();
         assert!(agree(&of_whole(ours), &of_whole(&exact)), "{table}\n{exact_table}");
     }
@@ -329,7 +332,8 @@ fn comparison_and_total_error_name_the_meshed_part() {
     }
 }
 
-/// A disc between two plates that press with 300 each: the headline names 300 on each plate and the width of one contact, and no sum.
+/// A disc between two plates that press with 300 each: the headline names 300 on each plate and the width of one
+/// contact, and no sum.
 #[test]
 fn headline_of_a_disc_between_two_plates_is_a_table_of_plates() {
     let plate = |approach: &str, y: i32, boundary: &str| {
@@ -371,8 +375,8 @@ fn headline_of_a_disc_between_two_plates_is_a_table_of_plates() {
     assert!((report["contact"]["force"].as_f64().unwrap() / 600.0 - 1.0).abs() < PRINTED);
 }
 
-/// A disc between two plates that come nearer: a sweep gives each plate its own lines, which are those of the disc between two plates that
-/// press with the force of that gap.
+/// A disc between two plates that come nearer: a sweep gives each plate its own lines, which are those of the disc
+/// between two plates that press with the force of that gap.
 #[test]
 fn a_sweep_between_two_plates_has_lines_of_each_plate_and_no_sum() {
     let plate = |approach: &str, y: f64, boundary: &str| {

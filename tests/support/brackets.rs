@@ -60,10 +60,11 @@ impl Draws {
     }
 }
 
-/// The exact energy and force of a column of this height under a body force, whose head meets a plane after `gap`, with the modulus of a
-/// column that cannot bulge.
+/// The exact energy and force of a column of this height under a body force, whose head meets a plane after `gap`, with
+/// the modulus of a column that cannot bulge.
 ///
-/// The pressure q at the head is such that the head moves by `b h^2/2M - q h/M`, which equals the gap; the stress at y is `b (h - y) - q`.
+/// The pressure q at the head is such that the head moves by `b h^2/2M - q h/M`, which equals the gap; the stress at y
+/// is `b (h - y) - q`.
 pub fn of_pressed_column([height, gap, force]: [f64; 3], modulus: f64, area: f64) -> [f64; 2] {
     let pressure = force * height / 2.0 - modulus * gap / height;
     let stored = (force * force * height.powi(3) / 3.0 - pressure * force * height * height
@@ -73,8 +74,8 @@ pub fn of_pressed_column([height, gap, force]: [f64; 3], modulus: f64, area: f64
     [area * (stored - work), area * pressure]
 }
 
-/// Compares the brackets of a column with the exact energy and force, whose energies differ by `width` times the square of the energy norm.
-/// Returns the violations of the guarantee.
+/// Compares the brackets of a column with the exact energy and force, whose energies differ by `width` times the square
+/// of the energy norm. Returns the violations of the guarantee.
 ///
 /// # Errors
 /// Those of the total error.
@@ -109,8 +110,8 @@ pub struct Shown {
     pub of_force: Vec<f64>,
 }
 
-/// Compares the brackets on the mesh of a scene and on `levels` finer ones with each other. Ratios of bound and error are those of meshes
-/// whose bound is `clear` times that of the last mesh, or more.
+/// Compares the brackets on the mesh of a scene and on `levels` finer ones with each other. Ratios of bound and error
+/// are those of meshes whose bound is `clear` times that of the last mesh, or more.
 ///
 /// # Errors
 /// Those of the total error.

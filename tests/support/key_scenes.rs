@@ -1,5 +1,6 @@
-//! Random scenes in the plane with the keys beyond one isotropic block on supports: materials, orthotropy, also around a point, temperatures,
-//! initial stresses, springs, rigid faces, inclined supports, pressed obstacles, moments, profiles.
+//! Random scenes in the plane with the keys beyond one isotropic block on supports: materials, orthotropy, also around
+//! a point, temperatures, initial stresses, springs, rigid faces, inclined supports, pressed obstacles, moments,
+//! profiles.
 
 use serde_json::{Value, json};
 use signorini::Scene;

@@ -1,4 +1,5 @@
-//! Random scenes of two to four bodies in the plane and about an axis, with meshes that do not match; some bodies are tied.
+//! Random scenes of two to four bodies in the plane and about an axis, with meshes that do not match; some bodies are
+//! tied.
 
 use serde_json::{Value, json};
 use signorini::Scene;
@@ -9,8 +10,8 @@ use super::plane_scenes::ELEMENTS;
 /// The models, and whether their bodies are blocks only.
 const MODELS: [(&str, bool); 3] = [("plane-strain", false), ("plane-stress", false), ("axisymmetric", true)];
 
-/// A body on a wider block, in one of five scenes a third one under both, and in some a cap that is tied to a block above; with the name of
-/// the element of the first.
+/// A body on a wider block, in one of five scenes a third one under both, and in some a cap that is tied to a block
+/// above; with the name of the element of the first.
 pub fn scene(seed: u64) -> (Scene, &'static str) {
     let mut draws = Draws::new(seed);
     let (model, has_blocks_only) = *draws.of(&MODELS);

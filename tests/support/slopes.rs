@@ -36,7 +36,8 @@ fn solved(scene: &Scene, outputs: &[&str]) -> Option<(Vec<f64>, ContactSet)> {
     is_decided.then(|| (outputs.iter().map(|output| output.value).collect(), solution.contact_set))
 }
 
-/// All derivatives of `outputs` of a scene with respect to `parameters`, each beside its difference. `size` is a length of the body.
+/// All derivatives of `outputs` of a scene with respect to `parameters`, each beside its difference. `size` is a length
+/// of the body.
 ///
 /// # Panics
 /// If the scene has no answer.
@@ -75,9 +76,9 @@ pub fn slopes(scene: &Scene, outputs: &[&str], parameters: &[&str], size: f64) -
     all
 }
 
-/// The difference of each output with a parameter of this name, value and scale, with a bound on its error: that of the two steps that agree
-/// best. `stress` is that of the body if it were strained by its largest displacement over its size, per displacement: where nothing is
-/// strained, a stress is the rounding of terms of this size.
+/// The difference of each output with a parameter of this name, value and scale, with a bound on its error: that of the
+/// two steps that agree best. `stress` is that of the body if it were strained by its largest displacement over its
+/// size, per displacement: where nothing is strained, a stress is the rounding of terms of this size.
 fn differences(
     scene: &Scene,
     outputs: &[&str],
@@ -175,8 +176,9 @@ pub fn wrong_slopes(scene: &Scene) -> Found {
     Found { all, wrong }
 }
 
-/// The largest difference of the derivatives of all multipliers and forces with respect to the gap of the scene from the slope of the
-/// exact path around it, relative to the largest slope; `None` without a path along which rows keep their directions, or at a kink.
+/// The largest difference of the derivatives of all multipliers and forces with respect to the gap of the scene from
+/// the slope of the exact path around it, relative to the largest slope; `None` without a path along which rows keep
+/// their directions, or at a kink.
 ///
 /// # Panics
 /// If the scene has no answer.

@@ -97,7 +97,8 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
     (Scene { reads_outside: true, ..Scene::from_json(&scene.to_string(), "scene").unwrap() }, element)
 }
 
-/// The mesh of a box of tetrahedra as a file of Gmsh, with each node moved inside the box, and along the planes on which it lies.
+/// The mesh of a box of tetrahedra as a file of Gmsh, with each node moved inside the box, and along the planes on
+/// which it lies.
 fn with_moved_nodes(scene: &Value, draws: &mut Draws, size: [f64; 3]) -> Vec<u8> {
     let model = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap();
     let mesh = model.mesh();

@@ -1,9 +1,10 @@
-//! Measures derivatives: `cargo run --release --example derivatives [-- kinks [PROBLEMS] | path [SCENES] | scenes [SCENES] | cost]`.
+//! Measures derivatives: `cargo run --release --example derivatives [-- kinks [PROBLEMS] | path [SCENES] | scenes
+//! [SCENES] | cost]`.
 //!
-//! `kinks`: random problems, a third at a kink, a third near one, against exact arithmetic. `path`: derivatives with respect to gaps against
-//! the slopes of the exact path. `scenes`: all numbers of random scenes against differences of whole answers. `cost`: seconds of all
-//! derivatives of one output, over one linear solve, and by multigrid over the contact solve. The exit code is 1 if a derivative that is
-//! called proven, or one-sided, is wrong.
+//! `kinks`: random problems, a third at a kink, a third near one, against exact arithmetic. `path`: derivatives with
+//! respect to gaps against the slopes of the exact path. `scenes`: all numbers of random scenes against differences of
+//! whole answers. `cost`: seconds of all derivatives of one output, over one linear solve, and by multigrid over the
+//! contact solve. The exit code is 1 if a derivative that is called proven, or one-sided, is wrong.
 
 #[path = "../contact_cost/linear.rs"]
 mod linear;

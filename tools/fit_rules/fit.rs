@@ -86,7 +86,8 @@ impl Losses<'_> {
 type Steps<'a> = Vec<(usize, &'a str)>;
 
 /// Returns the best steps of at most three methods: those with the smallest worst loss, then with the smallest mean
-/// loss, both compared to one percent, then with the fewest steps. Each is a way with the largest size for which it is used.
+/// loss, both compared to one percent, then with the fewest steps. Each is a way with the largest size for which it is
+/// used.
 fn steps<'a>(points: &[&'a Point], condensed: bool, accuracy: f64) -> Vec<(f64, &'a str)> {
     let mut problems: Vec<&str> = points.iter().map(|point| point.problem.as_str()).collect();
     problems.dedup();

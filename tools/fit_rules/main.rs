@@ -1,8 +1,8 @@
 //! Fits the rules of `Method::Auto` to measured times, and checks them on other scenes.
 //!
 //! `cargo run --release --example fit_rules` measures the training problems, writes `tools/fit_rules/measured.csv` and
-//! fits the constants of `crates/qp/src/cost/fitted.rs` to it. With `-- --fit` it fits to the times in the existing file; with `-- --check` it
-//! measures the other scenes.
+//! fits the constants of `crates/qp/src/cost/fitted.rs` to it. With `-- --fit` it fits to the times in the existing
+//! file; with `-- --check` it measures the other scenes.
 
 mod fit;
 mod measure;

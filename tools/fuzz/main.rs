@@ -10,9 +10,10 @@
 //! NAME] [--only NUMBER] [--save FOLDER] [--all]`, or `fuzz exact --answer DIRECTORY` for the exact answer of one
 //! problem. See `exact.rs`.
 //!
-//! The target `promises` runs binaries of the program as a user does, and compares what they print with exact arithmetic:
-//! `fuzz promises PROBLEMS [SEED] --program PATH [--against PATH] [--save FOLDER] [--only NUMBER]`. `fuzz promises --chains
-//! PROBLEMS` has long chains of rows instead, which only have to be certified. See `promises.rs`.
+//! The target `promises` runs binaries of the program as a user does, and compares what they print with exact
+//! arithmetic: `fuzz promises PROBLEMS [SEED] --program PATH [--against PATH] [--save FOLDER] [--only NUMBER]`.
+//! `fuzz promises --chains PROBLEMS` has long chains of rows instead, which only have to be certified. See
+//! `promises.rs`.
 //!
 //! With `--keep`, the first input of every ending that is new to `tests/faults` and `tests/corpus` is written into
 //! `tests/corpus`, which `tests/files/corpus.rs` replays.

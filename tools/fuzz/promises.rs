@@ -1,9 +1,9 @@
 //! The target `promises`: what binaries of the program print about random problems, compared with exact arithmetic.
 //!
 //! Rows of the table are classes of problems (`trial.rs`), by their data and exact answer alone. Its columns count
-//! problems: certified; `bound`, a printed bound below the error; `wrong`, certified and not right to 1e-9; `exact`, the exact
-//! answer of a problem that moves is refused by `verify`; `mute`, a refusal without dof or digits; `lost`, a right answer
-//! is refused that the other binary certifies.
+//! problems: certified; `bound`, a printed bound below the error; `wrong`, certified and not right to 1e-9; `exact`,
+//! the exact answer of a problem that moves is refused by `verify`; `mute`, a refusal without dof or digits; `lost`, a
+//! right answer is refused that the other binary certifies.
 //!
 //! With `--against`, a second binary gets the same problems. Only the faults of the first one make the run fail; the
 //! second one shows whether the problems are harsh enough, and which right answers the first one has lost.

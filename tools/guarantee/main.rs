@@ -1,16 +1,17 @@
 //! Searches for violations of the guaranteed bound on the total error:
 //! `cargo run --release --example guarantee [-- [--space | --keys | --axis | --pairs] [SCENES [LEVELS]]]`.
 //!
-//! Each random scene, in the plane, there with more keys or of several bodies, about an axis or in space, is solved on its own mesh and on
-//! finer ones. All intervals of the energy and of the force must overlap, and the distance of each answer to the finest one must not exceed
-//! its bound. In addition, one column for every ten scenes is solved; its energy and force are known in closed form. The exit code is 1 if a guarantee is violated.
+//! Each random scene, in the plane, there with more keys or of several bodies, about an axis or in space, is solved on
+//! its own mesh and on finer ones. All intervals of the energy and of the force must overlap, and the distance of each
+//! answer to the finest one must not exceed its bound. In addition, one column for every ten scenes is solved; its
+//! energy and force are known in closed form. The exit code is 1 if a guarantee is violated.
 
 use signorini::Scene;
 use support::brackets::{Column, Shown, of_column, shown};
 use support::{axis_scenes, key_scenes, pair_scenes, plane_scenes, space_scenes};
 
-/// The scenes of a dimension: those of a seed, the columns, the names of their elements, how many times smaller the last bound must be
-/// for an error to be known, and how far the energies of a column may be apart.
+/// The scenes of a dimension: those of a seed, the columns, the names of their elements, how many times smaller the
+/// last bound must be for an error to be known, and how far the energies of a column may be apart.
 type Scenes = (fn(u64) -> (Scene, &'static str), fn(u64) -> Column, [&'static str; 4], f64, f64);
 
 fn main() -> std::process::ExitCode {

@@ -5,8 +5,9 @@
 //! REFERENCE: `closed_forms::ImpactingBar`, `closed_forms::BouncingBar` of `tests/support`.
 //!
 //! `cargo run --release --example impact [-- --out DIR]`; with a folder, the table and plots of pressure and energy
-//! over time are written into it. `-- bodies` prints the peaks of a block and of a ball instead, `-- bodies --long` on finer meshes; `-- errors`
-//! compares estimated errors of the peak with true ones; `-- bounces` prints the beginnings of eleven contacts of a bar and of a block.
+//! over time are written into it. `-- bodies` prints the peaks of a block and of a ball instead, `-- bodies --long` on
+//! finer meshes; `-- errors` compares estimated errors of the peak with true ones; `-- bounces` prints the beginnings
+//! of eleven contacts of a bar and of a block.
 
 mod table;
 
@@ -76,7 +77,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Prints the peaks of a block that hits a wall flatly, over its first force `rho c v` on the whole side, and of a ball, over a fine mesh.
+/// Prints the peaks of a block that hits a wall flatly, over its first force `rho c v` on the whole side, and of a
+/// ball, over a fine mesh.
 fn bodies(is_long: bool) -> Result<(), Error> {
     print!("{}", table::BODIES);
     let first = 10.0 * (900.0_f64 * 0.7 / (1.3 * 0.4)).sqrt();
@@ -101,8 +103,8 @@ fn bodies(is_long: bool) -> Result<(), Error> {
     Ok(())
 }
 
-/// Prints the estimated error of the peak of twenty motions over the true one: that against the first force of a block, `rho c v`, or of a
-/// ball against four times the cells and a fourth of the step.
+/// Prints the estimated error of the peak of twenty motions over the true one: that against the first force of a block,
+/// `rho c v`, or of a ball against four times the cells and a fourth of the step.
 fn errors() -> Result<(), Error> {
     println!("| body | cells | Poisson's ratio | CFL | peak | estimated error | true error | ratio | resolved |");
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
@@ -136,7 +138,8 @@ fn errors() -> Result<(), Error> {
     Ok(())
 }
 
-/// Prints the beginnings of the contacts of a bar and of a block that fall and bounce, on several meshes, and the energy that is left.
+/// Prints the beginnings of the contacts of a bar and of a block that fall and bounce, on several meshes, and the
+/// energy that is left.
 fn bounces() -> Result<(), Error> {
     println!("| body | cells | contacts begin at | energy at the end |\n| --- | --- | --- | --- |");
     for (name, meshes) in [("jumping_bar", &[100, 200, 400, 800][..]), ("bouncing_block", &[8, 16, 32, 64])] {
@@ -149,8 +152,8 @@ fn bounces() -> Result<(), Error> {
     Ok(())
 }
 
-/// The beginnings of the contacts of a motion, and the total energy at its end over that at the first contact: less than 1 by what the
-/// scheme took.
+/// The beginnings of the contacts of a motion, and the total energy at its end over that at the first contact: less
+/// than 1 by what the scheme took.
 fn contacts(scene: &serde_json::Value) -> Result<(Vec<f64>, f64), Error> {
     let (_, dynamics, mut integrator) = set_up(scene)?;
     let (mut begins, mut last, mut fallen) = (Vec::new(), f64::NEG_INFINITY, 0.0);

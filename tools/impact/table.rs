@@ -64,7 +64,8 @@ pub fn of_meshes(case: &Case, courant: f64, cells: &[usize], runs: &[Run]) -> St
     text + "\n"
 }
 
-/// The heading of the table of bodies whose contact is no point, and one of its rows; `reference` is the peak to compare with.
+/// The heading of the table of bodies whose contact is no point, and one of its rows; `reference` is the peak to
+/// compare with.
 pub const BODIES: &str = "| body | cells | scheme | CFL | step | peak over reference | largest force over reference | impulse | energy at the end | growth | seconds |\n\
                           | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
 

@@ -1,7 +1,7 @@
 //! Measures natural vibrations: `cargo run --release --example modes [-- scenes [SCENES] | cost]`.
 //!
-//! `scenes`: the first modes of random scenes beside a dense solver; the exit code is 1 if one is missed or wrong. `cost`: seconds of twenty
-//! modes over those of one factorisation with its analysis.
+//! `scenes`: the first modes of random scenes beside a dense solver; the exit code is 1 if one is missed or wrong.
+//! `cost`: seconds of twenty modes over those of one factorisation with its analysis.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;

@@ -17,7 +17,8 @@ const fn block(cells: usize) -> Case {
     Case { cells, radius: 2.0, gap: -0.01 }
 }
 
-/// Blocks of 13,872, 104,544, 811,200, 2,387,124 and 19,827,984 dofs; the third case is a block of 104,544 dofs with a wide contact.
+/// Blocks of 13,872, 104,544, 811,200, 2,387,124 and 19,827,984 dofs; the third case is a block of 104,544 dofs with a
+/// wide contact.
 pub const CASES: [Case; 6] =
     [block(16), block(32), Case { cells: 32, radius: 0.5, gap: -0.1 }, block(64), block(92), block(187)];
 

@@ -29,8 +29,8 @@ pub(crate) fn of_answers(count: f64, dofs: f64) -> f64 {
     OF_ANSWER * count * dofs
 }
 
-/// Bytes of an unknown, and of an entry of the stiffness, both triangles, that a motion takes beside the solve of a step: its mass, the
-/// matrix of a step, its states and their frames.
+/// Bytes of an unknown, and of an entry of the stiffness, both triangles, that a motion takes beside the solve of a
+/// step: its mass, the matrix of a step, its states and their frames.
 const OF_MOTION: [f64; 2] = [400.0, 40.0];
 
 /// Bytes that a motion takes beside the solve of a step.
@@ -38,14 +38,15 @@ pub(crate) fn of_motion(dofs: f64, entries: f64) -> f64 {
     OF_MOTION[0] * dofs + OF_MOTION[1] * entries
 }
 
-/// Bytes of an entry of the stiffness, both triangles, that the search for modes takes beside a solve: the mass, both matrices scaled, their
-/// sum and its analysis.
+/// Bytes of an entry of the stiffness, both triangles, that the search for modes takes beside a solve: the mass, both
+/// matrices scaled, their sum and its analysis.
 const OF_PENCIL: f64 = 60.0;
 
 /// Columns of the space of the search for each wanted mode, and at least: each is a vector of doubles.
 const OF_SPACE: [f64; 2] = [4.0, 48.0];
 
-/// Bytes that the search for `count` modes takes beside the solve of the equilibrium: a factor of its own, and the space.
+/// Bytes that the search for `count` modes takes beside the solve of the equilibrium: a factor of its own, and the
+/// space.
 pub(crate) fn of_modes(count: f64, dofs: f64, entries: f64, factor: f64) -> f64 {
     OF_PENCIL * entries + 8.0 * factor + 8.0 * dofs * (OF_SPACE[0] * count + OF_SPACE[1])
 }

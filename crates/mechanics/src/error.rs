@@ -3,8 +3,8 @@
 use signorini_qp::memory::in_words as memory;
 use signorini_qp::{Failure, Solution};
 
-/// All errors between a scene and a certified answer: those of the quadratic program, and those of bodies and scenes. Each has a
-/// [`code`](Self::code), and one sentence for a reader.
+/// All errors between a scene and a certified answer: those of the quadratic program, and those of bodies and scenes.
+/// Each has a [`code`](Self::code), and one sentence for a reader.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -82,8 +82,8 @@ impl Error {
         }
     }
 
-    /// The name of the kind of error, the same in every version, for programs that distinguish errors; of an error of a solve as
-    /// [`qp::Error::code`](signorini_qp::Error::code).
+    /// The name of the kind of error, the same in every version, for programs that distinguish errors; of an error of a
+    /// solve as [`qp::Error::code`](signorini_qp::Error::code).
     pub fn code(&self) -> &'static str {
         match self {
             Error::Qp(error) => error.code(),
@@ -94,7 +94,8 @@ impl Error {
         }
     }
 
-    /// The `status` of a report that ends with the error: that of [`qp::Error::status`](signorini_qp::Error::status), or `bad_input`.
+    /// The `status` of a report that ends with the error: that of [`qp::Error::status`](signorini_qp::Error::status),
+    /// or `bad_input`.
     pub fn status(&self) -> &'static str {
         match self {
             Error::Qp(error) => error.status(),
@@ -102,8 +103,8 @@ impl Error {
         }
     }
 
-    /// The statement about the problem: that of [`qp::Error::failure`](signorini_qp::Error::failure) for an error of a solve, otherwise
-    /// that the input is bad.
+    /// The statement about the problem: that of [`qp::Error::failure`](signorini_qp::Error::failure) for an error of a
+    /// solve, otherwise that the input is bad.
     pub fn failure(&self) -> Failure {
         match self {
             Error::Qp(error) => error.failure(),

@@ -1,4 +1,5 @@
-//! Elastic bodies in frictionless unilateral contact: meshes, scenes, motions and studies on the quadratic program of `signorini_qp`.
+//! Elastic bodies in frictionless unilateral contact: meshes, scenes, motions and studies on the quadratic program of
+//! `signorini_qp`.
 //!
 //! ```
 //! use signorini_mechanics::{Scene, scene::Answer};

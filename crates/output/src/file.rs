@@ -71,11 +71,12 @@ fn write(folder: &Path, path: &Path, contents: impl Fn(&mut dyn Write) -> io::Re
 }
 
 impl Drawing {
-    /// Writes the drawing as `stem.svg` and `stem.png` (for paper `stem.svg` and `stem.pdf`) into `folder`; returns both paths.
+    /// Writes the drawing as `stem.svg` and `stem.png` (for paper `stem.svg` and `stem.pdf`) into `folder`; returns
+    /// both paths.
     ///
     /// # Errors
-    /// [`qp::Error::File`] if the system refuses, [`qp::Error::Numerical`] if the rasteriser fails (then neither file is
-    /// written).
+    /// [`qp::Error::File`] if the system refuses, [`qp::Error::Numerical`] if the rasteriser fails (then neither file
+    /// is written).
     pub fn write(&self, folder: &Path, stem: &str) -> Result<[PathBuf; 2], Error> {
         let (other, bytes) = match self.is_for_paper() {
             true => ("pdf", self.pdf()),

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! Pictures and `.vtu` files take plain data (nodes, elements, values, labels) and know nothing of scenes, meshes or
-//! methods; `view` alone takes them from a model and its answer. A picture is a [`Drawing`]: the
-//! same shapes are written as SVG and painted as PNG with an embedded typeface, so that both show the same on every machine.
+//! methods; `view` alone takes them from a model and its answer. A picture is a [`Drawing`]: the same shapes are
+//! written as SVG and painted as PNG with an embedded typeface, so that both show the same on every machine.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]

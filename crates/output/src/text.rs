@@ -1,7 +1,7 @@
 //! The texts of a scene (its title, units, names of boundaries and groups) on terminals, in pages and in files of XML.
 
-/// Returns `true` for characters without a sign of their own that change what is seen around them: the control characters, and those
-/// that turn the direction of the text after them.
+/// Returns `true` for characters without a sign of their own that change what is seen around them: the control
+/// characters, and those that turn the direction of the text after them.
 pub(super) fn is_unseen(character: char) -> bool {
     let turns =
         matches!(character, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');

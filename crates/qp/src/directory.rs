@@ -11,12 +11,12 @@ use crate::problem::ContactProblem;
 const NO_PROBLEM: &str = "the folder has neither K.mtx nor K.petsc; a problem directory needs K.mtx (stiffness), f.mtx (load), \
                           B.mtx (contact rows) and g.mtx (gaps), or the same four as .petsc; a scene is a .json file: give its name";
 
-/// Reads the problem of a directory: Matrix Market files, with `K.mtx`, or PETSc's, with `K.petsc`. A directory with both is refused:
-/// they may belong to two problems.
+/// Reads the problem of a directory: Matrix Market files, with `K.mtx`, or PETSc's, with `K.petsc`. A directory with
+/// both is refused: they may belong to two problems.
 ///
 /// # Errors
-/// [`Error::File`] for a file that is missing and for a directory with both; [`Error::FileSyntax`] and [`Error::FileBytes`] for one
-/// that is malformed; those of [`ContactProblem::new`].
+/// [`Error::File`] for a file that is missing and for a directory with both; [`Error::FileSyntax`] and
+/// [`Error::FileBytes`] for one that is malformed; those of [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     match forms(directory) {
         [true, true] => {

@@ -1,5 +1,5 @@
-//! Files read up to a cap: an endless device or an absurdly large file is refused before it fills the memory. Files of numbers that
-//! take more room than the numbers in memory are read, and written, piece by piece.
+//! Files read up to a cap: an endless device or an absurdly large file is refused before it fills the memory. Files of
+//! numbers that take more room than the numbers in memory are read, and written, piece by piece.
 
 use std::fs::File;
 use std::io::Write;
@@ -11,7 +11,8 @@ use crate::error::Error;
 /// Most bytes of an input of unknown length, not a regular file: a pipe, a device.
 const MOST_OF_STREAM: u64 = 64 << 20;
 
-/// The content of a file of at most `most` bytes: an endless device does not fill the memory. For the crates of this workspace.
+/// The content of a file of at most `most` bytes: an endless device does not fill the memory. For the crates of this
+/// workspace.
 ///
 /// # Errors
 /// [`Error::File`] for a file that cannot be read, and for one that is longer.
@@ -89,8 +90,8 @@ pub fn open_regular(path: &Path) -> Result<(File, u64), Error> {
     opened.map_err(|source| Error::File { action: "read", path: path.into(), source })
 }
 
-/// Returns `true` for a named pipe, which would wait for a writer when it is opened. A pipe that a shell has already connected,
-/// as /dev/stdin, has no name.
+/// Returns `true` for a named pipe, which would wait for a writer when it is opened. A pipe that a shell has already
+/// connected, as /dev/stdin, has no name.
 #[cfg(unix)]
 fn is_named_pipe(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;

@@ -1,4 +1,5 @@
-//! The certified quadratic program: minimise 1/2 u'K u - f'u subject to B u - g <= 0, with bounds on the error of its answer.
+//! The certified quadratic program: minimise 1/2 u'K u - f'u subject to B u - g <= 0, with bounds on the error of its
+//! answer.
 //!
 //! ```
 //! use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, solve_qp};
@@ -11,9 +12,9 @@
 //! # Ok::<(), signorini_qp::Error>(())
 //! ```
 //!
-//! K is symmetric and positive semidefinite; the multiplier is `lambda = -z <= 0`, with `K u - f - B' lambda = 0`. `Ok` means that
-//! the [`Certificate`], recomputed from K, f, B and g, meets the tolerance. This crate knows no mechanics: meshes, scenes and the
-//! program are in `signorini`, which re-exports all of it as `signorini::qp`.
+//! K is symmetric and positive semidefinite; the multiplier is `lambda = -z <= 0`, with `K u - f - B' lambda = 0`. `Ok`
+//! means that the [`Certificate`], recomputed from K, f, B and g, meets the tolerance. This crate knows no mechanics:
+//! meshes, scenes and the program are in `signorini`, which re-exports all of it as `signorini::qp`.
 //!
 //! From a problem to its answer:
 //!
@@ -21,8 +22,8 @@
 //! problem -> plan -> run: rows selected -> scaled -> condensed -> method -> expanded -> unscaled -> certificate -> plan again
 //! ```
 //!
-//! `plan` alone decides what is tried, by the seconds and bytes of `cost`; `run` carries it out with the data that an engine prepares
-//! once for many loads and gaps; `existence` alone says that a problem has no answer, or more than one.
+//! `plan` alone decides what is tried, by the seconds and bytes of `cost`; `run` carries it out with the data that an
+//! engine prepares once for many loads and gaps; `existence` alone says that a problem has no answer, or more than one.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -97,16 +98,16 @@ use prepared::between;
 /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
 /// * [`Error::NearlyLinear`] for more than 256 dofs of which the stiffness holds less than a quarter,
 /// * [`Error::NotCertified`] with the best answer, if it does not meet the tolerance,
-/// * [`Error::NoRoom`] if no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] if the named method does not
-///   fit,
+/// * [`Error::NoRoom`] if no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] if the named
+///   method does not fit,
 /// * [`Error::Interrupted`] if the watch was asked to stop before there was an answer,
 /// * [`Error::Numerical`] if memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     run::solved(problem, &Start::default(), settings)
 }
 
-/// Solves many contact problems, each by itself: the answer of each, or its error, in their order. The threads of `settings` are shared
-/// out among the problems, and change no bit; a limit of time holds for each problem.
+/// Solves many contact problems, each by itself: the answer of each, or its error, in their order. The threads of
+/// `settings` are shared out among the problems, and change no bit; a limit of time holds for each problem.
 ///
 /// ```
 /// use signorini_qp::{ContactProblem, Settings, SparseMatrix, SymmetricMatrix, solve_many};
@@ -126,7 +127,8 @@ pub fn solve_many(problems: &[ContactProblem], settings: &Settings) -> Vec<Resul
     each_of_many(problems.len(), settings, |number, settings| solve(&problems[number], settings))
 }
 
-/// The results of `solved` for each number below `count`, as [`solve_many`] shares problems out: for problems that are made one by one.
+/// The results of `solved` for each number below `count`, as [`solve_many`] shares problems out: for problems that are
+/// made one by one.
 #[doc(hidden)]
 pub fn each_of_many<T: Send>(
     count: usize,
@@ -157,12 +159,12 @@ impl ContactProblem {
         directory::is_problem_directory(directory)
     }
 
-    /// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; without a file the gaps or the load stay
-    /// unchanged.
+    /// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; without a file the gaps
+    /// or the load stay unchanged.
     ///
     /// # Errors
-    /// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps that are
-    /// infinite in other rows.
+    /// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for
+    /// gaps that are infinite in other rows.
     pub fn read_other_end(&self, directory: &std::path::Path) -> Result<ContactProblem, Error> {
         matrix_market::read_other_end(directory, self)
     }
@@ -185,17 +187,18 @@ impl ContactProblem {
         run::solved(self, start, settings)
     }
 
-    /// The dual active-set method alone, on a small problem in the units that it has: for comparisons of methods. It is the last attempt
-    /// of [`solve`]. `is_definite` says that K is positive definite by itself.
+    /// The dual active-set method alone, on a small problem in the units that it has: for comparisons of methods. It is
+    /// the last attempt of [`solve`]. `is_definite` says that K is positive definite by itself.
     ///
     /// # Errors
-    /// [`Error::NotCondensed`] for a problem that is too large for a dense basis of its rows, or whose stiffness has no factor;
-    /// [`Error::Numerical`] for lack of memory.
+    /// [`Error::NotCondensed`] for a problem that is too large for a dense basis of its rows, or whose stiffness has no
+    /// factor; [`Error::Numerical`] for lack of memory.
     pub fn dual_active_set(&self, is_definite: bool) -> Result<Outcome, Error> {
         method::dual_active_set::dual_active_set(self, is_definite)
     }
 
-    /// The problem at the share `t` of the way to `last`, which has the same matrices: its loads and gaps lie between those of both.
+    /// The problem at the share `t` of the way to `last`, which has the same matrices: its loads and gaps lie between
+    /// those of both.
     ///
     /// # Errors
     /// [`Error::Length`] if `last` has other numbers of dofs or rows.
@@ -206,16 +209,17 @@ impl ContactProblem {
     /// The attempts of a solve from a start, in order, each with its condition and its reason: text, a line each.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and those of an analysis of the
-    /// stiffness.
+    /// [`Error::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and those
+    /// of an analysis of the stiffness.
     pub fn plan(&self, start: &Start, settings: &Settings) -> Result<String, Error> {
         let settings = &settings.started()?;
         let known = plan::Known { gaps: 1, is_whole: !start.is_unknown() };
         plan::Ladder::of(self, known, settings)?.in_words(self, settings)
     }
 
-    /// The certificate of an answer (u, lambda), one entry per dof and per row of B and then of E, that came from elsewhere, within the
-    /// memory of `settings`: with a factor if that is estimated to take at most `seconds`, else by multigrid.
+    /// The certificate of an answer (u, lambda), one entry per dof and per row of B and then of E, that came from
+    /// elsewhere, within the memory of `settings`: with a factor if that is estimated to take at most `seconds`, else
+    /// by multigrid.
     ///
     /// # Errors
     /// As [`ContactProblem::certify`]; [`Error::Infeasible`] as [`solve`], if an answer misses its rows;
@@ -245,9 +249,10 @@ impl ContactProblem {
         Ok(certificate)
     }
 
-    /// Factorises the stiffness once for many sets of held rows. Each call of the returned function is one iteration of the active-set loop,
-    /// and gives displacement (one entry per dof, in length) and multiplier (one per row of B, then one per equality row, in force), which may
-    /// have either sign; `None` if these rows do not hold the body. Equality rows are always held.
+    /// Factorises the stiffness once for many sets of held rows. Each call of the returned function is one iteration of
+    /// the active-set loop, and gives displacement (one entry per dof, in length) and multiplier (one per row of B,
+    /// then one per equality row, in force), which may have either sign; `None` if these rows do not hold the body.
+    /// Equality rows are always held.
     ///
     /// # Errors
     /// As [`Prepared::new`].

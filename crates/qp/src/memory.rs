@@ -1,7 +1,7 @@
 //! Memory that the machine can give.
 
-/// Bytes that the machine can give, if it states them (on Linux): the available memory, at most the rest of the control group;
-/// elsewhere there is no limit.
+/// Bytes that the machine can give, if it states them (on Linux): the available memory, at most the rest of the control
+/// group; elsewhere there is no limit.
 pub(crate) fn available() -> f64 {
     let free = field("/proc/meminfo", "MemAvailable:").map_or(f64::INFINITY, |kilobytes| 1024.0 * kilobytes);
     let of_group = |file: &str| number(&text(&format!("/sys/fs/cgroup/{file}"))?);
@@ -17,8 +17,8 @@ const USABLE: f64 = 0.9;
 /// Least number of bytes of the address space that matrix products reserve.
 const PACKED_BLOCKS: f64 = (64_u32 << 20) as f64;
 
-/// Bytes of the address space that matrix products reserve for packed blocks; they use few of these bytes. It is twice the
-/// third-level caches, allocated at once inside the factorisation, which could not end cleanly without them.
+/// Bytes of the address space that matrix products reserve for packed blocks; they use few of these bytes. It is twice
+/// the third-level caches, allocated at once inside the factorisation, which could not end cleanly without them.
 fn packed_blocks() -> f64 {
     const CPUS: &str = "/sys/devices/system/cpu";
     let cache = |file: &str| text(&format!("{CPUS}/cpu0/cache/index3/{file}"));
@@ -48,7 +48,8 @@ pub(crate) fn address_space_left() -> f64 {
     (USABLE * (limit - reserved - packed_blocks())).max(0.0)
 }
 
-/// Bytes that may be taken in all: those that are `asked` for, or else those that the machine can give, within the address space.
+/// Bytes that may be taken in all: those that are `asked` for, or else those that the machine can give, within the
+/// address space.
 pub fn allowed(asked: Option<f64>) -> f64 {
     asked.unwrap_or_else(available).min(address_space_left())
 }

@@ -1,7 +1,7 @@
 //! The one place that catches panics of libraries: only calls that solve and factorise are wrapped in it.
 //!
-//! The code of this crate does not panic on any input. For a library nobody can promise that, and a panic that crosses it ends
-//! the caller's program too.
+//! The code of this crate does not panic on any input. For a library nobody can promise that, and a panic that crosses
+//! it ends the caller's program too.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};

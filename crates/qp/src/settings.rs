@@ -9,8 +9,8 @@ use crate::method::penalty::{BEST_PENALTY, Penalty};
 use crate::solution::Goal;
 use crate::watch::Watch;
 
-/// Factor by which soft parts of the body may enlarge the relative penetration of the best penalty, which is one over that
-/// penalty.
+/// Factor by which soft parts of the body may enlarge the relative penetration of the best penalty, which is one over
+/// that penalty.
 const PENETRATION: f64 = 100.0;
 
 /// The method that finds the contact set, with its own options; every method ends with the same certificate.
@@ -24,8 +24,8 @@ const PENETRATION: f64 = 100.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The program chooses, by rules fitted to measured times; MPRGP if the factor of a body in space would cost much more, or
-    /// does not fit into [`Settings::memory`].
+    /// The program chooses, by rules fitted to measured times; MPRGP if the factor of a body in space would cost much
+    /// more, or does not fit into [`Settings::memory`].
     #[default]
     Auto,
     /// Convex QP by Clarabel; the active-set loop settles its contact set unless [`InteriorPoint::polish`] is `false`.
@@ -99,8 +99,8 @@ pub enum Precision {
     Auto,
     /// 8 bytes for each value of the factor, and no refinement.
     Double,
-    /// Single precision with half the memory, and an answer refined in double precision; if the problem is not condensed, or
-    /// too ill-conditioned, the factor is in double precision after all.
+    /// Single precision with half the memory, and an answer refined in double precision; if the problem is not
+    /// condensed, or too ill-conditioned, the factor is in double precision after all.
     Mixed,
 }
 
@@ -151,27 +151,29 @@ pub struct Settings {
     pub method: Method,
     /// The rule for condensing the problem onto its contact dofs.
     pub condense: Condense,
-    /// Threads of the sparse factorisations and of multigrid, at least 1. With `None` a factorisation has one, and multigrid on 50,000 dofs
-    /// or more those of the machine, 8 at most, which many problems share as well. They change no bit of an answer.
+    /// Threads of the sparse factorisations and of multigrid, at least 1. With `None` a factorisation has one, and
+    /// multigrid on 50,000 dofs or more those of the machine, 8 at most, which many problems share as well. They change
+    /// no bit of an answer.
     pub threads: Option<usize>,
     /// Precision of the sparse factor of the stiffness.
     pub precision: Precision,
     /// Tolerance of the certificate, relative: what `Ok` promises. With `None` every finite error will do.
     pub tolerance: Option<f64>,
-    /// Relative error in the energy norm that is good enough: if a bound is known, `Ok` promises that it is below, and nothing
-    /// else.
+    /// Relative error in the energy norm that is good enough: if a bound is known, `Ok` promises that it is below, and
+    /// nothing else.
     pub accuracy: Option<f64>,
     /// `true` to prove which rows are open and which are closed.
     pub prove: bool,
     /// Wall-clock time after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short. A
-    /// factorisation in progress is finished first, and the bound of the certificate may take a tenth of the time more; if it
-    /// is cut short then, it is weaker or missing.
+    /// factorisation in progress is finished first, and the bound of the certificate may take a tenth of the time more;
+    /// if it is cut short then, it is weaker or missing.
     pub time: Option<Duration>,
-    /// Bytes that a solve may take. [`Method::Auto`] takes no way with an estimate above this. A named method is refused if it
-    /// would take more, by an estimate made before anything is factorised.
+    /// Bytes that a solve may take. [`Method::Auto`] takes no way with an estimate above this. A named method is
+    /// refused if it would take more, by an estimate made before anything is factorised.
     pub memory: Option<f64>,
-    /// Any thread can stop the solve through it. The solve then ends as if its time were over, or with [`Error::Interrupted`]
-    /// if it has found nothing yet; the watch also states the current activity. Clones of the settings share it.
+    /// Any thread can stop the solve through it. The solve then ends as if its time were over, or with
+    /// [`Error::Interrupted`] if it has found nothing yet; the watch also states the current activity. Clones of the
+    /// settings share it.
     pub watch: Watch,
     /// Largest number of iterations of a loop, or of cycles of MPRGP.
     pub max_iterations: usize,
@@ -278,8 +280,8 @@ impl Settings {
         Settings { watch: watch.clone(), ..self }
     }
 
-    /// The same with the active set if the method is left to the program: answers are those of a settled linear solve, and each
-    /// step of a motion starts from the previous set.
+    /// The same with the active set if the method is left to the program: answers are those of a settled linear solve,
+    /// and each step of a motion starts from the previous set.
     pub fn exactly(self) -> Self {
         let method = if self.method == Method::Auto { Method::ActiveSet } else { self.method };
         Settings { method, ..self }
@@ -332,9 +334,9 @@ impl Method {
         }
     }
 
-    /// Returns `true` if the last resort may replace an answer that misses the goal, in its worst condition, by `value`. The
-    /// answers of an unpolished QP and of a penalty below its best value are kept, and so is the penetration that the best
-    /// penalty leaves.
+    /// Returns `true` if the last resort may replace an answer that misses the goal, in its worst condition, by
+    /// `value`. The answers of an unpolished QP and of a penalty below its best value are kept, and so is the
+    /// penetration that the best penalty leaves.
     pub(super) fn allows_last_resort(self, value: f64) -> bool {
         let is_best_penalty = matches!(self, Method::Penalty(ladder) if ladder.last >= BEST_PENALTY);
         self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)

@@ -14,7 +14,8 @@ pub(in crate::cli) struct DeckOptions {
     /// Take a deck with friction without it: the answer is that of a frictionless contact
     #[arg(long)]
     pub without_friction: bool,
-    /// Answer a deck that asks for large displacements (NLGEOM) with small ones, also where strains or rotations exceed 5 %
+    /// Answer a deck that asks for large displacements (NLGEOM) with small ones, also where strains or rotations exceed
+    /// 5 %
     #[arg(long)]
     pub linear: bool,
     /// Step of a deck, from 1 [default: the last one; of `ccx`: all in turn]

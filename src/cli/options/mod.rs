@@ -1,4 +1,5 @@
-//! The arguments. Types of the argument parser are used only here and in `shell`, which describes them to shells and manuals.
+//! The arguments. Types of the argument parser are used only here and in `shell`, which describes them to shells and
+//! manuals.
 
 mod choice;
 mod limits;
@@ -67,7 +68,8 @@ Example: signorini sweep examples/indentation.json --gaps -0.01:-0.10:10 --out s
 
 A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a straight line.")]
     Sweep(Sweep),
-    /// Solve a scene, and print the derivatives of its outputs with respect to its numbers, with the proof that they exist
+    /// Solve a scene, and print the derivatives of its outputs with respect to its numbers, with the proof that they
+    /// exist
     #[command(after_help = "\
 Example: signorini sensitivity examples/indentation.json --of force,width --to gap,young,obstacles[0].radius
          signorini sensitivity examples/indentation.json --of stress@0.5,0.4:xx --to nodes --out derivatives
@@ -77,8 +79,8 @@ A name that does not exist is answered with those that do.")]
     /// Solve a scene or a problem directory by every method, and print the seconds that each digit costs
     #[command(after_help = "Example: signorini tradeoff examples/indentation.json --refinements 2 --time 60")]
     Tradeoff(Tradeoff),
-    /// Solve a deck as the program ccx of CalculiX does: NAME.inp is answered by NAME.frd, NAME.dat, NAME.sta and the folder
-    /// NAME.signorini
+    /// Solve a deck as the program ccx of CalculiX does: NAME.inp is answered by NAME.frd, NAME.dat, NAME.sta and the
+    /// folder NAME.signorini
     #[command(arg_required_else_help = false)]
     #[command(after_help = "\
 Example: signorini ccx -i cube
@@ -165,7 +167,8 @@ impl Common {
 
 #[derive(Debug, Args)]
 pub(super) struct Solve {
-    /// Scene (a JSON file, - for standard input), deck of CalculiX (a .inp file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
+    /// Scene (a JSON file, - for standard input), deck of CalculiX (a .inp file) or problem directory (with K.mtx,
+    /// f.mtx, B.mtx, g.mtx, or the same as .petsc)
     pub input: PathBuf,
     /// Method that finds the contact set
     #[arg(long, value_parser = choice::<Method>(), default_value = "auto")]
@@ -194,20 +197,21 @@ pub(super) struct Solve {
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
-    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below E: guaranteed in the plane,
-    /// estimated elsewhere
+    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below E: guaranteed in
+    /// the plane, estimated elsewhere
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error,
           conflicts_with_all = ["accuracy", "extrapolate", "resume"])]
     pub total_error: Option<f64>,
     /// Refine further until the contact force is guaranteed to this relative error
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error, requires = "total_error")]
     pub force_error: Option<f64>,
-    /// Write the answer along a line into along.csv and onto the page: displacement, stress, and the pressure on a contact. In space
-    /// X1,Y1,Z1:X2,Y2,Z2; may be given several times
+    /// Write the answer along a line into along.csv and onto the page: displacement, stress, and the pressure on a
+    /// contact. In space X1,Y1,Z1:X2,Y2,Z2; may be given several times
     #[arg(long, value_name = "X1,Y1:X2,Y2", allow_hyphen_values = true, value_parser = parse_line, requires = "out",
           conflicts_with_all = ["total_error", "resume", "plan"])]
     pub along: Vec<Line>,
-    /// Estimate the errors of peak force, impulse and release of a motion by two more runs: with half the step, and with half the cells too
+    /// Estimate the errors of peak force, impulse and release of a motion by two more runs: with half the step, and
+    /// with half the cells too
     #[arg(long, conflicts_with_all = ["total_error", "plan"])]
     pub refine_in_time: bool,
     /// Continue the motion in the folder of --out; the scene may have a longer duration than before
@@ -239,8 +243,8 @@ pub(super) struct Compare {
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("over").required(true).args(["gaps", "forces", "points"])))]
 pub(super) struct Sweep {
-    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc, and g1.mtx or f1.mtx or
-    /// both for its other end)
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc, and g1.mtx or
+    /// f1.mtx or both for its other end)
     pub scene: PathBuf,
     /// Gaps from the first to the last, and their number, such as -0.01:-0.10:10
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
@@ -386,7 +390,8 @@ pub(super) struct Sensitivity {
     /// Outputs, such as force, width, peak-pressure, obstacles[0].travel, pressure@0.5,1, stress@0.5,0.4:xx
     #[arg(long, value_name = "OUTPUTS", required = true)]
     pub of: Vec<String>,
-    /// Parameters, such as gap, young, loads[0], obstacles[0].radius, or nodes for the places of all nodes [default: all numbers]
+    /// Parameters, such as gap, young, loads[0], obstacles[0].radius, or nodes for the places of all nodes [default:
+    /// all numbers]
     #[arg(long, value_name = "PARAMETERS")]
     pub to: Vec<String>,
     /// Name the rows that make a kink, or that the proof leaves undecided
@@ -406,7 +411,8 @@ pub(super) struct Tradeoff {
     /// Finer meshes beside the scene's own, each with half the cells; 1 if neither this nor --time is given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=8))]
     pub refinements: Option<u8>,
-    /// Begin no finer mesh that would end later than T seconds after the start; without --refinements the time alone limits the meshes
+    /// Begin no finer mesh that would end later than T seconds after the start; without --refinements the time alone
+    /// limits the meshes
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
     /// Runs of each point, of which the fastest counts

@@ -62,7 +62,8 @@ pub fn damaged(draws: &mut Draws, text: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the deck with a few changes: lines that are lost, repeated, exchanged or included again, words and numbers that are replaced.
+/// Returns the deck with a few changes: lines that are lost, repeated, exchanged or included again, words and numbers
+/// that are replaced.
 pub fn damaged_deck(draws: &mut Draws, text: &str, name: &str) -> String {
     let mut lines: Vec<String> = text.lines().map(str::to_string).collect();
     for _ in 0..1 + draws.below(3) {

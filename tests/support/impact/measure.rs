@@ -44,7 +44,8 @@ pub struct Run {
     /// Energy at the end and the largest energy, both divided by the energy at the start.
     pub energy: [f64; 2],
     pub penetration: f64,
-    /// Largest force of a step, the largest mean force over a window of time, and over the time of a wave through a few cells.
+    /// Largest force of a step, the largest mean force over a window of time, and over the time of a wave through a few
+    /// cells.
     pub peaks: [f64; 3],
     /// Length of that window, in time.
     pub window: f64,

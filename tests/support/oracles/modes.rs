@@ -37,8 +37,9 @@ fn null_basis(rows: &SparseMatrix, held: &[usize]) -> DMatrix<f64> {
     padded.qr().q().columns(independent.len(), dim - independent.len()).into_owned()
 }
 
-/// The eigenvalues of `K x = w M x` with the rows `held` at zero, increasing, those without mass left out, and the largest. The sum
-/// `K + s M` is definite if no motion lacks both; s is the `place`-th eigenvalue that a first pass finds.
+/// The eigenvalues of `K x = w M x` with the rows `held` at zero, increasing, those without mass left out, and the
+/// largest. The sum `K + s M` is definite if no motion lacks both; s is the `place`-th eigenvalue that a first pass
+/// finds.
 pub fn eigenvalues(
     stiffness: &SymmetricMatrix,
     mass: &SymmetricMatrix,

@@ -1,7 +1,7 @@
-//! GOAL: bars against a wall, and a string and a membrane over a flat obstacle.
-//! CONDITIONS: the obstacle problems are given as matrices of linear elements; an indentation at three gaps.
-//! REFERENCE: `closed_forms::Bar`, `closed_forms::ObstacleString`, `closed_forms::DiscMembrane`; for the indentation the
-//! stored answers of cvxpy and OSQP.
+//! GOAL: bars against a wall, and a string and a membrane over a flat obstacle. CONDITIONS: the obstacle problems are
+//! given as matrices of linear elements; an indentation at three gaps. REFERENCE: `closed_forms::Bar`,
+//! `closed_forms::ObstacleString`, `closed_forms::DiscMembrane`; for the indentation the stored answers of cvxpy and
+//! OSQP.
 
 use std::time::Instant;
 

@@ -22,8 +22,8 @@ pub struct ContinuumAnswer {
     pub boundaries: Vec<(String, Vec<Vec<usize>>)>,
     /// The displacement of the nodes of the last mesh, `[u_x, u_y, u_z]` each, in length; in the plane u_z is zero.
     pub displacement: Vec<Point>,
-    /// The mean over each element of the stress of the displacement and of the stress in balance: `[xx, yy, zz, xy, yz, zx]`, in force per
-    /// area; in the plane those with z are zero.
+    /// The mean over each element of the stress of the displacement and of the stress in balance:
+    /// `[xx, yy, zz, xy, yz, zx]`, in force per area; in the plane those with z are zero.
     pub stress: Vec<Tensor>,
     /// The element of the first mesh that contains each element.
     pub origins: Vec<usize>,
@@ -37,8 +37,8 @@ impl ContinuumAnswer {
         self.kind.dimension()
     }
 
-    /// The components of vectors `[x, y, z]` at all nodes along the axes of the body, in their unit: `[x, y]` or `[x, y, z]` of each node,
-    /// in the order of the nodes; length `nodes x dimension`.
+    /// The components of vectors `[x, y, z]` at all nodes along the axes of the body, in their unit: `[x, y]` or
+    /// `[x, y, z]` of each node, in the order of the nodes; length `nodes x dimension`.
     pub fn components(&self, vectors: &[Point]) -> Vec<f64> {
         vectors.iter().flat_map(|vector| vector.iter().take(self.dimension())).copied().collect()
     }

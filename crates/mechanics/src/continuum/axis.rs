@@ -1,11 +1,13 @@
-//! Bodies of revolution about the y axis: the first coordinate is the radius r, the third component on the diagonal is that around the axis.
+//! Bodies of revolution about the y axis: the first coordinate is the radius r, the third component on the diagonal is
+//! that around the axis.
 //!
-//! The stress s is r times the physical one, quadratic on each of three parts of a triangle. The balance along the radius gives the hoop
-//! stress, the divergence of the first row of s with the body force; the balance along the axis is a condition. So the work with a
-//! displacement of the boundary has no weight r, and all formulas of the plane hold for s. On the axis s is zero.
+//! The stress s is r times the physical one, quadratic on each of three parts of a triangle. The balance along the
+//! radius gives the hoop stress, the divergence of the first row of s with the body force; the balance along the axis
+//! is a condition. So the work with a displacement of the boundary has no weight r, and all formulas of the plane hold
+//! for s. On the axis s is zero.
 //!
-//! Energies contain `1/r`. There it is replaced by a polynomial `P(r) >= 1/r`, so that integrals by Gauss points are exact and bound the
-//! energies from above.
+//! Energies contain `1/r`. There it is replaced by a polynomial `P(r) >= 1/r`, so that integrals by Gauss points are
+//! exact and bound the energies from above.
 
 use std::sync::OnceLock;
 
@@ -29,7 +31,8 @@ fn points() -> &'static [([f64; 2], f64)] {
     SQUARE.get_or_init(|| square(POINTS))
 }
 
-/// The points on a triangle about the axis; towards a single corner on the axis the radius is `t rho(y)`, and rho takes its place.
+/// The points on a triangle about the axis; towards a single corner on the axis the radius is `t rho(y)`, and rho takes
+/// its place.
 pub fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
     let radii: Vec<f64> = triangle.corners().iter().map(|corner| corner[0]).collect();
     let on_axis = radii.iter().filter(|radius| **radius == 0.0).count();
@@ -108,7 +111,8 @@ fn add_hoop(triangle: &Simplex, stress: &mut PartStress) {
     }
 }
 
-/// The conditions on the values of s: no axial divergence, equal tractions between parts, linear ones outside, and zero on the axis.
+/// The conditions on the values of s: no axial divergence, equal tractions between parts, linear ones outside, and zero
+/// on the axis.
 fn conditions(triangle: &Simplex) -> Vec<Vec<f64>> {
     let place = |a: usize, b: usize| pairs(3).position(|pair| pair == [a.min(b), a.max(b)]).unwrap_or(0);
     let column = |k: usize, coefficient: usize, entry: usize| (k * QUADRATIC + coefficient) * ENTRIES.len() + entry;
@@ -182,7 +186,8 @@ mod tests {
         assert_eq!(found, [21, 17, 12]);
     }
 
-    /// Differences of quadratic functions are exact: the divergence of the first row is the hoop stress, that of the second row is zero.
+    /// Differences of quadratic functions are exact: the divergence of the first row is the hoop stress, that of the
+    /// second row is zero.
     #[test]
     fn the_hoop_stress_is_in_radial_balance() {
         for radii in [[0.3, 1.2, 0.7], [0.0, 1.2, 0.7]] {
@@ -205,7 +210,8 @@ mod tests {
         }
     }
 
-    /// The integral of `f^2 / r` of a function f that is r times a linear one near the axis is bounded from above, and only by a little.
+    /// The integral of `f^2 / r` of a function f that is r times a linear one near the axis is bounded from above, and
+    /// only by a little.
     #[test]
     fn integrals_of_squares_over_the_radius_are_bounded_from_above() {
         for (radii, is_exact) in [([0.3, 1.2, 0.7], false), ([0.0, 1.2, 0.7], false), ([0.0, 1.2, 0.0], true)] {

@@ -1,8 +1,8 @@
 //! Stresses in exact balance from facet displacements that nearly solve the stress problem.
 //!
-//! The tractions on both sides of a facet are replaced by their mean, those on the surface by the loads and the given contact forces. What each
-//! simplex then lacks in force and moment is carried along a tree of simplices to its root, and there the supports take it. Tractions that
-//! balance a simplex determine its stress.
+//! The tractions on both sides of a facet are replaced by their mean, those on the surface by the loads and the given
+//! contact forces. What each simplex then lacks in force and moment is carried along a tree of simplices to its root,
+//! and there the supports take it. Tractions that balance a simplex determine its stress.
 
 use std::collections::BTreeMap;
 
@@ -122,7 +122,8 @@ fn levers(about: &Levers, held: &[(usize, Point)]) -> Vec<Vec<f64>> {
 #[derive(Debug)]
 pub struct Balance {
     tree: Tree,
-    /// The places of the stress problem that supports hold, with the axes along which they do, by the root of their simplex.
+    /// The places of the stress problem that supports hold, with the axes along which they do, by the root of their
+    /// simplex.
     held: Vec<(usize, Vec<(usize, Point)>)>,
     places: Vec<Point>,
 }
@@ -168,8 +169,8 @@ impl Balance {
         Levers { dimension, places: &self.places, centre: simplex.centre(), size }
     }
 
-    /// The stress of each simplex, in balance with the loads and with these forces at the places, near that of the displacements of the facets
-    /// of an answer; `None` for a flat simplex.
+    /// The stress of each simplex, in balance with the loads and with these forces at the places, near that of the
+    /// displacements of the facets of an answer; `None` for a flat simplex.
     pub fn stress(
         &self,
         stresses: &Stresses,

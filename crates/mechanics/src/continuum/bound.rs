@@ -6,12 +6,12 @@
 //! 1/2 |u - v|^2  <=  J(v) - D(tau)  =  1/2 |eps(v) - C^-1 tau|^2  +  integral of (-p) (g - v_n)
 //! ```
 //!
-//! for the exact displacement u, in the norms of energy; p is the pressure of tau on the obstacle, `p <= 0`. The bound contains no
-//! unknown constant.
+//! for the exact displacement u, in the norms of energy; p is the pressure of tau on the obstacle, `p <= 0`. The bound
+//! contains no unknown constant.
 //!
-//! A stress without strain is subtracted from tau in these energies, and does the opposite of its work with eps(v) as a load. Springs on the
-//! surface are a part of the body: w is the displacement of a facet with which their forces are in balance, and they add half of the work
-//! of their forces under `v - w` with it.
+//! A stress without strain is subtracted from tau in these energies, and does the opposite of its work with eps(v) as a
+//! load. Springs on the surface are a part of the body: w is the displacement of a facet with which their forces are in
+//! balance, and they add half of the work of their forces under `v - w` with it.
 
 use super::balance::Balance;
 use super::displacement::Displacements;
@@ -29,7 +29,8 @@ use crate::fem::threads::each;
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, Solution, solve};
 
-/// The strain from the rounding of a displacement of one on a simplex of size one: some hundred units in the last place.
+/// The strain from the rounding of a displacement of one on a simplex of size one: some hundred units in the last
+/// place.
 const NOISE: f64 = 100.0 * f64::EPSILON;
 
 /// A displacement and a stress that enclose the exact answer.
@@ -111,7 +112,8 @@ impl Side {
         Ok(Side { unknowns, rows, solution, prepared, values, seconds: 0.0 })
     }
 
-    /// Moves values beyond the bounds of rows, as those of a penalty method, to the bounds: the displacement stays out of the obstacles.
+    /// Moves values beyond the bounds of rows, as those of a penalty method, to the bounds: the displacement stays out
+    /// of the obstacles.
     fn keep_out(&mut self) {
         for row in self.rows.iter().filter(|row| row.value(&self.values) > row.gap).cloned().collect::<Vec<_>>() {
             self.unknowns.move_to(&mut self.values, &row, row.gap);
@@ -123,7 +125,8 @@ impl<'a> Bracket<'a> {
     /// Solves both problems on a mesh, and checks their properties. Both start from the given touching nodes.
     ///
     /// # Errors
-    /// Those of [`solve`]; [`qp::Error::Interrupted`] if no time is left for a bound; [`qp::Error::Numerical`] if the check finds a defect beyond rounding: then there is no guarantee.
+    /// Those of [`solve`]; [`qp::Error::Interrupted`] if no time is left for a bound; [`qp::Error::Numerical`] if the
+    /// check finds a defect beyond rounding: then there is no guarantee.
     pub fn new(
         problem: &'a ContinuumProblem,
         mesh: &'a SimplexMesh,
@@ -154,7 +157,8 @@ impl<'a> Bracket<'a> {
             })
         });
         let mut primal = Side::solved(unknowns, rows, &posed, start, settings)?;
-        // Without a balance a pair needs its rows held exactly; in the plane its factor costs little, and the memory counts.
+        // Without a balance a pair needs its rows held exactly; in the plane its factor costs little, and the memory
+        // counts.
         let serves = balance.is_some() && mesh.dimension == 3;
         primal.prepared.take_if(|_| !serves);
         primal.keep_out();
@@ -235,7 +239,8 @@ impl<'a> Bracket<'a> {
         self.problem.law(self.mesh.origins[cell], place)
     }
 
-    /// The stress in balance less that without strain, at a point of part k of a simplex, given by the weights of the part's corners.
+    /// The stress in balance less that without strain, at a point of part k of a simplex, given by the weights of the
+    /// part's corners.
     pub fn elastic_stress(&self, cell: usize, k: usize, weights: Weights) -> Tensor {
         let (stress, medium) =
             (self.stress_of(&self.stress, cell, k, weights), self.problem.medium(self.mesh.origins[cell]));
@@ -273,7 +278,8 @@ impl<'a> Bracket<'a> {
         square + self.by_polynomial(cell, at, strain, stress)
     }
 
-    /// The sum of the squares of a strain and of an elastic stress, as far as the polynomial for a power of a radius makes them too large.
+    /// The sum of the squares of a strain and of an elastic stress, as far as the polynomial for a power of a radius
+    /// makes them too large.
     pub fn by_polynomial(&self, cell: usize, at: &Sample, strain: Tensor, stress: Tensor) -> f64 {
         if at.extra == 0.0 {
             return 0.0;
@@ -323,8 +329,8 @@ impl<'a> Bracket<'a> {
         self.shares.iter().sum()
     }
 
-    /// Returns `true` if the energies of displacement and stress are at most those of the rounding of the displacement, on every
-    /// simplex.
+    /// Returns `true` if the energies of displacement and stress are at most those of the rounding of the displacement,
+    /// on every simplex.
     pub fn is_at_rest(&self) -> bool {
         let largest = self.displacements.largest(&self.primal.values);
         // The strain on a simplex is the noise over its smallest height.
@@ -339,12 +345,14 @@ impl<'a> Bracket<'a> {
         self.relative(2.0 * self.distance())
     }
 
-    /// The root of a square of the energy norm over |v|; not below the defect, because a bound does not include that rounding.
+    /// The root of a square of the energy norm over |v|; not below the defect, because a bound does not include that
+    /// rounding.
     fn relative(&self, square: f64) -> f64 {
         if self.is_at_rest() { 0.0 } else { (square.max(0.0) / self.energy).sqrt().max(self.defect) }
     }
 
-    /// The square of the radius of the ball in the energy norm, about the mean of both stresses, in which the exact stress lies.
+    /// The square of the radius of the ball in the energy norm, about the mean of both stresses, in which the exact
+    /// stress lies.
     pub fn square_of_radius(&self) -> f64 {
         self.distance() - (self.distance() - self.contact_share) / 2.0
     }
@@ -396,8 +404,8 @@ impl<'a> Bracket<'a> {
         reactions.zip(self.dual.unknowns.prescribed()).map(|(reaction, moved)| reaction * moved).sum()
     }
 
-    /// The forces along the unknowns of the tractions of a stress on both sides of each facet: on the surface those from outside. And the
-    /// share of the facet that each belongs to.
+    /// The forces along the unknowns of the tractions of a stress on both sides of each facet: on the surface those
+    /// from outside. And the share of the facet that each belongs to.
     pub(super) fn forces_on_facets(&self, stress: &[PartStress]) -> [Vec<f64>; 2] {
         let dimension = self.mesh.dimension;
         let mut forces = vec![0.0; self.dual.unknowns.count()];

@@ -6,8 +6,8 @@ use super::simplex::{pairs, traction};
 use crate::error::Error;
 use signorini_qp as qp;
 
-/// Rounding of jumps of tractions over the largest stress, and of forces of the wrong sign over the largest force: fifty times the value
-/// measured on meshes of 1e5 unknowns at a Poisson's ratio of 0.4999.
+/// Rounding of jumps of tractions over the largest stress, and of forces of the wrong sign over the largest force:
+/// fifty times the value measured on meshes of 1e5 unknowns at a Poisson's ratio of 0.4999.
 const OUT_OF_BALANCE: f64 = 1e-8;
 
 /// Depth in an obstacle over the largest displacement that counts as rounding.
@@ -19,7 +19,8 @@ const LOST: f64 = 1e-2;
 /// Rounding of a sum of many energies, over the sum of their sizes.
 const ENERGY_ROUNDING: f64 = 1e-10;
 
-/// The places at which a displacement is compared with the obstacle divide each edge of a facet into this number of parts.
+/// The places at which a displacement is compared with the obstacle divide each edge of a facet into this number of
+/// parts.
 const PARTS: usize = 4;
 
 /// The relative defect of a property, and the value up to which it is rounding.
@@ -77,9 +78,9 @@ impl Bracket<'_> {
         of_displacement.chain(in_balance).flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
     }
 
-    /// The largest difference of a traction from what loads, springs and obstacles give, between simplices and on the surface, and the largest
-    /// sum of divergence and body force times length, over the largest stress. Where supports or rigid faces leave free motions, it is the
-    /// sum along each.
+    /// The largest difference of a traction from what loads, springs and obstacles give, between simplices and on the
+    /// surface, and the largest sum of divergence and body force times length, over the largest stress. Where supports
+    /// or rigid faces leave free motions, it is the sum along each.
     fn imbalance(&self) -> f64 {
         let [mut left, mut shares] = self.forces_on_facets(&self.stress);
         let given = self.stresses.given_forces(&self.dual.values, &self.places, &self.pulls);
@@ -161,8 +162,9 @@ impl Bracket<'_> {
         over(deepest, largest)
     }
 
-    /// Difference of J - D, from the energies, and the sum of the shares, over that sum. It leaves out the rounding of the energies and
-    /// the work of forces that rounding leaves unbalanced, which grows with the rigid motion of a body.
+    /// Difference of J - D, from the energies, and the sum of the shares, over that sum. It leaves out the rounding of
+    /// the energies and the work of forces that rounding leaves unbalanced, which grows with the rigid motion of a
+    /// body.
     fn lost(&self) -> f64 {
         let [high, low] = [self.energy_of_displacement(), self.energy_of_stress()];
         let works = [self.work_of_loads(), self.work_on_supports(), self.work_on_obstacles()];
@@ -218,7 +220,8 @@ mod tests {
         }
     }
 
-    /// A displacement of one strain everywhere, judged by the ball, has the distances that integrals by another rule give.
+    /// A displacement of one strain everywhere, judged by the ball, has the distances that integrals by another rule
+    /// give.
     #[test]
     fn a_displacement_is_judged_by_its_distance_from_the_centre_and_the_radius() {
         for (problem, mesh) in [body(2), body(3)] {

@@ -1,5 +1,5 @@
-//! Displacements that are quadratic on each simplex, in the basis of Bernstein: if the coefficients of a function on a facet are below
-//! those of a bound, the function is below it everywhere.
+//! Displacements that are quadratic on each simplex, in the basis of Bernstein: if the coefficients of a function on a
+//! facet are below those of a bound, the function is below it everywhere.
 
 use std::collections::BTreeMap;
 
@@ -93,8 +93,8 @@ impl<'a> Displacements<'a> {
         Unknowns::new(self.problem, self.mesh, &places, held, |outer| self.on_facet(outer))
     }
 
-    /// The rows that keep a displacement out of the obstacles, each function and obstacle once: those with a free unknown, and then those
-    /// that supports hold.
+    /// The rows that keep a displacement out of the obstacles, each function and obstacle once: those with a free
+    /// unknown, and then those that supports hold.
     ///
     /// # Errors
     /// [`qp::Error::Infeasible`] if a prescribed displacement leads into an obstacle.
@@ -132,8 +132,8 @@ impl<'a> Displacements<'a> {
         Ok([rows, held])
     }
 
-    /// The unknown travel of a pressed obstacle, behind all displacements, with the cosine of its angle to the normal; `None` without a
-    /// force.
+    /// The unknown travel of a pressed obstacle, behind all displacements, with the cosine of its angle to the normal;
+    /// `None` without a force.
     pub fn travel(&self, obstacle: usize) -> Option<(usize, f64)> {
         let functions = self.mesh.nodes.len() + self.mesh.edges.len();
         let share = self.problem.obstacles[obstacle].pressed?.cosine;
@@ -229,7 +229,8 @@ impl<'a> Displacements<'a> {
         strain
     }
 
-    /// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all axes.
+    /// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all
+    /// axes.
     fn strains_of_functions(&self, simplex: &Simplex, at: Weights) -> impl Iterator<Item = Tensor> + use<> {
         let (dimension, slopes) = (self.mesh.dimension, simplex.slopes());
         let over_radius = if self.problem.is_axisymmetric { 1.0 / simplex.at(at)[0] } else { 0.0 };

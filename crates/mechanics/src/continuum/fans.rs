@@ -1,8 +1,8 @@
 //! Where bodies meet: in the plane, edges of one lie opposite to edges of the other, end by end.
 //!
-//! Meshes that do not match are cut at the nodes of the other body: a triangle with an edge on the contact becomes a fan from its third
-//! corner. Then a pressure that is linear on the edges of one body is so on those of the other, and both displacements are quadratic on the
-//! same edges.
+//! Meshes that do not match are cut at the nodes of the other body: a triangle with an edge on the contact becomes a
+//! fan from its third corner. Then a pressure that is linear on the edges of one body is so on those of the other, and
+//! both displacements are quadratic on the same edges.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,8 @@ use super::problem::{Condition, ContinuumProblem, Surface};
 use super::simplex::{Point, Simplex};
 use crate::fem::geometry::{distance, dot, key, minus};
 
-/// Height over length of a triangle of a fan below which the triangle is refined before the cut, if its own is not small too.
+/// Height over length of a triangle of a fan below which the triangle is refined before the cut, if its own is not
+/// small too.
 const SLENDER: f64 = 0.01;
 
 /// The same over that of the triangle before the cut.
@@ -20,7 +21,8 @@ const MORE_SLENDER: f64 = 0.1;
 /// Largest number of rounds of refinement before the cut.
 const ROUNDS: usize = 12;
 
-/// Nodes count as opposite to each other if they are aside by less than this share of the shorter edge, as in rows between pairs of nodes.
+/// Nodes count as opposite to each other if they are aside by less than this share of the shorter edge, as in rows
+/// between pairs of nodes.
 const SAME_PLACE: f64 = 1e-3;
 
 /// An edge on a contact, along a line across the direction of the rows, or an edge on a seam, along itself.
@@ -81,9 +83,10 @@ pub enum Unjoined {
 }
 
 impl SimplexMesh {
-    /// The mesh whose bodies are one at seams, and which is cut at contacts of bodies in the plane: there edges lie opposite to each other.
-    /// Triangles that are large beside their pieces are refined first. The second value says how much of the two surfaces of each
-    /// seam is joined, from 0 to 1. Facets inside, at seams, get conditions of their own.
+    /// The mesh whose bodies are one at seams, and which is cut at contacts of bodies in the plane: there edges lie
+    /// opposite to each other. Triangles that are large beside their pieces are refined first. The second value says
+    /// how much of the two surfaces of each seam is joined, from 0 to 1. Facets inside, at seams, get conditions of
+    /// their own.
     ///
     /// # Errors
     /// [`Unjoined`].

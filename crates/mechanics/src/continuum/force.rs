@@ -1,16 +1,17 @@
 //! Guaranteed bounds of the contact force, of second order in the error.
 //!
-//! Let z be a displacement that is -1 towards the obstacle in the computed contact, `tau_z` a stress without load, free of tractions
-//! outside the contact and with a pressure `p_z <= 0`, and `r = eps(z) - C^-1 tau_z`. The exact stress lies in a ball about the mean
-//! `tau_m` of both stresses, with `|sigma - tau_m|^2 + S = rho^2`. Then
+//! Let z be a displacement that is -1 towards the obstacle in the computed contact, `tau_z` a stress without load, free
+//! of tractions outside the contact and with a pressure `p_z <= 0`, and `r = eps(z) - C^-1 tau_z`. The exact stress
+//! lies in a ball about the mean `tau_m` of both stresses, with `|sigma - tau_m|^2 + S = rho^2`. Then
 //!
 //! ```text
 //! F = (tau_m, r) + integral of p_z g + supports - l(z)
 //!   + (sigma - tau_m, r) + integral of (-p_z) (g - u_n) + integral of (-p) (1 + z_n)
 //! ```
 //!
-//! and the last two terms lie between 0 and `beta S`, if `1 + z_n <= beta (g - v_n)` and `-p_z <= beta (-p_tau)`, coefficient by
-//! coefficient, with `S = integral of (-p) (g - v_n) + (-p_tau) (g - u_n) >= 0`. z and `tau_z` solve the two problems with contact held.
+//! and the last two terms lie between 0 and `beta S`, if `1 + z_n <= beta (g - v_n)` and `-p_z <= beta (-p_tau)`,
+//! coefficient by coefficient, with `S = integral of (-p) (g - v_n) + (-p_tau) (g - u_n) >= 0`. z and `tau_z` solve the
+//! two problems with contact held.
 
 use std::collections::BTreeSet;
 
@@ -67,8 +68,9 @@ struct Test {
 }
 
 impl Bracket<'_> {
-    /// Bounds on the sum of the contact forces, in force: the forces that press the obstacles, if all are pressed. `None` if obstacles come from
-    /// several directions, if only some are pressed, if the boundary that touches them is a rigid face, or if no bound was found.
+    /// Bounds on the sum of the contact forces, in force: the forces that press the obstacles, if all are pressed.
+    /// `None` if obstacles come from several directions, if only some are pressed, if the boundary that touches them is
+    /// a rigid face, or if no bound was found.
     ///
     /// # Errors
     /// Those of [`signorini_qp::ContactProblem::new`].
@@ -206,7 +208,8 @@ impl Bracket<'_> {
         Ok(Some(Test { displacement, stress, facets, pulls, ratios: [of_rows, of_places] }))
     }
 
-    /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too, and those that are only a little below it are moved there.
+    /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too, and those that are only a little
+    /// below it are moved there.
     fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
         let (rows, places) = (&self.primal.rows, self.displacements.places());
         for _ in 0..ROUNDS {
@@ -228,7 +231,8 @@ impl Bracket<'_> {
         Ok(None)
     }
 
-    /// The stress under facets held at -1 where pressed, without load, and its forces there; places with a pulling force are released.
+    /// The stress under facets held at -1 where pressed, without load, and its forces there; places with a pulling
+    /// force are released.
     fn bonded_stress(
         &self,
         pressed: &mut [bool],
@@ -241,8 +245,8 @@ impl Bracket<'_> {
             let Some(values) = self.held(&self.dual, pressed, of_mesh)? else { return Ok(None) };
             let stress = stresses.stresses(&values);
             let mut pulls = self.pulls_of(&stress, &values);
-            // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds moves without
-            // force.
+            // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds
+            // moves without force.
             let volume: f64 = (0..self.mesh.count()).map(|cell| self.volume(cell)).sum();
             let depth = self.problem.thickness * if self.mesh.dimension == 2 { 1.0 } else { volume.cbrt() };
             let unit = self.problem.stiffest() * depth;
@@ -270,8 +274,8 @@ impl Bracket<'_> {
         if self.balance.is_some() { ALMOST_RIGHT } else { ROUNDING }
     }
 
-    /// All values with supports at zero, under no load, with these rows at -1 towards the obstacle; `None` if they were not found. If the
-    /// data of the bracket serve again, rows that would pull go beyond -1, as in contact.
+    /// All values with supports at zero, under no load, with these rows at -1 towards the obstacle; `None` if they were
+    /// not found. If the data of the bracket serve again, rows that would pull go beyond -1, as in contact.
     fn held(
         &self,
         side: &Side,
@@ -341,7 +345,8 @@ fn most_within(radius: f64, length: f64, beta: f64) -> f64 {
     }
 }
 
-/// A ratio with a displacement of order one as numerator: zero if that is rounding, infinite if only the denominator is zero.
+/// A ratio with a displacement of order one as numerator: zero if that is rounding, infinite if only the denominator is
+/// zero.
 fn over(value: f64, size: f64) -> f64 {
     if value <= ROUNDING { 0.0 } else { value / size.max(0.0) }
 }

@@ -6,7 +6,8 @@ use super::sample::{Sample, line, square};
 use super::simplex::{Point, Simplex, Weights, quadratic_rule, size_of_facet};
 use super::turning;
 
-/// Points on a facet along each direction: exact for degree 15. Two quadratic functions and the radius have 5, P and two linear functions 11.
+/// Points on a facet along each direction: exact for degree 15. Two quadratic functions and the radius have 5, P and
+/// two linear functions 11.
 const POINTS: usize = 8;
 
 /// The points of integration on a simplex in an element of the first mesh.

@@ -1,11 +1,12 @@
-//! The stress element of Johnson and Mercier, and of Křížek in space: a simplex cut in parts at its centre, the stress linear on each
-//! part, tractions continuous between them. Those of its stresses that have no divergence are the stresses of a simplex without body
-//! force: 9 of 15 on a triangle, 30 of 42 on a tetrahedron. About an axis, [`axis`](super::axis) has stresses of a triangle instead.
+//! The stress element of Johnson and Mercier, and of Křížek in space: a simplex cut in parts at its centre, the stress
+//! linear on each part, tractions continuous between them. Those of its stresses that have no divergence are the
+//! stresses of a simplex without body force: 9 of 15 on a triangle, 30 of 42 on a tetrahedron. About an axis,
+//! [`axis`](super::axis) has stresses of a triangle instead.
 //!
 //! # Source
-//! C. Johnson, B. Mercier, "Some equilibrium finite element methods for two-dimensional elasticity problems", Numerische Mathematik
-//! 30 (1978), 103-116; M. Křížek, "An equilibrium finite element method in three-dimensional elasticity", Aplikace matematiky 27 (1982),
-//! 46-75.
+//! C. Johnson, B. Mercier, "Some equilibrium finite element methods for two-dimensional elasticity problems",
+//! Numerische Mathematik 30 (1978), 103-116; M. Křížek, "An equilibrium finite element method in three-dimensional
+//! elasticity", Aplikace matematiky 27 (1982), 46-75.
 
 use std::sync::OnceLock;
 
@@ -19,7 +20,8 @@ use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
 use crate::fem::material::engineering;
 use signorini_qp::dot;
 
-/// Stresses without divergence: those of the reference simplex, carried to this one, or those of a triangle about an axis.
+/// Stresses without divergence: those of the reference simplex, carried to this one, or those of a triangle about an
+/// axis.
 #[derive(Clone, Debug)]
 enum Basis {
     Carried(Simplex),
@@ -64,8 +66,8 @@ const REFINED: usize = 2;
 #[derive(Clone, Debug)]
 pub struct Element {
     basis: Basis,
-    /// The factor L of the complementary energies of the stresses of the basis. The stresses `L^-1` times these have the energy
-    /// one, and none with the others.
+    /// The factor L of the complementary energies of the stresses of the basis. The stresses `L^-1` times these have
+    /// the energy one, and none with the others.
     factor: Lower,
     /// A stress in balance with the body force.
     particular: PartStress,
@@ -156,8 +158,8 @@ impl Element {
         self.sum(self.amounts(sides))
     }
 
-    /// The stress whose tractions do these works with the unknowns of the sides; they are in balance with the body force. `None` for a flat
-    /// simplex.
+    /// The stress whose tractions do these works with the unknowns of the sides; they are in balance with the body
+    /// force. `None` for a flat simplex.
     pub fn stress_with(&self, works: &[f64]) -> Option<PartStress> {
         let of_unknown = |unknown: usize| self.tractions.iter().map(|works| works[unknown]).collect();
         let squares =
@@ -247,8 +249,9 @@ fn strains_of(law: &Law, products: &[Products], stress: &PartStress) -> Vec<f64>
     strains.entries().to_vec()
 }
 
-/// The works of the tractions with the unknowns of the sides: for each side and each of its corners along each axis. The unknowns are the
-/// coefficients of functions that are dual to a linear traction: each acts on its own corner only, with its share of the side.
+/// The works of the tractions with the unknowns of the sides: for each side and each of its corners along each axis.
+/// The unknowns are the coefficients of functions that are dual to a linear traction: each acts on its own corner only,
+/// with its share of the side.
 fn works(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> Vec<f64> {
     let dimension = simplex.dimension;
     let mut works = Vec::with_capacity((dimension + 1) * dimension * dimension);
@@ -268,8 +271,8 @@ pub fn tractions_of_body_force(problem: &ContinuumProblem, origin: usize, simple
     works(problem, simplex, &balancing(problem, problem.medium(origin), simplex))
 }
 
-/// A stress whose divergence is the opposite of a constant body force. About an axis the radial part of the force acts against the hoop
-/// stress alone.
+/// A stress whose divergence is the opposite of a constant body force. About an axis the radial part of the force acts
+/// against the hoop stress alone.
 fn balancing(problem: &ContinuumProblem, medium: &Medium, simplex: &Simplex) -> PartStress {
     let (force, centre) = (medium.body_force, simplex.centre());
     PartStress::of(problem, simplex, |at| {
@@ -285,8 +288,8 @@ fn balancing(problem: &ContinuumProblem, medium: &Medium, simplex: &Simplex) -> 
     })
 }
 
-/// The stresses without divergence on the simplex of the origin and the unit vectors: the subspace of the values that satisfies balance
-/// and continuity.
+/// The stresses without divergence on the simplex of the origin and the unit vectors: the subspace of the values that
+/// satisfies balance and continuity.
 fn reference(dimension: usize) -> &'static [PartStress] {
     static STRESSES: [OnceLock<Vec<PartStress>>; 2] = [OnceLock::new(), OnceLock::new()];
     let entries = ENTRIES[dimension - 2];
@@ -329,7 +332,8 @@ fn conditions(dimension: usize) -> Vec<Vec<f64>> {
         (0..=dimension).for_each(|corner| add_traction(&mut divergence, k, corner, slopes[corner]));
         conditions.extend(divergence);
         for (other, &normal) in slopes.iter().enumerate().take(dimension + 1).skip(k + 1) {
-            // The side between both parts lies opposite to corner `other` in part k; both count the centre by their own number.
+            // The side between both parts lies opposite to corner `other` in part k; both count the centre by their own
+            // number.
             let shared = (0..=dimension).filter(|&corner| corner != k && corner != other);
             for (here, there) in shared.map(|corner| (corner, corner)).chain([(k, other)]) {
                 let mut jump = vec![vec![0.0; count]; dimension];
@@ -366,8 +370,8 @@ mod tests {
         if dimension == 2 { Simplex::new(2, plane) } else { Simplex::new(3, space) }
     }
 
-    /// About an axis the force `0.75` along the radius is balanced by the hoop stress `0.75 r`, both times r; a force along the axis by the
-    /// axial stress.
+    /// About an axis the force `0.75` along the radius is balanced by the hoop stress `0.75 r`, both times r; a force
+    /// along the axis by the axial stress.
     #[test]
     fn a_body_force_about_an_axis_is_in_balance() {
         let problem = ContinuumProblem { is_axisymmetric: true, ..material(2) };
@@ -388,7 +392,8 @@ mod tests {
         assert_eq!([2, 3].map(|dimension| reference(dimension).len()), [9, 30]);
     }
 
-    /// The stress is in balance with the body force, and its tractions are continuous between parts, for any motion of the sides.
+    /// The stress is in balance with the body force, and its tractions are continuous between parts, for any motion of
+    /// the sides.
     #[test]
     fn stresses_are_in_balance_and_continuous() {
         for dimension in [2, 3] {
@@ -419,8 +424,8 @@ mod tests {
         }
     }
 
-    /// The unknowns of the sides of a linear displacement: against the dual functions it has means to which each corner contributes its
-    /// value, and its own once more.
+    /// The unknowns of the sides of a linear displacement: against the dual functions it has means to which each corner
+    /// contributes its value, and its own once more.
     fn sides(simplex: &Simplex, motion: &dyn Fn(Point) -> Point) -> Vec<f64> {
         let dimension = simplex.dimension;
         let mut values = Vec::new();

@@ -27,9 +27,9 @@ pub enum Strain<S> {
 }
 
 impl Bracket<'_> {
-    /// Judges a displacement by its strain in an element of the first mesh. The displacement needs no other property: the bound follows
-    /// from its distance to the centre of the ball and the radius. Integrals of a constant strain are exact, except where axes turn; those
-    /// of others are by five points in each direction on each part of a simplex.
+    /// Judges a displacement by its strain in an element of the first mesh. The displacement needs no other property:
+    /// the bound follows from its distance to the centre of the ball and the radius. Integrals of a constant strain are
+    /// exact, except where axes turn; those of others are by five points in each direction on each part of a simplex.
     pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> Strain<S> + Sync) -> Judged {
         let fine = self.fine_rule();
         let of_cell = |cell: usize| {
@@ -66,7 +66,8 @@ impl Bracket<'_> {
     /// Five points in each direction on a part of a simplex.
     fn fine_rule(&self) -> impl Fn(&Simplex) -> Vec<Sample> + Sync + use<'_> {
         let corners = self.mesh.dimension + 1;
-        // On these elements the shape functions are the barycentric coordinates; the weights add up to the size of the reference element.
+        // On these elements the shape functions are the barycentric coordinates; the weights add up to the size of the
+        // reference element.
         let kind = if corners == 3 { ElementKind::LINEAR_TRIANGLE } else { ElementKind::LINEAR_TETRAHEDRON };
         let rule = Tabulated::fine(kind.reference()).points;
         let reference: f64 = rule.iter().map(|point| point.weight).sum();

@@ -1,5 +1,5 @@
-//! Tests of what a problem of the continuum may contain, against closed forms: columns of height one and of a strain that is constant on each
-//! layer, so that the bracket is exact; and bodies that are turned.
+//! Tests of what a problem of the continuum may contain, against closed forms: columns of height one and of a strain
+//! that is constant on each layer, so that the bracket is exact; and bodies that are turned.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -55,8 +55,8 @@ fn assert_exact(bracket: &Bracket, energy: f64) {
     assert!(bracket.distance().abs() < size && bracket.defect < ROUNDING, "{} {}", bracket.distance(), bracket.defect);
 }
 
-/// A column on springs with a stress without strain, its head against a plane at the distance `GAP`: by the displacement `eps` of the head
-/// against the base under the pressure q, and that of the base, `-q/k`.
+/// A column on springs with a stress without strain, its head against a plane at the distance `GAP`: by the
+/// displacement `eps` of the head against the base under the pressure q, and that of the base, `-q/k`.
 #[test]
 fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_or_is_pressed() {
     const GAP: f64 = -0.04;
@@ -130,8 +130,9 @@ fn the_intervals_of_the_force_of_a_body_on_springs_overlap() {
     }
 }
 
-/// The point around which axes turn lies near the body, so that P is far above `1/s` on its coarse triangles. That makes J larger, but not the
-/// norm, to which the bound is relative: an isotropic material has the norm that it has without such axes.
+/// The point around which axes turn lies near the body, so that P is far above `1/s` on its coarse triangles. That
+/// makes J larger, but not the norm, to which the bound is relative: an isotropic material has the norm that it has
+/// without such axes.
 #[test]
 fn axes_that_turn_do_not_enlarge_the_norm() {
     let (plain, mesh) = body(2);
@@ -190,7 +191,8 @@ fn layers_of_two_media_share_their_shortening() {
     assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), 0.1 * pressure / 2.0);
 }
 
-/// A traction t on the edge between the layers stretches the lower one by `t/E` and moves the upper one; a support there does the same.
+/// A traction t on the edge between the layers stretches the lower one by `t/E` and moves the upper one; a support
+/// there does the same.
 #[test]
 fn loads_and_supports_on_edges_inside_are_exact() {
     let pull = 0.3;

@@ -1,5 +1,5 @@
-//! A mesh of triangles that fills a polygon, or of tetrahedra that fills a polyhedron: its edges and facets, and its refinement by
-//! bisection.
+//! A mesh of triangles that fills a polygon, or of tetrahedra that fills a polyhedron: its edges and facets, and its
+//! refinement by bisection.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -32,7 +32,8 @@ pub struct Cells {
     pub surface: HashMap<Vec<usize>, usize>,
 }
 
-/// Simplices that meet in whole facets. A local number k is that of corner k of a simplex, and of the facet opposite to this corner.
+/// Simplices that meet in whole facets. A local number k is that of corner k of a simplex, and of the facet opposite to
+/// this corner.
 #[derive(Clone, Debug)]
 pub struct SimplexMesh {
     /// Number of coordinates of the mesh, 2 or 3.
@@ -161,7 +162,8 @@ impl SimplexMesh {
         cells_at.iter().zip(&mesh.conditions).all(fits).then_some(mesh)
     }
 
-    /// The mesh with edges of the surface in the plane that lie opposite to each other, and stay so when they are refined.
+    /// The mesh with edges of the surface in the plane that lie opposite to each other, and stay so when they are
+    /// refined.
     pub fn with_opposites(mut self, opposites: Vec<Opposite>) -> Self {
         let nodes = |outer: &OuterFacet| -> [usize; 2] { [0, 1].map(|corner| self.facets[outer.facet][corner]) };
         let at: HashMap<[usize; 2], OuterFacet> = self.surface.iter().map(|outer| (nodes(outer), *outer)).collect();
@@ -305,9 +307,9 @@ impl SimplexMesh {
         })
     }
 
-    /// The mesh in which the marked simplices are refined, with the further bisections that this needs: every edge of a marked triangle
-    /// is halved, a marked tetrahedron is halved once. The surface keeps its conditions, and no angle tends to zero. `placed` moves the
-    /// middle of a side of a polygon, given the number of its condition.
+    /// The mesh in which the marked simplices are refined, with the further bisections that this needs: every edge of a
+    /// marked triangle is halved, a marked tetrahedron is halved once. The surface keeps its conditions, and no angle
+    /// tends to zero. `placed` moves the middle of a side of a polygon, given the number of its condition.
     pub fn refined(&self, marked: &[bool], placed: impl Fn(usize, Point) -> Point) -> Self {
         match &self.next {
             Bisection::Triangles(triangles) => self.refined_triangles(triangles, marked, placed),
@@ -334,7 +336,8 @@ impl SimplexMesh {
         for (triangle, _) in triangles.iter().zip(marked).filter(|entry| *entry.1) {
             halved.extend(sides(triangle).map(|edge| (edge, None)));
         }
-        // A triangle with a halved edge halves its first edge too, and edges opposite to each other are halved together.
+        // A triangle with a halved edge halves its first edge too, and edges opposite to each other are halved
+        // together.
         let mut waiting = true;
         while waiting {
             waiting = false;
@@ -385,7 +388,8 @@ impl SimplexMesh {
         if self.opposites.is_empty() { mesh } else { mesh.with_opposites(opposites) }
     }
 
-    /// A property of nodes of the previous mesh, carried to this one: a new node has it if both ends of its edge have it.
+    /// A property of nodes of the previous mesh, carried to this one: a new node has it if both ends of its edge have
+    /// it.
     pub fn carried(&self, mut of_nodes: Vec<bool>) -> Vec<bool> {
         for ends in &self.parents {
             of_nodes.push(ends.iter().all(|&end| of_nodes[end]));
@@ -468,7 +472,8 @@ mod tests {
         }
     }
 
-    /// Halves of right-angled triangles with two equal sides are such triangles: the smallest angle stays at 45 degrees.
+    /// Halves of right-angled triangles with two equal sides are such triangles: the smallest angle stays at 45
+    /// degrees.
     #[test]
     fn bisection_keeps_the_angles() {
         let mut mesh = square();

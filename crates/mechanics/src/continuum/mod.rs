@@ -1,5 +1,5 @@
-//! The guaranteed error against the continuum, in the plane and in space: from a displacement that stays out of the obstacles between
-//! nodes too, a stress in balance, and the difference of their energies.
+//! The guaranteed error against the continuum, in the plane and in space: from a displacement that stays out of the
+//! obstacles between nodes too, a stress in balance, and the difference of their energies.
 
 mod answer;
 mod axis;

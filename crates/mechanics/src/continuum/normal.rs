@@ -2,8 +2,8 @@
 
 use signorini_qp::dot;
 
-/// A pivot below this share of its entry is rounding. Those of the stresses of a triangle fall as the fourth power of its height over its
-/// length: 1e-10 at three thousandths.
+/// A pivot below this share of its entry is rounding. Those of the stresses of a triangle fall as the fourth power of
+/// its height over its length: 1e-10 at three thousandths.
 const SINGULAR_PIVOT: f64 = 1e-12;
 
 /// Coefficients of conditions below this are rounding; theirs are of order one.

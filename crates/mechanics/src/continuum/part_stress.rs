@@ -7,8 +7,9 @@ use super::simplex::{Point, Simplex, Tensor, Weights, pairs};
 /// Coefficients of a quadratic function on a triangle.
 pub const QUADRATIC: usize = 6;
 
-/// A stress on a simplex; about an axis r times a stress. On each part it is linear, given by its values at the part's corners, or quadratic,
-/// given by its coefficients in Bernstein's basis. The corner with the number of a part is the centre.
+/// A stress on a simplex; about an axis r times a stress. On each part it is linear, given by its values at the part's
+/// corners, or quadratic, given by its coefficients in Bernstein's basis. The corner with the number of a part is the
+/// centre.
 #[derive(Clone, Debug)]
 pub struct PartStress {
     of_part: usize,

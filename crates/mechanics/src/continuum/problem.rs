@@ -37,7 +37,8 @@ pub struct ContinuumProblem {
 /// What fills a part of the body.
 #[derive(Clone, Debug)]
 pub struct Medium {
-    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates, or turn around a point of the plane.
+    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates, or turn around
+    /// a point of the plane.
     pub stiffness: Stiffness,
     /// The stress `[xx, yy, zz, xy, yz, zx]` without strain, if there is one, in force per area.
     pub own_stress: Option<[Linear; 6]>,
@@ -207,8 +208,8 @@ pub struct Pressed {
 
 /// The distance to an obstacle.
 pub trait Distance: Debug + Send + Sync {
-    /// The gap on the straight facet between these corners, two in the plane and three in space; `None` if the obstacle is out of reach
-    /// on all of the facet.
+    /// The gap on the straight facet between these corners, two in the plane and three in space; `None` if the obstacle
+    /// is out of reach on all of the facet.
     fn gap(&self, corners: &[Point]) -> Option<Enclosure>;
 }
 
@@ -243,8 +244,8 @@ fn along_normal(normal: Point, place: Point, line: [Point; 2]) -> f64 {
     (1.0 - share) * dot(normal, first) + share * dot(normal, second)
 }
 
-/// The mean over a facet of a quadratic function, given by its Bernstein coefficients, with the weight of a corner: its barycentric
-/// coordinate.
+/// The mean over a facet of a quadratic function, given by its Bernstein coefficients, with the weight of a corner: its
+/// barycentric coordinate.
 pub fn weighted_mean(corners: usize, corner: usize, coefficients: &[f64]) -> f64 {
     let weight = |pair: [usize; 2]| 1 + pair.into_iter().filter(|&of| of == corner).count();
     let sum: f64 = pairs(corners).zip(coefficients).map(|(pair, value)| weight(pair) as f64 * value).sum();
@@ -294,8 +295,8 @@ impl ContinuumProblem {
         self.conditions.iter().any(|condition| condition.circle.is_some())
     }
 
-    /// The mesh in which the marked simplices are refined; new nodes of sides that approximate circles lie on the circles, unless a
-    /// simplex would fold: then the new sides are straight.
+    /// The mesh in which the marked simplices are refined; new nodes of sides that approximate circles lie on the
+    /// circles, unless a simplex would fold: then the new sides are straight.
     pub fn refined(&self, mesh: &SimplexMesh, marked: &[bool]) -> SimplexMesh {
         let straight = mesh.refined(marked, |_, middle| middle);
         if !self.has_circles() {
@@ -333,8 +334,8 @@ impl ContinuumProblem {
         first.is_some_and(|first| first.1.is_none() && facing.all(|other| other == first))
     }
 
-    /// The forces along the unknowns that are no displacements of places: the free motions of rigid faces, then the travels of pressed
-    /// obstacles.
+    /// The forces along the unknowns that are no displacements of places: the free motions of rigid faces, then the
+    /// travels of pressed obstacles.
     pub fn loads_of_motions(&self) -> Vec<f64> {
         let of_faces = self.rigid_faces.iter().flat_map(|face| face.free.iter().map(|motion| motion.1));
         of_faces.chain(self.obstacles.iter().filter_map(|facing| Some(facing.pressed?.force))).collect()
@@ -469,8 +470,8 @@ impl Law<'_> {
         std::array::from_fn(of_entry)
     }
 
-    /// The part of the product of two strains, per volume, that contains a power of a radius: of the strains around an axis, or of all where
-    /// the axes turn.
+    /// The part of the product of two strains, per volume, that contains a power of a radius: of the strains around an
+    /// axis, or of all where the axes turn.
     pub fn over_radius(&self, strain: Tensor, other: Tensor) -> f64 {
         match self.axes {
             Some(_) => work(self.stress(strain), other),
@@ -532,7 +533,8 @@ mod tests {
         let wide = Enclosure { below: 0.5, above: 0.25, ..square };
         assert_eq!(wide.lower().collect::<Vec<_>>(), [-0.5, 0.5, -0.5]);
         assert!((wide.upper_means(2)[0] - means[0] - 0.25).abs() < 1e-16);
-        // On a triangle the mean of l_0^2 with the weight 3 l_0 is 3/10, with 3 l_1 1/10; that of 2 l_0 l_1 is 1/5 and, with 3 l_2, 1/10.
+        // On a triangle the mean of l_0^2 with the weight 3 l_0 is 3/10, with 3 l_1 1/10; that of 2 l_0 l_1 is 1/5 and,
+        // with 3 l_2, 1/10.
         let of = |place: usize| Enclosure {
             coefficients: (0..6).map(|other| f64::from(u8::from(other == place))).collect(),
             below: 0.0,

@@ -12,13 +12,15 @@ pub struct Sample {
     pub place: Point,
     /// Its volume, or its area.
     pub weight: f64,
-    /// What counts in addition, because a polynomial P stands for a power of a radius r: about an axis, for squares of a hoop strain or of a
-    /// stress, its volume times `r P(r) - 1`; where axes turn, for squares of any strain or stress, its volume times `r^4 P(r^2)^2 - 1`.
+    /// What counts in addition, because a polynomial P stands for a power of a radius r: about an axis, for squares of
+    /// a hoop strain or of a stress, its volume times `r P(r) - 1`; where axes turn, for squares of any strain or
+    /// stress, its volume times `r^4 P(r^2)^2 - 1`.
     pub extra: f64,
 }
 
-/// `x P(x) - 1 >= 0` for the polynomial `P(x) >= 1/x` between a and b with `1 - x P = (x - a) (x - b) prod (x - c)^2 / a b prod c^2`. `places`
-/// are those of the c, -1 at the smaller end and 1 at the larger one.
+/// `x P(x) - 1 >= 0` for the polynomial `P(x) >= 1/x` between a and b with
+/// `1 - x P = (x - a) (x - b) prod (x - c)^2 / a b prod c^2`. `places` are those of the c, -1 at the smaller end and 1
+/// at the larger one.
 pub fn beyond(x: f64, [one, other]: [f64; 2], places: &[f64]) -> f64 {
     let (low, high) = (one.min(other), one.max(other));
     let ends = (x - low) / low * ((high - x) / high);

@@ -1,7 +1,7 @@
 //! Surfaces that are tied: there two bodies become one.
 //!
-//! In the plane edges are cut at the nodes of the other surface first. Then nodes at the same place become one node, and so do the edges or
-//! faces between them.
+//! In the plane edges are cut at the nodes of the other surface first. Then nodes at the same place become one node,
+//! and so do the edges or faces between them.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -34,7 +34,8 @@ impl Condition {
 }
 
 impl Cut {
-    /// Makes the two surfaces of each seam one. Returns for each seam how much of its two surfaces is joined, from 0 to 1.
+    /// Makes the two surfaces of each seam one. Returns for each seam how much of its two surfaces is joined, from 0 to
+    /// 1.
     ///
     /// # Errors
     /// The number of a seam with a support, a load or an obstacle on it.

@@ -1,4 +1,5 @@
-//! A triangle in the plane or a tetrahedron in space, by its corners. The order of the corners does not matter: sizes are positive.
+//! A triangle in the plane or a tetrahedron in space, by its corners. The order of the corners does not matter: sizes
+//! are positive.
 
 use crate::fem::geometry::{Symmetric, cross, distance, dot, length, minus};
 
@@ -24,8 +25,8 @@ pub struct Simplex {
     corners: [Point; MOST_CORNERS],
 }
 
-/// The pairs of `count` numbers: first each with itself, then `i < j`. They number the functions of Bernstein's quadratic basis on a
-/// simplex of `count` corners.
+/// The pairs of `count` numbers: first each with itself, then `i < j`. They number the functions of Bernstein's
+/// quadratic basis on a simplex of `count` corners.
 pub fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> + Clone {
     (0..count).map(|i| [i, i]).chain((0..count).flat_map(move |i| (i + 1..count).map(move |j| [i, j])))
 }
@@ -138,8 +139,8 @@ impl Simplex {
         [0, 1, 2].map(|axis| self.corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum())
     }
 
-    /// A stress on the simplex of the origin and the unit vectors, carried to this one: the map of Piola, which preserves balance and
-    /// tractions.
+    /// A stress on the simplex of the origin and the unit vectors, carried to this one: the map of Piola, which
+    /// preserves balance and tractions.
     pub fn carried(&self, [xx, yy, zz, xy, yz, zx]: Tensor) -> Tensor {
         let (edges, size) = (self.edges(), self.determinant().abs());
         let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];

@@ -1,4 +1,5 @@
-//! Springs that are spread over facets: a part of the body without volume, whose strain is the displacement of the facet.
+//! Springs that are spread over facets: a part of the body without volume, whose strain is the displacement of the
+//! facet.
 
 use super::bound::Bracket;
 use super::displacement::on_facet;

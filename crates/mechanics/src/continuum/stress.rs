@@ -1,7 +1,8 @@
 //! Stresses in balance: the stress element of every simplex, coupled by displacements of the facets.
 //!
-//! The displacements of the facets are the unknowns. On each facet they are coefficients of functions that are dual to a linear traction:
-//! each acts on one corner only. So a row of the balance contains the tractions at that corner, and a contact row bounds one unknown.
+//! The displacements of the facets are the unknowns. On each facet they are coefficients of functions that are dual to
+//! a linear traction: each acts on one corner only. So a row of the balance contains the tractions at that corner, and
+//! a contact row bounds one unknown.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -40,7 +41,8 @@ pub struct Place {
     pub obstacle: usize,
 }
 
-/// The edges of a simplex, its medium, and its place if its stress depends on that, bit by bit: congruent simplices have the same.
+/// The edges of a simplex, its medium, and its place if its stress depends on that, bit by bit: congruent simplices
+/// have the same.
 type Congruence = ([[u64; 3]; MOST_CORNERS - 1], usize, Option<[u64; 3]>);
 
 impl<'a> Stresses<'a> {
@@ -108,17 +110,17 @@ impl<'a> Stresses<'a> {
         Unknowns::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
     }
 
-    /// The unknown travel of a pressed obstacle, behind the displacements of facets, with the cosine of its angle to the normal; `None`
-    /// without a force.
+    /// The unknown travel of a pressed obstacle, behind the displacements of facets, with the cosine of its angle to
+    /// the normal; `None` without a force.
     pub fn travel(&self, obstacle: usize) -> Option<(usize, f64)> {
         let places = self.place(self.mesh.facet_count(), 0);
         let share = self.problem.obstacles[obstacle].pressed?.cosine;
         Some((self.mesh.dimension * places + self.problem.travel(obstacle)?, share))
     }
 
-    /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on the weighted means of
-    /// the distance. A row that `may_touch` does not hold for, given its place and gap, is left out: there the stress has no pressure,
-    /// which keeps it in balance.
+    /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on
+    /// the weighted means of the distance. A row that `may_touch` does not hold for, given its place and gap, is left
+    /// out: there the stress has no pressure, which keeps it in balance.
     pub fn rows(&self, unknowns: &Unknowns, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
         for (on, obstacle) in self.problem.facing(self.mesh) {
@@ -210,8 +212,8 @@ impl<'a> Stresses<'a> {
         (0..dimension).map(move |axis| (dimension * place + axis, share * vector[axis]))
     }
 
-    /// How the linear displacement of a facet on springs, times the radius about an axis, follows at each corner from the unknowns there: its
-    /// products with linear tractions are theirs.
+    /// How the linear displacement of a facet on springs, times the radius about an axis, follows at each corner from
+    /// the unknowns there: its products with linear tractions are theirs.
     fn corners_by_unknowns(&self, outer: &OuterFacet) -> Vec<Vec<f64>> {
         let (dimension, corners) = (self.mesh.dimension, self.mesh.corners_of_facet(outer.facet));
         let share = self.problem.share_of_corner(self.mesh.simplex(outer.cell).outward(outer.local).1);
@@ -220,7 +222,8 @@ impl<'a> Stresses<'a> {
             let entry = |i: usize, j: usize| if i == j { dimension as f64 } else { -1.0 };
             return (0..dimension).map(|i| (0..dimension).map(|j| entry(i, j)).collect()).collect();
         }
-        // The integrals of products of coordinates over the radius; on the axis itself a stress times the radius is zero.
+        // The integrals of products of coordinates over the radius; on the axis itself a stress times the radius is
+        // zero.
         let is_free: Vec<bool> = corners.iter().map(|&corner| !self.problem.is_on_axis(corner)).collect();
         let mut products = [[0.0; 2]; 2];
         for at in samples_on_facet(self.problem, &corners) {
@@ -242,7 +245,8 @@ impl<'a> Stresses<'a> {
         inverse.map(|line| line.map(|part| share * part).to_vec()).to_vec()
     }
 
-    /// The linear displacement of a facet on springs at its corners, times the radius about an axis, whose forces the springs have in balance.
+    /// The linear displacement of a facet on springs at its corners, times the radius about an axis, whose forces the
+    /// springs have in balance.
     pub fn displacement_at_corners(&self, values: &[f64], outer: &OuterFacet) -> Vec<Point> {
         let dimension = self.mesh.dimension;
         let value = |place: usize, axis: usize| if axis < dimension { values[dimension * place + axis] } else { 0.0 };
@@ -257,8 +261,8 @@ impl<'a> Stresses<'a> {
         self.mesh.surface().filter(|outer| self.problem.springs(outer).is_there())
     }
 
-    /// The forces along the unknowns from outside under displacements of the facets: of tractions, springs, and contact forces at places. What
-    /// supports take is not among them.
+    /// The forces along the unknowns from outside under displacements of the facets: of tractions, springs, and contact
+    /// forces at places. What supports take is not among them.
     pub fn given_forces(&self, displacement: &[f64], places: &[Place], pulls: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; displacement.len()];
         let mut add = |(unknown, force): (usize, f64)| forces[unknown] += force;

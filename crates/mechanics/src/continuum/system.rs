@@ -1,7 +1,7 @@
 //! The contact problem of simplices with the same number of unknowns each, which are linear functions of the free ones.
 //!
-//! The unknowns are the components along the axes of a displacement at places, then the free motions of rigid faces and the travels of
-//! pressed obstacles. Supports and rigid faces make those of some places functions of fewer free ones.
+//! The unknowns are the components along the axes of a displacement at places, then the free motions of rigid faces and
+//! the travels of pressed obstacles. Supports and rigid faces make those of some places functions of fewer free ones.
 
 use std::collections::BTreeMap;
 
@@ -13,14 +13,15 @@ use crate::fem::assembly::perpendicular;
 use crate::fem::geometry::{Around, COORDINATES, dot, length, unit};
 use signorini_qp::{ContactProblem, NearNullSpace, SparseMatrix, SymmetricMatrix};
 
-/// A direction depends on others if the sine of its angle to their span is below this: the rounding of written components.
+/// A direction depends on others if the sine of its angle to their span is below this: the rounding of written
+/// components.
 const DEPENDENT: f64 = 1e-9;
 
 /// The matrix of a simplex, row by row.
 pub type Block = Vec<f64>;
 
-/// Adds springs on a facet with this normal to the matrix of its simplex. `share` is the integral of the product of two of the functions on
-/// the facet, and `local` their numbers among those of the simplex.
+/// Adds springs on a facet with this normal to the matrix of its simplex. `share` is the integral of the product of two
+/// of the functions on the facet, and `local` their numbers among those of the simplex.
 pub fn add_springs(
     block: &mut Block,
     dimension: usize,
@@ -169,7 +170,8 @@ impl Supported {
 }
 
 impl Unknowns {
-    /// The unknowns of a mesh at these places; `fixed` are those of them that do not move along an axis, `on` gives the places on a facet.
+    /// The unknowns of a mesh at these places; `fixed` are those of them that do not move along an axis, `on` gives the
+    /// places on a facet.
     pub fn new(
         problem: &ContinuumProblem,
         mesh: &SimplexMesh,
@@ -283,8 +285,8 @@ impl Unknowns {
         (terms.into_iter().filter(|term| term.1.abs() > DEPENDENT).collect(), prescribed)
     }
 
-    /// The free unknown of the place of a row, or of the place opposite to it if that one is held, and its coefficient; `None` unless one
-    /// unknown alone moves the place along the row.
+    /// The free unknown of the place of a row, or of the place opposite to it if that one is held, and its coefficient;
+    /// `None` unless one unknown alone moves the place along the row.
     pub fn own_term(&self, row: &Row) -> Option<(usize, f64)> {
         let of_places = [&row.terms[..row.own], &row.terms[row.own..]].map(|terms| self.of_terms(terms).0);
         match of_places.iter().find(|terms| !terms.is_empty())?[..] {
@@ -293,7 +295,8 @@ impl Unknowns {
         }
     }
 
-    /// Changes the displacement of a place of a row, if that has a free unknown of its own, so that the sum of the row is `to`.
+    /// Changes the displacement of a place of a row, if that has a free unknown of its own, so that the sum of the row
+    /// is `to`.
     pub fn move_to(&self, values: &mut [f64], row: &Row, to: f64) {
         let Some((free, coefficient)) = self.own_term(row) else { return };
         let amount = (to - row.value(values)) / coefficient;
@@ -330,8 +333,8 @@ impl Unknowns {
         sums
     }
 
-    /// The same unknowns without prescribed parts, with the sums of some rows held at a value; `None` if the unknown of one row has a part in
-    /// another.
+    /// The same unknowns without prescribed parts, with the sums of some rows held at a value; `None` if the unknown of
+    /// one row has a part in another.
     pub fn with_held<'r>(&self, rows: impl Iterator<Item = &'r Row>, to: f64) -> Option<Self> {
         // Each held unknown is a constant and a sum of others.
         let mut held: BTreeMap<usize, (f64, Vec<(usize, f64)>)> = BTreeMap::new();
@@ -376,7 +379,8 @@ impl Unknowns {
         Some(unknowns)
     }
 
-    /// The rigid motions as values of the free unknowns; `None` with unknowns other than those of places, and about an axis.
+    /// The rigid motions as values of the free unknowns; `None` with unknowns other than those of places, and about an
+    /// axis.
     fn rigid_motions(&self, places: &[Point], dimension: usize) -> Result<Option<NearNullSpace>, Error> {
         if !self.moves_rigidly {
             return Ok(None);
@@ -386,8 +390,8 @@ impl Unknowns {
         Ok(NearNullSpace::of_modes(all.vectors().iter().map(|motion| self.gathered(motion)).collect()))
     }
 
-    /// The problem of simplices with these unknowns and matrices, under a load on all unknowns, with rows. At each of the `places` a linear
-    /// displacement has the values of the unknowns along the axes.
+    /// The problem of simplices with these unknowns and matrices, under a load on all unknowns, with rows. At each of
+    /// the `places` a linear displacement has the values of the unknowns along the axes.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
@@ -486,7 +490,8 @@ mod tests {
         assert_eq!((supported.held.len(), &supported.free[..]), (2, &[[0.0, 0.0, 1.0]][..]));
     }
 
-    /// Rows along an inclined normal at a place that a support holds along x: one unknown moves it, by a part of itself.
+    /// Rows along an inclined normal at a place that a support holds along x: one unknown moves it, by a part of
+    /// itself.
     #[test]
     fn a_row_at_a_support_is_moved_to_a_value_and_held_there() {
         let (mut problem, mesh) = body(2);

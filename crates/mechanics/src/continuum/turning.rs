@@ -1,8 +1,8 @@
-//! Media in the plane whose axes turn around a point: their stiffness is a polynomial of degree four over `r^4`, r being the distance from
-//! the point.
+//! Media in the plane whose axes turn around a point: their stiffness is a polynomial of degree four over `r^4`, r
+//! being the distance from the point.
 //!
-//! In energies a polynomial `P(s)^2 >= 1/s^2`, `s = r^2`, stands for `1/r^4`, so that integrals by Gauss points are exact and bound the
-//! energies from above, as about an axis.
+//! In energies a polynomial `P(s)^2 >= 1/s^2`, `s = r^2`, stands for `1/r^4`, so that integrals by Gauss points are
+//! exact and bound the energies from above, as about an axis.
 
 use std::sync::OnceLock;
 
@@ -12,8 +12,8 @@ use super::sample::{Sample, beyond, square as points};
 use super::simplex::{Point, Simplex};
 use crate::fem::geometry::{dot, minus};
 
-/// Points along a line: exact for degree 19, of the squares of two linear strains (2), the stiffness (4), `P^2` (12), and the map of the
-/// square to the triangle (1).
+/// Points along a line: exact for degree 19, of the squares of two linear strains (2), the stiffness (4), `P^2` (12),
+/// and the map of the square to the triangle (1).
 const POINTS: usize = 10;
 
 /// The place of the double zero of `1 - s P(s)`: in the middle.
@@ -40,7 +40,8 @@ fn square(vector: Point) -> f64 {
     dot(vector, vector)
 }
 
-/// The smallest and the largest square of the distance of a triangle from a point; the smallest one is zero in the triangle.
+/// The smallest and the largest square of the distance of a triangle from a point; the smallest one is zero in the
+/// triangle.
 fn squares(triangle: &Simplex, point: Point) -> [f64; 2] {
     let corners = triangle.corners();
     let to_edge = |k: usize| {
@@ -77,7 +78,8 @@ mod tests {
     use super::*;
     use crate::fem::material::Lame;
 
-    /// The integral of `1 / r^4` over a triangle is bounded from above, and only by a little; areas and linear functions are exact.
+    /// The integral of `1 / r^4` over a triangle is bounded from above, and only by a little; areas and linear
+    /// functions are exact.
     #[test]
     fn integrals_over_the_fourth_power_are_bounded_from_above() {
         let problem = filled(2, Lame { lambda: 1.0, mu: 1.0 }, [0.0; 3]);
@@ -105,8 +107,8 @@ mod tests {
         }
     }
 
-    /// `s P - 1 = (s - 1) (4 - s) (s - 5/2)^2 / (4 (5/2)^2)` at s = 2 between 1 and 4, and what counts in addition is `(s P)^2 - 1` of the
-    /// area.
+    /// `s P - 1 = (s - 1) (4 - s) (s - 5/2)^2 / (4 (5/2)^2)` at s = 2 between 1 and 4, and what counts in addition is
+    /// `(s P)^2 - 1` of the area.
     #[test]
     fn the_square_of_the_polynomial_is_counted() {
         assert!((beyond(2.0, [1.0, 4.0], &ZERO) - 0.02).abs() < 1e-15);

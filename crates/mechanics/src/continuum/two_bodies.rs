@@ -16,7 +16,8 @@ const ROUNDING: f64 = 1e-11;
 /// The numbers of the conditions of the sides of a block: below, to the right, above, to the left.
 type Sides = [usize; 4];
 
-/// Adds a block of `across x up` cells, two triangles each, whose corners are images of the unit square; it is one element of the first mesh.
+/// Adds a block of `across x up` cells, two triangles each, whose corners are images of the unit square; it is one
+/// element of the first mesh.
 fn add_block(cells: &mut Cells, image: impl Fn(f64, f64) -> [f64; 2], [across, up]: [usize; 2], sides: Sides) {
     let (first, origin) = (cells.nodes.len(), cells.origins.last().map_or(0, |last| last + 1));
     for row in 0..=up {
@@ -46,8 +47,8 @@ fn empty() -> Cells {
     Cells { nodes: Vec::new(), cells: Vec::new(), origins: Vec::new(), surface: HashMap::new() }
 }
 
-/// Two blocks of the widths and heights one and a half, the second one on the first. The lower one is clamped below; the upper one is held
-/// above, moved by `-0.02`. `profile` is how far the lower side of the upper block lies higher.
+/// Two blocks of the widths and heights one and a half, the second one on the first. The lower one is clamped below;
+/// the upper one is held above, moved by `-0.02`. `profile` is how far the lower side of the upper block lies higher.
 fn blocks(
     divisions: [[usize; 2]; 2],
     young: [f64; 2],
@@ -101,7 +102,8 @@ fn unjoined_blocks(
     (problem, SimplexMesh::new(2, cells).unwrap())
 }
 
-/// The bracket of a column contains its energy and its force: without Poisson's ratio `q = 0.02 / (h_1 / E_1 + h_2 / E_2)`.
+/// The bracket of a column contains its energy and its force: without Poisson's ratio
+/// `q = 0.02 / (h_1 / E_1 + h_2 / E_2)`.
 #[test]
 fn columns_of_two_bodies_are_exact_on_meshes_that_do_not_match_and_refined() {
     for (divisions, young) in [([[3, 2], [4, 1]], [2.0, 2.0]), ([[2, 2], [5, 3]], [2.0, 20.0])] {
@@ -194,7 +196,8 @@ fn tied(mut problem: ContinuumProblem) -> ContinuumProblem {
     problem
 }
 
-/// Two tied columns that are pulled apart, on meshes that do not match and are refined, and where supports hold one body only.
+/// Two tied columns that are pulled apart, on meshes that do not match and are refined, and where supports hold one
+/// body only.
 #[test]
 fn tied_columns_are_exact() {
     let young = [2.0, 20.0];
@@ -233,7 +236,8 @@ fn tied_columns_are_exact() {
     }
 }
 
-/// Half of a surface is free if the other one covers only half of it, and none of it is joined if they do not lie on each other.
+/// Half of a surface is free if the other one covers only half of it, and none of it is joined if they do not lie on
+/// each other.
 #[test]
 fn only_what_lies_on_each_other_is_joined_and_nothing_acts_there() {
     let sides = |reach: f64, up: f64| {
@@ -297,7 +301,8 @@ fn a_block_that_rests_on_another_one_between_guides_is_exact() {
     assert!(force.iter().all(|force| (force / 0.1 - 1.0).abs() < 1e-9), "{force:?}");
 }
 
-/// A blunt wedge on a block: energies and forces of two meshes meet, and halving the cells nearly halves the bound at least.
+/// A blunt wedge on a block: energies and forces of two meshes meet, and halving the cells nearly halves the bound at
+/// least.
 #[test]
 fn energies_and_forces_of_blocks_whose_meshes_do_not_match_meet() {
     for young in [[1.0, 1.0], [1.0, 10.0]] {

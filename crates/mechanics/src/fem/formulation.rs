@@ -88,8 +88,8 @@ impl Formulation {
         matches!(self, Formulation::Axisymmetric)
     }
 
-    /// The cross-section, thickness, circumference `2 pi x`, or 1, by which a length, area or volume of the model is multiplied at the
-    /// coordinate `x`.
+    /// The cross-section, thickness, circumference `2 pi x`, or 1, by which a length, area or volume of the model is
+    /// multiplied at the coordinate `x`.
     #[inline]
     pub fn measure(&self, x: f64) -> f64 {
         match *self {
@@ -105,7 +105,8 @@ impl Formulation {
         if self.is_axisymmetric() { TAU } else { 0.0 }
     }
 
-    /// Returns `true` if elements can lock near incompressibility. They cannot if the body is free to strain across the plane or the bar.
+    /// Returns `true` if elements can lock near incompressibility. They cannot if the body is free to strain across the
+    /// plane or the bar.
     pub fn can_lock(&self) -> bool {
         !matches!(self, Formulation::Bar { .. } | Formulation::PlaneStress { .. })
     }

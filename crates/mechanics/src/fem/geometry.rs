@@ -16,13 +16,15 @@ pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector product of two vectors `[x, y, z]`, in the product of their units: normal to both, and right-handed with them.
+/// The vector product of two vectors `[x, y, z]`, in the product of their units: normal to both, and right-handed with
+/// them.
 #[inline]
 pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The vector `[x, y, z]` from the end of b to the end of a, if both begin in one point: their difference, in their unit.
+/// The vector `[x, y, z]` from the end of b to the end of a, if both begin in one point: their difference, in their
+/// unit.
 pub fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
@@ -49,7 +51,8 @@ pub(crate) fn across(vector: [f64; 3]) -> [f64; 3] {
     unit(cross(vector, COORDINATES[smallest]))
 }
 
-/// A symmetric tensor `[xx, yy, zz, xy, yz, zx]`, dimensionless for strains, in force per area for stresses; in a body of revolution zz is the hoop component.
+/// A symmetric tensor `[xx, yy, zz, xy, yz, zx]`, dimensionless for strains, in force per area for stresses; in a body
+/// of revolution zz is the hoop component.
 ///
 /// Strains have the tensor's shear components, half of the engineering shear strains.
 pub type Symmetric = [f64; 6];
@@ -75,7 +78,8 @@ pub(crate) fn inertia([x, y, z]: [f64; 3]) -> Symmetric {
 /// Most sweeps over the three pairs of axes; four reach rounding.
 const MOST_SWEEPS: usize = 20;
 
-/// The principal values of a symmetric tensor, decreasing, each with its axis, a unit vector; `None` if a component is not finite.
+/// The principal values of a symmetric tensor, decreasing, each with its axis, a unit vector; `None` if a component is
+/// not finite.
 pub(crate) fn principal(tensor: &Symmetric) -> Option<[(f64, [f64; 3]); 3]> {
     let [xx, yy, zz, xy, yz, zx] = *tensor;
     // The shear of each axis is that between the other two.
@@ -107,7 +111,8 @@ pub(crate) fn principal(tensor: &Symmetric) -> Option<[(f64, [f64; 3]); 3]> {
     Some(principal)
 }
 
-/// Cosine c and sine s of the rotation that makes `[[a, both], [both, b]]` diagonal: (x, y) becomes (c x - s y, s x + c y).
+/// Cosine c and sine s of the rotation that makes `[[a, both], [both, b]]` diagonal: (x, y) becomes (c x - s y, s x + c
+/// y).
 ///
 /// # Source
 /// G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th edition (2013), section 8.5: the smaller of the two angles.

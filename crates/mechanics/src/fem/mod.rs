@@ -1,5 +1,5 @@
-//! Linear elastic bodies by finite elements: meshes, elements, materials, assembly of K and f, recovery of stresses, error norms. It
-//! depends on no contact problem and no solver.
+//! Linear elastic bodies by finite elements: meshes, elements, materials, assembly of K and f, recovery of stresses,
+//! error norms. It depends on no contact problem and no solver.
 
 pub(crate) mod assembly;
 pub(crate) mod body;

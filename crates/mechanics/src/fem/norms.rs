@@ -32,14 +32,15 @@ const DIVISION_SHARE: f64 = 1e-5;
 /// Relative errors below this are rounding: no cell is divided for them.
 const ERROR_ROUNDING: f64 = 1e-12;
 
-/// The most halvings of a cell: at a strain singularity like that of a crack tip, the last part holds 2^-12 of the error.
+/// The most halvings of a cell: at a strain singularity like that of a crack tip, the last part holds 2^-12 of the
+/// error.
 const HALVINGS: usize = 12;
 
 /// The relative errors of the nodal displacement `displacement` (length `dim * n_nodes`) against `exact(point)`.
 ///
-/// Integrals use five quadrature points in each direction of an element and of its halves along each direction. Parts are halved further
-/// as long as the halves change the sum: four digits are correct, also if the exact strain is singular at a point. The errors are
-/// infinite or NaN if the exact solution is zero.
+/// Integrals use five quadrature points in each direction of an element and of its halves along each direction. Parts
+/// are halved further as long as the halves change the sum: four digits are correct, also if the exact strain is
+/// singular at a point. The errors are infinite or NaN if the exact solution is zero.
 ///
 /// # Errors
 /// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
@@ -81,8 +82,8 @@ pub fn error_norms(
     Ok(Sums::total(&fine).norms())
 }
 
-/// The same with one fixed quadrature rule for elements of one kind, whose integration error is not corrected; the displacement has an entry per
-/// nodal dof, in length.
+/// The same with one fixed quadrature rule for elements of one kind, whose integration error is not corrected; the
+/// displacement has an entry per nodal dof, in length.
 ///
 /// # Errors
 /// As [`error_norms`].
@@ -181,7 +182,8 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
         sums
     }
 
-    /// The sums over a part of an element that has `sums` by its own points: those of its halves, halved further if they differ.
+    /// The sums over a part of an element that has `sums` by its own points: those of its halves, halved further if
+    /// they differ.
     fn refined(
         &self,
         element: &BodyElement,

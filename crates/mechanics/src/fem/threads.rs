@@ -1,4 +1,5 @@
-//! Work on many elements or nodes, shared out among the threads of the pool of rayon; the number of threads changes no bit of a result.
+//! Work on many elements or nodes, shared out among the threads of the pool of rayon; the number of threads changes no
+//! bit of a result.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -15,8 +16,8 @@ const WAITING: usize = 8;
 /// The number of threads that was asked for; 0 if none was.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
-/// Lets assembly and the recovery of stresses take this number of threads in this process, at least 1, instead of those of the machine (8 at
-/// most). The number changes no bit of a result.
+/// Lets assembly and the recovery of stresses take this number of threads in this process, at least 1, instead of those
+/// of the machine (8 at most). The number changes no bit of a result.
 pub fn limit_threads(threads: usize) {
     LIMIT.store(threads.max(1), Ordering::Relaxed);
 }
@@ -55,7 +56,8 @@ pub(crate) fn both<A: Send, B: Send>(one: impl FnOnce() -> A + Send, other: impl
     if threads() == 1 { (one(), other()) } else { rayon::join(one, other) }
 }
 
-/// The parts of `values` between consecutive `bounds`, each given to `work` with its number; a part is worked on by one thread.
+/// The parts of `values` between consecutive `bounds`, each given to `work` with its number; a part is worked on by one
+/// thread.
 pub(crate) fn on_parts<T: Send>(values: &mut [T], bounds: &[usize], work: impl Fn(usize, &mut [T]) + Sync) {
     let mut rest = values;
     let lengths = bounds.windows(2).map(|pair| pair[1] - pair[0]);

@@ -8,22 +8,24 @@ use super::State;
 /// M a + C v + K u = w_0 f(t_0) + w_1 f(t_1) + B' lambda
 /// ```
 ///
-/// Each scheme evaluates u, v, a and the times at which it balances the forces: at the middle of a step, at its end, or between.
+/// Each scheme evaluates u, v, a and the times at which it balances the forces: at the middle of a step, at its end, or
+/// between.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Balance {
     /// Displacement u, one entry for each requested dof, in length.
     pub displacement: Vec<f64>,
     /// Velocity v, one entry for each requested dof, in length over time.
     pub velocity: Vec<f64>,
-    /// Acceleration a, one entry for each requested dof, in length over time squared; it has no meaning for a dof without mass.
+    /// Acceleration a, one entry for each requested dof, in length over time squared; it has no meaning for a dof
+    /// without mass.
     pub acceleration: Vec<f64>,
     /// Times t of the loads with their weights w, which add up to one.
     pub loads: [(f64, f64); 2],
 }
 
 impl Balance {
-    /// At some dofs. Displacement and velocity are `share` times their values after a step of `step` plus `1 - share` times those before
-    /// it; the loads are weighted likewise. The acceleration is the mean of the step.
+    /// At some dofs. Displacement and velocity are `share` times their values after a step of `step` plus `1 - share`
+    /// times those before it; the loads are weighted likewise. The acceleration is the mean of the step.
     pub(super) fn between(step: f64, before: &State, after: &State, share: f64, at: &[usize]) -> Self {
         let mix = |before: &[f64], after: &[f64]| -> Vec<f64> {
             at.iter().map(|&dof| (1.0 - share) * before[dof] + share * after[dof]).collect()

@@ -10,7 +10,8 @@ use crate::fem::assembly::MassForm;
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, Method, Settings, Watch, dot, largest};
 
-/// Rounding of the displacement and the gaps, relative to the largest entry: below this there is no penetration at the start.
+/// Rounding of the displacement and the gaps, relative to the largest entry: below this there is no penetration at the
+/// start.
 const GAP_ROUNDING: f64 = 1e-12;
 
 /// A motion with its scheme and its step.
@@ -32,11 +33,13 @@ pub struct Integrator {
 }
 
 impl Integrator {
-    /// Prepares the motion of `problem` in steps of `step`; `settings` choose the method for the contact problem of a step.
+    /// Prepares the motion of `problem` in steps of `step`; `settings` choose the method for the contact problem of a
+    /// step.
     ///
-    /// # Errors [`qp::Error::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of its range,
-    /// an initial penetration, a form of the mass that the scheme cannot use; [`qp::Error::Numerical`] for a step beyond the stable one of an
-    /// explicit scheme; the errors of [`Prepared::new`](signorini_qp::Prepared::new).
+    /// # Errors
+    /// [`qp::Error::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of
+    /// its range, an initial penetration, a form of the mass that the scheme cannot use; [`qp::Error::Numerical`] for a
+    /// step beyond the stable one of an explicit scheme; the errors of [`Prepared::new`](signorini_qp::Prepared::new).
     pub fn new(problem: DynamicProblem, scheme: Scheme, step: f64, settings: &Settings) -> Result<Self, Error> {
         if !(step.is_finite() && step > 0.0) {
             return Err(qp::Error::Setting { name: "step", value: step, allowed: "positive and finite" }.into());
@@ -100,8 +103,9 @@ impl Integrator {
 
     /// Advances by one step, and returns the state at its end.
     ///
-    /// # Errors Those of a contact solve; [`qp::Error::Numerical`] if the motion grows without bound; [`qp::Error::Interrupted`] if the watch of
-    /// the settings ends the run, in the state after the last whole step.
+    /// # Errors
+    /// Those of a contact solve; [`qp::Error::Numerical`] if the motion grows without bound; [`qp::Error::Interrupted`]
+    /// if the watch of the settings ends the run, in the state after the last whole step.
     pub fn advance(&mut self) -> Result<&State, Error> {
         if self.watch.time_left().is_some_and(|left| left <= self.longest) {
             return Err(qp::Error::Interrupted.into());
@@ -171,8 +175,8 @@ impl Integrator {
         Ok(())
     }
 
-    /// The balance of forces that the last step solved, at some of the dofs; `None` before the first step, and before the first step
-    /// after a resume.
+    /// The balance of forces that the last step solved, at some of the dofs; `None` before the first step, and before
+    /// the first step after a resume.
     pub(crate) fn balance(&self, at: &[usize]) -> Option<Balance> {
         let before = self.before.as_ref()?;
         Some(self.scheme.balance(self.step, before, &self.state, at))

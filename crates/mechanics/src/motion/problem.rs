@@ -11,7 +11,8 @@ use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, dot};
 /// M a + C v + K u = f(t) + B' lambda,   B u - g <= 0,   lambda <= 0,   lambda_i (B u - g)_i = 0,   C = c_m M + c_k K
 /// ```
 ///
-/// Time, mass, length and force are in one consistent system of units. A dof has no mass if its diagonal entry of M is zero.
+/// Time, mass, length and force are in one consistent system of units. A dof has no mass if its diagonal entry of M is
+/// zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicProblem {
     statics: ContactProblem,
@@ -80,7 +81,8 @@ impl DynamicProblem {
     /// with time.
     ///
     /// # Errors
-    /// As [`TimeFunction::check`]; [`qp::Error::Length`] and [`qp::Error::NotFinite`] for a load of another length or not finite.
+    /// As [`TimeFunction::check`]; [`qp::Error::Length`] and [`qp::Error::NotFinite`] for a load of another length or
+    /// not finite.
     pub fn with_load(mut self, factor: TimeFunction, load: Vec<f64>) -> Result<Self, Error> {
         factor.check()?;
         let load = self.statics.with_load(load)?.load().to_vec();
@@ -88,11 +90,13 @@ impl DynamicProblem {
         Ok(self)
     }
 
-    /// The same with obstacles that move: `shift` (one entry per row, in length, positive away from the body) times a factor that changes
-    /// with time is added to the gaps, less its value at the start. Only `fox-goodwin` follows such obstacles.
+    /// The same with obstacles that move: `shift` (one entry per row, in length, positive away from the body) times a
+    /// factor that changes with time is added to the gaps, less its value at the start. Only `fox-goodwin` follows such
+    /// obstacles.
     ///
     /// # Errors
-    /// As [`TimeFunction::check`]; [`qp::Error::Length`] and [`qp::Error::NotFinite`] for shifts of another length or not finite.
+    /// As [`TimeFunction::check`]; [`qp::Error::Length`] and [`qp::Error::NotFinite`] for shifts of another length or
+    /// not finite.
     pub fn with_moving_gaps(mut self, factor: TimeFunction, shift: Vec<f64>) -> Result<Self, Error> {
         factor.check()?;
         check_finite("shift", &shift, (self.statics.rows(), "contact rows"))?;
@@ -111,15 +115,15 @@ impl DynamicProblem {
         Ok(self)
     }
 
-    /// The same with the part of the constant load that holds prescribed displacements (length n, in force), and the strain energy of
-    /// these displacements alone. They are used only to separate strain energy from potential energy.
+    /// The same with the part of the constant load that holds prescribed displacements (length n, in force), and the
+    /// strain energy of these displacements alone. They are used only to separate strain energy from potential energy.
     pub fn holding(mut self, forces: Vec<f64>, energy: f64) -> Self {
         self.held = (forces, energy);
         self
     }
 
-    /// The same with an upper bound on the largest angular frequency of K and M without damping, per time, positive. `fox-goodwin` finds one
-    /// itself if M is diagonal; without a bound it is of second order.
+    /// The same with an upper bound on the largest angular frequency of K and M without damping, per time, positive.
+    /// `fox-goodwin` finds one itself if M is diagonal; without a bound it is of second order.
     pub fn bounded_by(self, frequency: f64) -> Self {
         DynamicProblem { frequency: Some(frequency), ..self }
     }
@@ -258,8 +262,8 @@ impl DynamicProblem {
         }
     }
 
-    /// Work of the loads between two displacements, with the mean of their values at some times, without the part that holds prescribed
-    /// displacements.
+    /// Work of the loads between two displacements, with the mean of their values at some times, without the part that
+    /// holds prescribed displacements.
     pub(super) fn work(&self, times: impl ExactSizeIterator<Item = f64>, [from, to]: [&Vec<f64>; 2]) -> f64 {
         let count = times.len() as f64;
         let moved: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();

@@ -16,9 +16,11 @@ pub struct State {
     pub displacement: Vec<f64>,
     /// Velocity v, one entry per dof, in length over time; for a dof without mass, the mean over the last step.
     pub velocity: Vec<f64>,
-    /// Acceleration a, one entry per dof, in length over time squared; only schemes of Newmark's kind and central differences store it.
+    /// Acceleration a, one entry per dof, in length over time squared; only schemes of Newmark's kind and central
+    /// differences store it.
     pub acceleration: Vec<f64>,
-    /// Work of loads and of obstacles that move since the start, in force times length; forces that hold prescribed displacements do none.
+    /// Work of loads and of obstacles that move since the start, in force times length; forces that hold prescribed
+    /// displacements do none.
     pub work: f64,
     /// Energy that damping took from the start to this state, in force times length.
     #[serde(default)]
@@ -27,17 +29,19 @@ pub struct State {
     pub penalties: usize,
     /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
     pub multiplier: Vec<f64>,
-    /// Energy that each contact row took from its node when the node stopped, in force times length; only `fox-goodwin` stores it.
+    /// Energy that each contact row took from its node when the node stopped, in force times length; only `fox-goodwin`
+    /// stores it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<f64>,
     /// K v, one entry per dof, in force over time; empty in schemes that do not need it, and before the first step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rate: Vec<f64>,
-    /// Rows that were closed in the last step: the start of the search in the next step. Code that writes a state lists them itself.
+    /// Rows that were closed in the last step: the start of the search in the next step. Code that writes a state lists
+    /// them itself.
     #[serde(skip)]
     pub contact_set: ContactSet,
-    /// Displacement at the middle of the last step, one entry per dof, in length, if that is not the mean of both ends; otherwise empty.
-    /// No later step depends on it.
+    /// Displacement at the middle of the last step, one entry per dof, in length, if that is not the mean of both ends;
+    /// otherwise empty. No later step depends on it.
     #[serde(skip)]
     pub(super) middle: Vec<f64>,
     /// Elastic forces K u, one entry per dof, in force.

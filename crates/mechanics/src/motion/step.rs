@@ -1,4 +1,5 @@
-//! Common parts of all schemes: their description, the trait of their steps, the prepared contact problem of a step, sums of vectors.
+//! Common parts of all schemes: their description, the trait of their steps, the prepared contact problem of a step,
+//! sums of vectors.
 
 use std::fmt;
 
@@ -21,8 +22,8 @@ pub struct About {
     pub penetrates: bool,
     /// `true` if its step is limited.
     pub is_explicit: bool,
-    /// The times in a step at which it evaluates the loads, from 0 to 1, with equal weights; the work of the loads is measured at these
-    /// times.
+    /// The times in a step at which it evaluates the loads, from 0 to 1, with equal weights; the work of the loads is
+    /// measured at these times.
     pub load_times: &'static [f64],
     /// `true` if it uses a bound on the largest frequency of the mesh.
     pub uses_frequency: bool,
@@ -58,7 +59,8 @@ pub(super) trait Advance: fmt::Debug + Send + Sync {
     fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error>;
     /// The state after one step.
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error>;
-    /// The balance of forces that the step from `before` to `after` solved, with the multiplier of `after`, at some dofs.
+    /// The balance of forces that the step from `before` to `after` solved, with the multiplier of `after`, at some
+    /// dofs.
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance;
     /// The middle of the last step, if a scheme measures its energy there and not at the end.
     fn half_step(&self, _: &DynamicProblem, _step: f64, _: &State) -> Option<HalfStep> {
@@ -80,8 +82,8 @@ pub(super) struct HalfStep {
     pub kinetic: f64,
 }
 
-/// The middle of the last step of length `step` (zero before the first), in which the dofs moved with `velocity`, of this momentum M v and
-/// this rate K v of the elastic forces; the mass of the scheme is `M + scaling K`.
+/// The middle of the last step of length `step` (zero before the first), in which the dofs moved with `velocity`, of
+/// this momentum M v and this rate K v of the elastic forces; the mass of the scheme is `M + scaling K`.
 ///
 /// The energy there, with the kinetic part `v'(M + scaling K - step^2/4 K) v/2`, is the one that leapfrog preserves.
 pub(super) fn halfway(
@@ -142,8 +144,8 @@ impl Stepping {
 
     /// Solves with a force and gaps, from the set of the last step.
     ///
-    /// A gap that is the rounding of the change is none: a part of the body that had to follow it would move by rounding alone, which no
-    /// certificate can judge.
+    /// A gap that is the rounding of the change is none: a part of the body that had to follow it would move by
+    /// rounding alone, which no certificate can judge.
     pub fn solve(&self, force: Vec<f64>, mut gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
         let changes = force.iter().zip(&self.diagonal).map(|(force, diagonal)| (force / diagonal).abs());
         let rounding = f64::EPSILON * changes.filter(|change| change.is_finite()).fold(0.0, f64::max);
@@ -177,7 +179,8 @@ impl Stepping {
     }
 }
 
-/// The state one step after `before`, with its acceleration: a displacement, a velocity, and the contact forces of the step.
+/// The state one step after `before`, with its acceleration: a displacement, a velocity, and the contact forces of the
+/// step.
 pub(super) fn next(
     problem: &DynamicProblem,
     before: &State,

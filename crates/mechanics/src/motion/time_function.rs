@@ -96,8 +96,8 @@ impl TimeFunction {
     }
 }
 
-/// The value at `t` of straight lines between points `(t, value)`, t increasing; constant before the first and after the last, 1 without
-/// points.
+/// The value at `t` of straight lines between points `(t, value)`, t increasing; constant before the first and after
+/// the last, 1 without points.
 pub(crate) fn between(points: &[(f64, f64)], t: f64) -> f64 {
     let after = points.partition_point(|&(at, _)| at <= t);
     match (after.checked_sub(1).and_then(|before| points.get(before)), points.get(after)) {

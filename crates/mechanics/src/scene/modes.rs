@@ -4,8 +4,8 @@
 //! K x = w M x,   B_C x = 0,   w = (2 pi f)^2
 //! ```
 //!
-//! K is the stiffness of the free unknowns, M their consistent mass, C the closed rows with all ties. The stress of the equilibrium does not
-//! change the stiffness, nothing is damped, and no contact opens or closes during a vibration.
+//! K is the stiffness of the free unknowns, M their consistent mass, C the closed rows with all ties. The stress of the
+//! equilibrium does not change the stiffness, nothing is damped, and no contact opens or closes during a vibration.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -54,19 +54,21 @@ pub struct Mode {
     /// The same with undecided rows open, `<= frequency`; `None` if no row is undecided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency_open: Option<f64>,
-    /// Residual of the pair, dimensionless: as in [`qp::ContactProblem::modes`]. The relative error of the frequency is at most about half of
-    /// it, and mostly its square.
+    /// Residual of the pair, dimensionless: as in [`qp::ContactProblem::modes`]. The relative error of the frequency is
+    /// at most about half of it, and mostly its square.
     pub residual: f64,
-    /// Participation factor for each axis of the coordinates, in the root of mass: `x'M e`, with a unit motion e of the whole body.
+    /// Participation factor for each axis of the coordinates, in the root of mass: `x'M e`, with a unit motion e of the
+    /// whole body.
     pub participation: Vec<f64>,
-    /// Effective mass for each axis, in mass: the square of the factor, for all copies of a part with planes of symmetry.
+    /// Effective mass for each axis, in mass: the square of the factor, for all copies of a part with planes of
+    /// symmetry.
     pub effective_mass: Vec<f64>,
     /// The amplitude at which the first closed row opens; `None` if none does.
     pub opens: Option<Limit>,
     /// The amplitude at which the first open row closes; `None` if none does.
     pub closes: Option<Limit>,
-    /// Displacement of the nodes, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in one over the root of mass, along the positive
-    /// axes: its mass is 1.
+    /// Displacement of the nodes, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in one over the root of
+    /// mass, along the positive axes: its mass is 1.
     #[serde(skip)]
     pub displacement: Vec<f64>,
 }
@@ -94,7 +96,8 @@ pub struct ModalAnalysis {
     pub solution: Option<Solution>,
     /// Indices of the contact rows that stay closed, undecided ones included, from 0, in increasing order.
     pub closed: Vec<usize>,
-    /// Those of them that may be open: each frequency lies between that with all of them open and that with all of them closed.
+    /// Those of them that may be open: each frequency lies between that with all of them open and that with all of them
+    /// closed.
     pub undecided: Vec<usize>,
     /// The reason, in words, if the closed rows are those of the answer without a proof.
     pub unproven: Option<String>,
@@ -142,8 +145,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Scene`] for a count of zero or above 1000, and for a material without density; those of [`Scene::build`], of the equilibrium,
-    /// and of the factorisations.
+    /// [`Error::Scene`] for a count of zero or above 1000, and for a material without density; those of
+    /// [`Scene::build`], of the equilibrium, and of the factorisations.
     pub fn modal_analysis(&self, count: usize, settings: &Settings) -> Result<ModalAnalysis, Error> {
         let analysis = Some(AnalysisSpec::Modes(ModesSpec { count }));
         let scene = Scene { analysis, ..self.clone() };

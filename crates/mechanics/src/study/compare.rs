@@ -7,14 +7,15 @@ use super::summary::Status;
 use crate::error::Error;
 use signorini_qp::{ContactProblem, Method, Settings, Solution, dot, largest, solve};
 
-/// Two exact methods must agree in the displacement to this share of its largest entry: both end with a linear solve, and the condition
-/// number of the stiffness may amplify its rounding a millionfold.
+/// Two exact methods must agree in the displacement to this share of its largest entry: both end with a linear solve,
+/// and the condition number of the stiffness may amplify its rounding a millionfold.
 pub const DISPLACEMENT_AGREEMENT: f64 = 1e-8;
 
 /// As [`DISPLACEMENT_AGREEMENT`], for the multipliers, which are differences of larger forces.
 pub const MULTIPLIER_AGREEMENT: f64 = 1e-7;
 
-/// Rows whose multiplier and distance are both below this, relative, are weakly active: both sets may contain them or not.
+/// Rows whose multiplier and distance are both below this, relative, are weakly active: both sets may contain them or
+/// not.
 pub const WEAKLY_ACTIVE: f64 = 1e-9;
 
 /// Rounding of an energy norm that is recomputed.
@@ -75,7 +76,8 @@ pub struct Comparison {
 /// Solves `problem` by the QP, the active-set loop and the penalty loop, and compares their answers.
 ///
 /// # Errors
-/// As [`solve`], but an answer that is not certified is an answer here; [`qp::Error::Interrupted`] if not all three answers were computed.
+/// As [`solve`], but an answer that is not certified is an answer here; [`qp::Error::Interrupted`] if not all three
+/// answers were computed.
 pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparison, Error> {
     let mut number = 0;
     let mut answer = |method| {

@@ -1,6 +1,7 @@
 //! The Pareto front of points with two costs.
 
-/// Returns for each point whether it is on the front: no other point is as small in both of its costs, and smaller in one.
+/// Returns for each point whether it is on the front: no other point is as small in both of its costs, and smaller in
+/// one.
 pub(super) fn on_front(points: &[[f64; 2]]) -> Vec<bool> {
     let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
     points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()

@@ -5,8 +5,9 @@ use crate::error::Error;
 use signorini_qp as qp;
 use signorini_qp::{Settings, Solution, Start};
 
-/// The points of a sweep at all `values` of the quantity `name`: `solved_at` a value gives the solution, started from the last one, with
-/// what else `point` needs. An answer that is not certified counts as an answer. An interrupted sweep holds the points before.
+/// The points of a sweep at all `values` of the quantity `name`: `solved_at` a value gives the solution, started from
+/// the last one, with what else `point` needs. An answer that is not certified counts as an answer. An interrupted
+/// sweep holds the points before.
 ///
 /// # Errors
 /// Those of both functions; [`qp::Error::Interrupted`] if no point was solved.
@@ -63,7 +64,8 @@ impl KeptAnswers {
         }
     }
 
-    /// The error of a solve under these settings, with the limit that was set: the answers are the reason if the solve alone fits.
+    /// The error of a solve under these settings, with the limit that was set: the answers are the reason if the solve
+    /// alone fits.
     pub fn explain(&self, error: Error) -> Error {
         let Some(allowed) = self.allowed else { return error };
         let of_answers = |solve: f64| {

@@ -6,19 +6,22 @@ use super::moving_mean::MovingMean;
 use super::warnings::AnswerWarning;
 use crate::motion::Observation;
 
-/// Largest allowed growth of the energy, relative to the initial energy and the work of the loads; a motion beyond it is not reliable.
+/// Largest allowed growth of the energy, relative to the initial energy and the work of the loads; a motion beyond it
+/// is not reliable.
 ///
 /// It lies between two groups of measurements on bars, blocks and discs: 0.01 % by `midpoint`, none by `fox-goodwin`,
-/// `contact-stabilised` and central differences, up to 0.5 % by other schemes in good cases; from 5 % to 6,000 % in schemes that gain energy. A gain of 1 % is 0.5 % of
-/// the speeds.
+/// `contact-stabilised` and central differences, up to 0.5 % by other schemes in good cases; from 5 % to 6,000 % in
+/// schemes that gain energy. A gain of 1 % is 0.5 % of the speeds.
 const MOST_GROWTH: f64 = 0.01;
 
 /// Times, forces and impulse of the obstacles of a motion: of all together, or of one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionContact {
-    /// Time at which the first contact began, `None` if nothing touched: its first two steps count by their forces over that of the third.
+    /// Time at which the first contact began, `None` if nothing touched: its first two steps count by their forces over
+    /// that of the third.
     pub first: Option<f64>,
-    /// Time at which the last contact ended, or the end of the last step with a force; its last two steps count likewise.
+    /// Time at which the last contact ended, or the end of the last step with a force; its last two steps count
+    /// likewise.
     pub last: Option<f64>,
     /// Sum of the lengths of all contacts, in time.
     pub duration: f64,
@@ -28,9 +31,11 @@ pub struct MotionContact {
     /// The steps of the contact that lasts, and the number of contacts so far.
     run: usize,
     contacts: usize,
-    /// Largest contact force of a single step, in force, `>= 0`; it does not converge in a mesh that oscillates behind a wave front.
+    /// Largest contact force of a single step, in force, `>= 0`; it does not converge in a mesh that oscillates behind
+    /// a wave front.
     pub force_max: f64,
-    /// Mean of the contact force over a window of time, and its largest value; each half of a step is one of its values.
+    /// Mean of the contact force over a window of time, and its largest value; each half of a step is one of its
+    /// values.
     force_mean: MovingMean,
     /// The same over the time of a wave through a few cells, and over twice that time.
     peak: MovingMean,
@@ -40,14 +45,16 @@ pub struct MotionContact {
 }
 
 impl MotionContact {
-    /// Nothing touched yet; the force and its peak are averaged over the whole numbers of steps that are nearest to `steps`.
+    /// Nothing touched yet; the force and its peak are averaged over the whole numbers of steps that are nearest to
+    /// `steps`.
     fn averaged_over(steps: [f64; 2]) -> Self {
         let halves = steps.map(|steps| 2.0 * steps.round().max(1.0));
         let [force_mean, peak] = halves.map(MovingMean::over);
         MotionContact { force_mean, peak, wide: MovingMean::over(2.0 * halves[1]), ..MotionContact::default() }
     }
 
-    /// Adds a step with its contact force, which acted from one time to another: for half of a `step`, or for all of it.
+    /// Adds a step with its contact force, which acted from one time to another: for half of a `step`, or for all of
+    /// it.
     fn add(&mut self, force: f64, [from, to]: [f64; 2], step: f64) {
         let length = to - from;
         if force > 0.0 {
@@ -106,7 +113,8 @@ impl MotionContact {
     }
 }
 
-/// What is missing in two steps at the beginning or the end of a contact, in steps, beside the force of the step next to them.
+/// What is missing in two steps at the beginning or the end of a contact, in steps, beside the force of the step next
+/// to them.
 fn missing(forces: [f64; 2], beside: f64) -> f64 {
     forces.into_iter().map(|force| (1.0 - force / beside).clamp(0.0, 1.0)).sum()
 }
@@ -132,7 +140,8 @@ pub struct MotionSummary {
     pub energy_range: [f64; 2],
     /// Largest sum of kinetic and strain energy, in force times length: the reference for energies.
     pub energy_scale: f64,
-    /// Total number of penalties in all steps, and the largest number in one step; 0 in schemes without a loop over penalties.
+    /// Total number of penalties in all steps, and the largest number in one step; 0 in schemes without a loop over
+    /// penalties.
     pub penalties: [usize; 2],
     /// Work of loads and moving obstacles in the whole run so far, in force times length.
     pub work: f64,
@@ -145,8 +154,8 @@ pub struct MotionSummary {
 }
 
 impl MotionSummary {
-    /// A run with a number of obstacles that starts as `seen`; the force and its peak are averaged over whole numbers of steps of length
-    /// `step`: those nearest to `windows`, in time.
+    /// A run with a number of obstacles that starts as `seen`; the force and its peak are averaged over whole numbers
+    /// of steps of length `step`: those nearest to `windows`, in time.
     pub fn starting(seen: &Observation, obstacles: usize, windows: [f64; 2], step: f64) -> Self {
         let contact = MotionContact::averaged_over(windows.map(|window| window / step));
         let energies = [seen.kinetic, seen.strain, seen.potential];
@@ -196,8 +205,8 @@ impl MotionSummary {
         self.energy_first[0] + self.energy_first[1]
     }
 
-    /// The energy that the scheme took: what the start, the loads and the obstacles put in, less what is there and what damping took, in force
-    /// times length; negative if it gave some.
+    /// The energy that the scheme took: what the start, the loads and the obstacles put in, less what is there and what
+    /// damping took, in force times length; negative if it gave some.
     pub fn taken_by_scheme(&self) -> f64 {
         self.initial_energy() + self.work - self.damped - self.energy_last[0] - self.energy_last[1]
     }
@@ -209,7 +218,8 @@ impl MotionSummary {
         (initial > 0.0).then(|| [self.energy_last[0] + self.energy_last[1], self.energy_scale].map(|now| now / initial))
     }
 
-    /// The largest growth of energy without work of the loads, over the initial energy and the largest work of the loads.
+    /// The largest growth of energy without work of the loads, over the initial energy and the largest work of the
+    /// loads.
     pub fn growth(&self) -> f64 {
         let given = self.initial_energy() + self.work_max;
         if self.excess_max > 0.0 { self.excess_max / given } else { 0.0 }

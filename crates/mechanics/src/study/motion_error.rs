@@ -13,8 +13,9 @@ use signorini_qp::Settings;
 /// A peak that changes by more than this share on the finer mesh is not resolved.
 const RESOLVED: f64 = 0.1;
 
-/// Estimated errors of the numbers of a motion: how far they move with half the step, and with half the step and half the cells, together;
-/// of the peak at least how far it moves over twice its window, whose oscillations behind a wave front are the same on every mesh.
+/// Estimated errors of the numbers of a motion: how far they move with half the step, and with half the step and half
+/// the cells, together; of the peak at least how far it moves over twice its window, whose oscillations behind a wave
+/// front are the same on every mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotionError {
     /// Of the peak of the contact force, in force, `>= 0`.
@@ -28,8 +29,8 @@ pub struct MotionError {
 }
 
 impl MotionError {
-    /// The errors of a motion of `scene` in steps of length `step`, in time, with this `summary`: two more runs, the finer one with twice
-    /// the cells along each edge.
+    /// The errors of a motion of `scene` in steps of length `step`, in time, with this `summary`: two more runs, the
+    /// finer one with twice the cells along each edge.
     ///
     /// # Errors
     /// [`Error::Scene`] for a body from a mesh file, which cannot be refined; those of the scene and of its steps;

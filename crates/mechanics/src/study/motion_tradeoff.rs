@@ -59,12 +59,12 @@ pub struct MotionTradeoff {
 impl MotionTradeoff {
     /// Runs a scene with a motion by every scheme at several steps.
     ///
-    /// A run that fails has an infinite error. If the watch of `settings` is asked to stop, the result holds the points of the completed
-    /// runs.
+    /// A run that fails has an infinite error. If the watch of `settings` is asked to stop, the result holds the points
+    /// of the completed runs.
     ///
     /// # Errors
-    /// As [`Scene::build`] and [`Scene::dynamics`]; [`Error::Scene`] for a scene without a motion; [`qp::Error::Interrupted`] if no run was
-    /// completed.
+    /// As [`Scene::build`] and [`Scene::dynamics`]; [`Error::Scene`] for a scene without a motion;
+    /// [`qp::Error::Interrupted`] if no run was completed.
     pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
         let model = scene.build()?;
         let own = scene.dynamics(&model)?.ok_or_else(still)?;

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-/// Bins of a window: with more steps, several steps share a bin. The window then moves by 1/64 of its length, and its memory does not
-/// grow with the number of steps.
+/// Bins of a window: with more steps, several steps share a bin. The window then moves by 1/64 of its length, and its
+/// memory does not grow with the number of steps.
 const MOST_BINS: usize = 64;
 
 /// The mean over a window that moves with time, and the largest mean so far. Before the first step the force is zero.
@@ -25,7 +25,8 @@ pub(super) struct MovingMean {
 }
 
 impl MovingMean {
-    /// The mean over the whole number of steps nearest to `steps`, at least one; a bin of several has an even number of them.
+    /// The mean over the whole number of steps nearest to `steps`, at least one; a bin of several has an even number of
+    /// them.
     pub fn over(steps: f64) -> Self {
         let steps = (steps.round() as usize).max(1);
         let per_bin = match steps.div_ceil(MOST_BINS) {

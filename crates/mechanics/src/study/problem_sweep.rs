@@ -40,14 +40,15 @@ pub struct ProblemSweep {
 }
 
 impl ProblemSweep {
-    /// Solves `first` at `count` points of the path to `last`, the same body and rows with other gaps, another load, or both. An answer that
-    /// is not certified counts as an answer here.
+    /// Solves `first` at `count` points of the path to `last`, the same body and rows with other gaps, another load, or
+    /// both. An answer that is not certified counts as an answer here.
     ///
-    /// The body is factorised once, or a hierarchy is built once, and every solve starts from the last answer. An interrupted sweep holds the
-    /// points that were solved before.
+    /// The body is factorised once, or a hierarchy is built once, and every solve starts from the last answer. An
+    /// interrupted sweep holds the points that were solved before.
     ///
     /// # Errors
-    /// As [`solve`](signorini_qp::solve()); [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no point was solved.
+    /// As [`solve`](signorini_qp::solve()); [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no point
+    /// was solved.
     pub fn of(first: &ContactProblem, last: &ContactProblem, count: usize, settings: &Settings) -> Result<Self, Error> {
         let kept = KeptAnswers::of(count, first.dofs(), settings);
         let settings = &kept.settings(settings);

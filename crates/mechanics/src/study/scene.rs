@@ -18,7 +18,8 @@ use signorini_qp::{ContactSet, Event, Goal, Prepared, Settings, Solution, Start,
 /// Gaps at the middle that differ by more than this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT_LINE: f64 = 1e-12;
 
-/// Displacements that differ by less, relative, are the same up to the rounding of a solve, as those of symmetric nodes.
+/// Displacements that differ by less, relative, are the same up to the rounding of a solve, as those of symmetric
+/// nodes.
 const SAME: f64 = 1e-9;
 
 impl Summary {
@@ -38,10 +39,12 @@ impl Summary {
 }
 
 impl Summary {
-    /// The numbers of `solution`, the solution behind `answer`: with pressures, the width of the contact, and the balance of all forces.
+    /// The numbers of `solution`, the solution behind `answer`: with pressures, the width of the contact, and the
+    /// balance of all forces.
     ///
     /// # Errors
-    /// [`Error::Refused`] for an obstacle that pulls, and for large displacements that a deck asks for; as [`Model::reactions`].
+    /// [`Error::Refused`] for an obstacle that pulls, and for large displacements that a deck asks for; as
+    /// [`Model::reactions`].
     pub fn of_answer(
         answer: &Answer,
         solution: Solution,
@@ -187,7 +190,8 @@ pub struct Sweep {
     pub events: Vec<SweepEvent>,
     /// Exact force, width and pressure in between; empty if the events are.
     pub corners: Vec<SweepCorner>,
-    /// The names of these entries of the meshed part; empty without planes of symmetry. Those of the points are in each point.
+    /// The names of these entries of the meshed part; empty without planes of symmetry. Those of the points are in each
+    /// point.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub of_meshed_part: &'static [&'static str],
     /// The answers in between, if the events are known.
@@ -196,7 +200,8 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// A number of values from `first` to `last`, both included, in their unit and in that order: gaps or forces to sweep over.
+    /// A number of values from `first` to `last`, both included, in their unit and in that order: gaps or forces to
+    /// sweep over.
     pub fn even_gaps(first: f64, last: f64, count: usize) -> Vec<f64> {
         let share = |i: usize| i as f64 / (count.max(2) - 1) as f64;
         let between = |i: usize| first * (1.0 - share(i)) + last * share(i);
@@ -210,17 +215,18 @@ impl Sweep {
         (0..count).map(gap).collect()
     }
 
-    /// Solves a scene at every one of `gaps`, in length, negative into the body; an answer that is not certified counts as
-    /// an answer here.
+    /// Solves a scene at every one of `gaps`, in length, negative into the body; an answer that is not certified counts
+    /// as an answer here.
     ///
-    /// The stiffness is factorised once, or a hierarchy is built once, and every solve starts from the last contact set. If the body is
-    /// condensed and the rows move on straight lines (rows along the approach direction do), all events between the first and the last gap
-    /// are found.
+    /// The stiffness is factorised once, or a hierarchy is built once, and every solve starts from the last contact
+    /// set. If the body is condensed and the rows move on straight lines (rows along the approach direction do), all
+    /// events between the first and the last gap are found.
     ///
     /// An interrupted sweep holds the gaps that were solved before, and nothing in between.
     ///
     /// # Errors
-    /// As [`Model::with_gap`] and [`solve`]; [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no gap was solved.
+    /// As [`Model::with_gap`] and [`solve`]; [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no gap was
+    /// solved.
     pub fn over_gaps(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Self, Error> {
         let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else { return Ok(Sweep::default()) };
         let kept = KeptAnswers::of(gaps.len(), model.problem().dofs(), settings);
@@ -256,8 +262,8 @@ impl Sweep {
     /// the force 0 the obstacle stands where it first touches the body.
     ///
     /// # Errors
-    /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite; as [`solve`];
-    /// [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no force was solved.
+    /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite; as
+    /// [`solve`]; [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no force was solved.
     pub fn over_forces(model: &Model, forces: &[f64], settings: &Settings) -> Result<Self, Error> {
         if forces.is_empty() {
             return Ok(Sweep::default());

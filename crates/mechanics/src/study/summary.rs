@@ -14,7 +14,8 @@ pub enum Status {
     Certified,
     /// The answer does not meet its goal.
     NotCertified,
-    /// A motion with an energy growth that its loads do not explain: not reliable, even if every single step is accurate.
+    /// A motion with an energy growth that its loads do not explain: not reliable, even if every single step is
+    /// accurate.
     Unstable,
 }
 
@@ -64,10 +65,12 @@ pub struct Summary {
     /// Number of meshed parts in the whole body; only with planes of symmetry.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parts_of_whole: Option<usize>,
-    /// The names of these entries of the meshed part, with a point between a name and that of its owner; empty without planes of symmetry.
+    /// The names of these entries of the meshed part, with a point between a name and that of its owner; empty without
+    /// planes of symmetry.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub of_meshed_part: &'static [&'static str],
-    /// The deepest overlap of the undeformed body with an obstacle, in words, for the text of a report; `None` without an overlap.
+    /// The deepest overlap of the undeformed body with an obstacle, in words, for the text of a report; `None` without
+    /// an overlap.
     #[serde(skip)]
     pub initial_overlap: Option<String>,
     /// The estimated discretisation error, relative in energy; only in a scene, if requested.
@@ -166,21 +169,24 @@ pub struct BetweenBodies {
     pub other: String,
     /// `pairs` of nodes, or `mortar`: means over the areas of the nodes of the carrying boundary.
     pub rows: &'static str,
-    /// The covered share of the area of `boundary`, and the share of the nodes of `other` that face it, from 0 to 1; `None` for pairs.
+    /// The covered share of the area of `boundary`, and the share of the nodes of `other` that face it, from 0 to 1;
+    /// `None` for pairs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub covered: Option<[f64; 2]>,
-    /// The moment about the origin of the contact forces on the other body, in force times length, as [`Resultant::moment`]: beside the
-    /// opposite moment on this body, it differs by the moment of the forces over the gap.
+    /// The moment about the origin of the contact forces on the other body, in force times length, as
+    /// [`Resultant::moment`]: beside the opposite moment on this body, it differs by the moment of the forces over the
+    /// gap.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub moment_on_other: Vec<f64>,
-    /// The deepest place at which a node of the other boundary lies inside this body, in length, `>= 0`: means are kept apart, single nodes
-    /// may be not. `None` for pairs.
+    /// The deepest place at which a node of the other boundary lies inside this body, in length, `>= 0`: means are kept
+    /// apart, single nodes may be not. `None` for pairs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub penetration: Option<f64>,
 }
 
-/// The contact of one obstacle or pair of bodies, in the whole body. A plane of symmetry normal to its approach direction gives an obstacle
-/// a mirror image, which does not count here; in all other planes the contact is of the whole.
+/// The contact of one obstacle or pair of bodies, in the whole body. A plane of symmetry normal to its approach
+/// direction gives an obstacle a mirror image, which does not count here; in all other planes the contact is of the
+/// whole.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ObstacleContact {
     /// Its name, as in [`Resultant::of`].
@@ -243,7 +249,8 @@ pub struct RunSeconds {
     pub assemble: f64,
     /// Factorisations, including the analysis of the pattern; in a motion those before its first step.
     pub factor: f64,
-    /// The solve without its factorisations and its proof, including the certificate; in a motion all steps, including writing.
+    /// The solve without its factorisations and its proof, including the certificate; in a motion all steps, including
+    /// writing.
     pub solve: f64,
     /// The part of `solve` that recomputes the conditions and the bound.
     pub certificate: f64,

@@ -21,7 +21,8 @@ const TOLERANCES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 /// Accuracies of the multigrid method; its setting is the error bound to reach.
 const ACCURACIES: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
 
-/// The two fastest runs of a point differ by less than this share, or there are [`MOST_RUNS`] times as many runs as requested.
+/// The two fastest runs of a point differ by less than this share, or there are [`MOST_RUNS`] times as many runs as
+/// requested.
 const REPEATED: f64 = 0.03;
 
 /// See [`REPEATED`].
@@ -57,11 +58,13 @@ const POLISHED: &str = "qp, polished";
 pub struct TradeoffGrid {
     /// Number of meshes besides the scene's own, each with half the cell size of the previous one.
     pub refinements: usize,
-    /// Runs of each point, at least 1, and up to four times as many until the two fastest differ by less than 3 %; the fastest counts.
+    /// Runs of each point, at least 1, and up to four times as many until the two fastest differ by less than 3 %; the
+    /// fastest counts.
     pub runs: usize,
     /// Points of more dofs than this are solved on the contact boundary only.
     pub most_full_dofs: usize,
-    /// No finer mesh is started if, by the time of the last one, it would end later than this many seconds after the start.
+    /// No finer mesh is started if, by the time of the last one, it would end later than this many seconds after the
+    /// start.
     pub seconds: f64,
 }
 
@@ -92,8 +95,8 @@ pub struct TradeoffPoint {
     pub mesh: usize,
     /// `qp`, `qp, polished`, `active-set`, `mprgp` or `penalty`.
     pub method: &'static str,
-    /// Tolerance of the interior point, last penalty of the ladder over the local stiffness, or accuracy of the refinement or of
-    /// the cycles; `None` if the method has no such setting.
+    /// Tolerance of the interior point, last penalty of the ladder over the local stiffness, or accuracy of the
+    /// refinement or of the cycles; `None` if the method has no such setting.
     pub knob: Option<f64>,
     /// `true` if the problem was condensed onto its contact boundary.
     pub condensed: bool,
@@ -109,8 +112,8 @@ pub struct TradeoffPoint {
     pub is_repeated: bool,
     /// Energy norm of the error of the displacement over that of the displacement, defined as in the bound.
     pub energy_error: f64,
-    /// Error against the exact answer of the scene, relative in energy: the algebraic error and the estimated discretisation error
-    /// together, which are nearly orthogonal; `None` in a problem directory.
+    /// Error against the exact answer of the scene, relative in energy: the algebraic error and the estimated
+    /// discretisation error together, which are nearly orthogonal; `None` in a problem directory.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub total_error: Option<f64>,
     /// Error of the contact force, relative.
@@ -199,8 +202,8 @@ impl TradeoffMesh {
 }
 
 impl Tradeoff {
-    /// Returns for each point, given by its two costs `[time, error]` in any unit, whether it is on the front: no other point is as small in both of its costs, and
-    /// smaller in one. In the order of the points.
+    /// Returns for each point, given by its two costs `[time, error]` in any unit, whether it is on the front: no other
+    /// point is as small in both of its costs, and smaller in one. In the order of the points.
     pub fn on_front(costs: &[[f64; 2]]) -> Vec<bool> {
         on_front(costs)
     }
@@ -325,7 +328,8 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     for (method, polish) in [("qp", false), (POLISHED, true)].into_iter().filter(|way| way.1 || !mixed) {
         for tolerance in TOLERANCES {
             let settings = base(Method::Qp(InteriorPoint { polish, tolerance }));
-            // A loose answer is judged only by its own tolerance: otherwise it would be refined again, and the time would count.
+            // A loose answer is judged only by its own tolerance: otherwise it would be refined again, and the time
+            // would count.
             let settings = if polish { settings } else { settings.without_tolerance() };
             ways.push(Way { method, knob: Some(tolerance), settings });
         }
@@ -363,8 +367,8 @@ struct Timed {
 /// The answer of each way, certified or not, and the seconds of its fastest runs. All ways run once before any runs
 /// again, so that other work on the machine affects them equally.
 ///
-/// The answer is `None` if the precision does not suffice, if multigrid cannot solve the problem, or if `watch` was asked to stop
-/// before the way was run.
+/// The answer is `None` if the precision does not suffice, if multigrid cannot solve the problem, or if `watch` was
+/// asked to stop before the way was run.
 fn timed(problem: &ContactProblem, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<Timed>>, Error> {
     let run = |number: usize, way: &Way| {
         if watch.acknowledge() {

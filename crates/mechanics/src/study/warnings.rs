@@ -29,17 +29,19 @@ const ROUNDING: f64 = 1e-13;
 /// A direction may point to the wrong side of a surface by this sine: rounding of the geometry.
 const SIDEWAYS: f64 = 1e-9;
 
-/// If the normal of a surface is more than this many degrees off the direction of its rows, the force differs: the cosine is 1.5 % off.
+/// If the normal of a surface is more than this many degrees off the direction of its rows, the force differs: the
+/// cosine is 1.5 % off.
 const LEANING: f64 = 10.0;
 
 /// A force of a support above this share of the largest counts as a force.
 const FELT: f64 = 1e-6;
 
-/// A boundary that faces away from its obstacle by more than the angle of this cosine, 60 degrees, is probably not the intended one.
+/// A boundary that faces away from its obstacle by more than the angle of this cosine, 60 degrees, is probably not the
+/// intended one.
 const ASIDE: f64 = 0.5;
 
-/// Allowed depth of a body in an obstacle between its nodes, as a share of the displacement that contact imposes: with two cells in each
-/// half of a smooth contact it is a sixteenth.
+/// Allowed depth of a body in an obstacle between its nodes, as a share of the displacement that contact imposes: with
+/// two cells in each half of a smooth contact it is a sixteenth.
 const BETWEEN: f64 = 0.25;
 
 /// Offset beside a corner of a surface, in units of the size of the mesh: above rounding, below every cell.
@@ -145,8 +147,8 @@ pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<Ans
     Ok(warnings.into_iter().filter(|warning| !OF_MESH.contains(&warning.code)).collect())
 }
 
-/// Refuses a displacement whose largest component is `largest`, in length, if it is rounding only: no load acts, and no obstacle
-/// reaches into the body.
+/// Refuses a displacement whose largest component is `largest`, in length, if it is rounding only: no load acts, and no
+/// obstacle reaches into the body.
 ///
 /// # Errors
 /// [`Error::Scene`].
@@ -271,8 +273,8 @@ fn written(gap: f64) -> String {
     }
 }
 
-/// Warns that rows along the approach direction carry force on an inclined surface: the force of a frictionless contact is along
-/// its normal.
+/// Warns that rows along the approach direction carry force on an inclined surface: the force of a frictionless contact
+/// is along its normal.
 fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
     let nodes = model.mesh().nodes();
@@ -308,8 +310,8 @@ fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "leaning-normals", message })
 }
 
-/// Warns that the mesh is too coarse for the numbers of the contact: segments of one or two nodes or without an inner node, a peak that is
-/// uncertain or that grows without end.
+/// Warns that the mesh is too coarse for the numbers of the contact: segments of one or two nodes or without an inner
+/// node, a peak that is uncertain or that grows without end.
 fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> {
     if model.mesh().dimension() == 1 {
         return None;
@@ -357,8 +359,8 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
     Some(AnswerWarning { code: "mesh-dependent", message })
 }
 
-/// The deepest place of the undeformed body in an obstacle, in words; `None` if it lies in none. An obstacle that a force presses moves
-/// to the body first.
+/// The deepest place of the undeformed body in an obstacle, in words; `None` if it lies in none. An obstacle that a
+/// force presses moves to the body first.
 pub(super) fn initial_overlap(model: &Model) -> Option<String> {
     let stands = |row: usize| !model.is_pressed(model.rows()[row].obstacle);
     let gaps = model.problem().inequalities_given().1.iter().copied().enumerate().filter(|&(row, _)| stands(row));
@@ -472,7 +474,8 @@ fn of_model(answer: &Answer, warning: &Warning) -> AnswerWarning {
     AnswerWarning { code: warning.code(), message }
 }
 
-/// Refuses an answer with large strains or rotations to a deck that asks for large displacements, unless small ones are wanted.
+/// Refuses an answer with large strains or rotations to a deck that asks for large displacements, unless small ones are
+/// wanted.
 ///
 /// # Errors
 /// [`Error::Refused`] with the code `large-displacements`.
@@ -491,7 +494,8 @@ pub(super) fn check_deformation(answer: &Answer) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses an answer with obstacles that pull: at a row that carries force the direction into the obstacle points into the body.
+/// Refuses an answer with obstacles that pull: at a row that carries force the direction into the obstacle points into
+/// the body.
 ///
 /// # Errors
 /// [`Error::Refused`] with the code `approach-away`.

@@ -34,8 +34,8 @@ pub(crate) fn painted(sides: [f64; 2], shapes: &[Shape], scale: f64) -> Result<P
     Ok(pixels)
 }
 
-/// Opaque pixels as a PNG file. Measured on the picture of 25,760 dofs: the fast compression takes 3 ms and 0.33 MB, the balanced
-/// compression of the painter 41 ms and 0.26 MB.
+/// Opaque pixels as a PNG file. Measured on the picture of 25,760 dofs: the fast compression takes 3 ms and 0.33 MB,
+/// the balanced compression of the painter 41 ms and 0.26 MB.
 ///
 /// # Errors
 /// [`qp::Error::Numerical`] if the encoder fails.

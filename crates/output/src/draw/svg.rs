@@ -7,7 +7,8 @@ use super::shape::{Line, Shape, Text};
 use super::typeface::{self, Weight};
 use crate::text::escape;
 
-/// The SVG text of a picture of `width` times `height` pixels, on white; on paper of this width in millimetres, with the typeface.
+/// The SVG text of a picture of `width` times `height` pixels, on white; on paper of this width in millimetres, with
+/// the typeface.
 pub(crate) fn written([width, height]: [f64; 2], shapes: &[Shape], millimetres: Option<f64>) -> String {
     let mut body = String::new();
     write_shapes(&mut body, shapes, &mut 0);

@@ -15,7 +15,8 @@ pub(crate) enum Weight {
     Bold,
 }
 
-/// The faces in the order of [`Weight`]. They have no tables for kerning and ligatures: a text is its letters side by side.
+/// The faces in the order of [`Weight`]. They have no tables for kerning and ligatures: a text is its letters side by
+/// side.
 static FACES: LazyLock<[Option<Face<'static>>; 2]> = LazyLock::new(|| FILES.map(|file| Face::parse(file, 0).ok()));
 
 static FILES: [&[u8]; 2] = [include_bytes!("font/signorini-sans.ttf"), include_bytes!("font/signorini-sans-bold.ttf")];
@@ -73,7 +74,8 @@ fn face(weight: Weight) -> Option<&'static Face<'static>> {
     FACES[weight as usize].as_ref()
 }
 
-/// The letters of a text, one after another, each with its width in units of the face; a missing letter is the box of the face.
+/// The letters of a text, one after another, each with its width in units of the face; a missing letter is the box of
+/// the face.
 fn letters<'a>(face: &'a Face<'static>, text: &'a str) -> impl Iterator<Item = (GlyphId, f64)> + 'a {
     text.chars().map(|character| {
         let glyph = face.glyph_index(character).unwrap_or_default();
@@ -87,8 +89,8 @@ pub(crate) fn width(text: &str, size: f64, weight: Weight) -> f64 {
     letters(face, text).map(|letter| letter.1).sum::<f64>() * size / f64::from(face.units_per_em())
 }
 
-/// Adds the outlines of the letters of `text` to `path`; `place(along, above)` gives the position of a point, measured from the start
-/// of the baseline.
+/// Adds the outlines of the letters of `text` to `path`; `place(along, above)` gives the position of a point, measured
+/// from the start of the baseline.
 pub(crate) fn outline(
     text: &str,
     size: f64,

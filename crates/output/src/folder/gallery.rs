@@ -32,8 +32,8 @@ pub enum Pictures {
 }
 
 impl Pictures {
-    /// The default pictures of a comparison or a sweep of a model: all pictures in the plane, and one in space, because there each step
-    /// takes its own solve.
+    /// The default pictures of a comparison or a sweep of a model: all pictures in the plane, and one in space, because
+    /// there each step takes its own solve.
     pub fn usual_of_series(model: &Model) -> Self {
         if model.mesh().dimension() == 3 { Pictures::Answer } else { Pictures::All }
     }
@@ -58,7 +58,8 @@ impl Wanted {
     }
 }
 
-/// Draws answers of one mesh, each with its name and title, with the colours and the scale of the first `leading` answers.
+/// Draws answers of one mesh, each with its name and title, with the colours and the scale of the first `leading`
+/// answers.
 fn draw_answers(
     folder: &Path,
     shown: Vec<(String, &Answer, String)>,
@@ -113,8 +114,8 @@ impl Wanted {
 }
 
 impl Wanted {
-    /// Draws the answer of the QP as [`write_solve`](Self::write_solve) does, with the iterations of the active-set loop, and the pressure of
-    /// the three methods over the boundary (`pressure`).
+    /// Draws the answer of the QP as [`write_solve`](Self::write_solve) does, with the iterations of the active-set
+    /// loop, and the pressure of the three methods over the boundary (`pressure`).
     ///
     /// # Errors
     /// As [`write_solve`](Self::write_solve).
@@ -135,8 +136,8 @@ impl Wanted {
 }
 
 impl Wanted {
-    /// Writes `u.mtx` and `lambda.mtx`; for a scene also the meaning of their entries (`dofs.csv`, `rows.csv`) and the state of each
-    /// contact row (`contact.csv`).
+    /// Writes `u.mtx` and `lambda.mtx`; for a scene also the meaning of their entries (`dofs.csv`, `rows.csv`) and the
+    /// state of each contact row (`contact.csv`).
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File).
@@ -149,8 +150,9 @@ impl Wanted {
 }
 
 impl Wanted {
-    /// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force, contact width (outside
-    /// plane strain and plane stress, area) and peak pressure over the gap (`force-width`); of each obstacle, if there are several.
+    /// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force, contact width
+    /// (outside plane strain and plane stress, area) and peak pressure over the gap (`force-width`); of each obstacle,
+    /// if there are several.
     ///
     /// # Errors
     /// As [`write_solve`](Self::write_solve).

@@ -1,8 +1,8 @@
 //! The output of a motion in a folder while it runs: its history, a series of fields for ParaView, and a checkpoint.
 //!
-//! Everything is written at the end of a frame: the lines of the history since the last one, the fields, the list of the series, and
-//! finally the checkpoint. If a run is stopped at any time, its files can be read, and the run can be resumed. The memory does not grow
-//! with the number of steps.
+//! Everything is written at the end of a frame: the lines of the history since the last one, the fields, the list of
+//! the series, and finally the checkpoint. If a run is stopped at any time, its files can be read, and the run can be
+//! resumed. The memory does not grow with the number of steps.
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
@@ -119,12 +119,12 @@ impl MotionFolder {
         Ok(MotionFolder { folder: folder.into(), scene, history, resultants, watch, times: Vec::new() })
     }
 
-    /// The run of `scene` in `folder`, with its state and its numbers; lines after its checkpoint are cut off. The duration and the
-    /// frames of the scene may differ from those of the earlier run.
+    /// The run of `scene` in `folder`, with its state and its numbers; lines after its checkpoint are cut off. The
+    /// duration and the frames of the scene may differ from those of the earlier run.
     ///
     /// # Errors
-    /// [`qp::Error::File`] if there is no run, [`Error::Scene`] for the run of another scene or a checkpoint that cannot be
-    /// read.
+    /// [`qp::Error::File`] if there is no run, [`Error::Scene`] for the run of another scene or a checkpoint that
+    /// cannot be read.
     pub fn resume(
         folder: &Path,
         scene: &Scene,
@@ -152,8 +152,9 @@ impl MotionFolder {
         Ok((MotionFolder { times: found.frame_times, ..run }, state, found.summary))
     }
 
-    /// Adds a line to the history, to the resultants, and to the watched points: `seen` with the mean force over the window of the peak,
-    /// the current state of `integrator`, and the `resultants` of its last step, as [`Dynamics::resultants`](signorini_mechanics::scene::Dynamics::resultants).
+    /// Adds a line to the history, to the resultants, and to the watched points: `seen` with the mean force over the
+    /// window of the peak, the current state of `integrator`, and the `resultants` of its last step, as
+    /// [`Dynamics::resultants`](signorini_mechanics::scene::Dynamics::resultants).
     ///
     /// # Errors
     /// [`qp::Error::File`]; [`qp::Error::Length`] for the state of another model.
@@ -340,7 +341,8 @@ fn closed_of(rows: usize, closed: &[usize]) -> ContactSet {
     set
 }
 
-/// The columns of the resultants: force, moment and centre of each obstacle, of each support, and of each spring, and the travel of an obstacle with a mass.
+/// The columns of the resultants: force, moment and centre of each obstacle, of each support, and of each spring, and
+/// the travel of an obstacle with a mass.
 fn resultants_heading(model: &Model) -> String {
     let axes = &["x", "y", "z"][..model.mesh().dimension()];
     let turns: &[&str] = match (axes.len(), model.body().formulation().is_axisymmetric()) {
@@ -364,7 +366,8 @@ fn resultants_heading(model: &Model) -> String {
     heading + "\n"
 }
 
-/// A line of the resultants at one time: first the obstacles, then the supports, then the springs; cells are empty for resultants that are not given.
+/// A line of the resultants at one time: first the obstacles, then the supports, then the springs; cells are empty for
+/// resultants that are not given.
 fn resultants_line(model: &Model, time: f64, resultants: &[Resultant]) -> String {
     let mut line = format!("{time:e}");
     for of in resultants {

@@ -35,7 +35,8 @@ fn problem_sweep_text(title: &str, sweep: &ProblemSweep) -> String {
 }
 
 impl Wanted {
-    /// Writes the answer of each point (`point-01/u.mtx`, `point-01/lambda.mtx`, ...), from which a later solve may start.
+    /// Writes the answer of each point (`point-01/u.mtx`, `point-01/lambda.mtx`, ...), from which a later solve may
+    /// start.
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File).

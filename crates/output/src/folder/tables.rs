@@ -12,8 +12,8 @@ pub fn of_model(model: &Model) -> [Streamed<'_>; 2] {
     [Streamed::new("dofs.csv", |out| dofs(model, out)), Streamed::new("rows.csv", |out| rows(model, out))]
 }
 
-/// A line for each unknown. A rigid face has no node: its rotations are given as the displacement of its farthest node; `unit` times
-/// the value is in radians.
+/// A line for each unknown. A rigid face has no node: its rotations are given as the displacement of its farthest node;
+/// `unit` times the value is in radians.
 fn dofs(model: &Model, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "dof,quantity,of,x,y,z,direction_x,direction_y,direction_z,unit")?;
     for (dof, meaning) in model.meanings().enumerate() {

@@ -239,7 +239,8 @@ fn force_lines(found: &Guarantee, half_width: Option<f64>, units: &Units) -> [St
     [force.trim_end().into(), interval]
 }
 
-/// The unknowns that a goal would need, if the error falls with a power of the unknowns: from unknowns and error of each level.
+/// The unknowns that a goal would need, if the error falls with a power of the unknowns: from unknowns and error of
+/// each level.
 fn needed(levels: &[[f64; 2]], goal: f64) -> String {
     let [.., [dofs_before, before], [dofs, last]] = levels else {
         return "a second mesh is needed to estimate the unknowns for the goal".into();

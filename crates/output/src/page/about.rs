@@ -11,8 +11,8 @@ pub struct About {
     pub command: &'static str,
     /// The name of the scene file or problem directory, without its folder.
     pub input: String,
-    /// SHA-256 of the scene file, or of K.mtx, f.mtx, B.mtx and g.mtx one after another, in hexadecimal digits; `None` for standard
-    /// input.
+    /// SHA-256 of the scene file, or of K.mtx, f.mtx, B.mtx and g.mtx one after another, in hexadecimal digits; `None`
+    /// for standard input.
     pub sha256: Option<String>,
     /// The number of threads that was asked for; `None` if the program chose it.
     pub threads: Option<usize>,

@@ -41,7 +41,8 @@ const SCRIPTS: [&str; 18] = [
 /// Writes the page into `folder`, with pictures for browsers that cannot draw.
 ///
 /// # Errors
-/// [`qp::Error::File`](signorini_qp::Error::File); [`qp::Error::Numerical`](signorini_qp::Error::Numerical) if the picture or the data cannot be encoded.
+/// [`qp::Error::File`](signorini_qp::Error::File); [`qp::Error::Numerical`](signorini_qp::Error::Numerical) if the
+/// picture or the data cannot be encoded.
 pub(super) fn write_page<'a>(
     folder: &Path,
     page: &Page,
@@ -84,8 +85,8 @@ fn filled(shell: &str, content: impl Fn(&str) -> String) -> String {
     text
 }
 
-/// JSON that no parser of HTML takes for a tag or a comment: these characters occur only in texts, and there their escapes mean the
-/// same. Unseen characters are replaced.
+/// JSON that no parser of HTML takes for a tag or a comment: these characters occur only in texts, and there their
+/// escapes mean the same. Unseen characters are replaced.
 fn safe_json(json: &str) -> String {
     let mut safe = String::with_capacity(json.len());
     for character in json.chars() {

@@ -31,7 +31,8 @@ pub(super) struct Page<'a> {
     pub colours: Colours,
     /// The fields that colour a body.
     pub fields: Vec<FieldShown>,
-    /// The object of `report.json`, without seconds except for a trade-off; null for a sweep, which has its points in `sweep`.
+    /// The object of `report.json`, without seconds except for a trade-off; null for a sweep, which has its points in
+    /// `sweep`.
     #[serde(skip_serializing_if = "Value::is_null")]
     pub report: Value,
     #[serde(skip_serializing_if = "Option::is_none")]

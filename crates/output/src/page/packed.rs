@@ -72,8 +72,8 @@ impl Packer {
         Packed { form: Form::Quantised, at, count: values.len(), stride, ranges }
     }
 
-    /// Numbers of nodes and the like, in items of `stride` components; a number that does not fit into 32 bits becomes the largest that
-    /// does.
+    /// Numbers of nodes and the like, in items of `stride` components; a number that does not fit into 32 bits becomes
+    /// the largest that does.
     pub fn whole(&mut self, values: &[usize], stride: usize) -> Packed {
         let (at, stride) = (self.bytes.len(), stride.max(1));
         for component in 0..stride {

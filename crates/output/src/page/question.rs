@@ -179,8 +179,8 @@ fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
     }
 }
 
-/// The part of an obstacle in space that faces the candidates: each facet is moved to the points at which the rows of its nodes meet
-/// the obstacle.
+/// The part of an obstacle in space that faces the candidates: each facet is moved to the points at which the rows of
+/// its nodes meet the obstacle.
 fn patch(model: &Model, index: usize, packer: &mut Packer) -> Option<Patch> {
     if model.mesh().dimension() != 3 {
         return None;

@@ -18,7 +18,8 @@ pub(super) struct Rows {
     normals: Packed,
     /// Signed distance along the normal before anything has moved, in length.
     gaps: Packed,
-    /// 1 for a row that holds means over its area, 0 for one that holds the values at its nodes; `None` without rows of means.
+    /// 1 for a row that holds means over its area, 0 for one that holds the values at its nodes; `None` without rows of
+    /// means.
     #[serde(skip_serializing_if = "Option::is_none")]
     means: Option<Packed>,
 }
@@ -107,7 +108,8 @@ pub(super) struct ClosedShown {
 }
 
 impl Closed {
-    /// Adds an answer: its closed rows, and the entries of `values` at these rows; each of `values` has an entry for every row.
+    /// Adds an answer: its closed rows, and the entries of `values` at these rows; each of `values` has an entry for
+    /// every row.
     pub fn add(&mut self, set: &ContactSet, values: &[&[f64]]) {
         self.starts.push(self.rows.len());
         self.values.resize_with(values.len(), Vec::new);

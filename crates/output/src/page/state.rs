@@ -11,7 +11,8 @@ use crate::view::magnified::carried;
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::Answer;
 
-/// Displacement, stress and fields at the vertices. Displacement and stress are linear in the answer, so that a page may mix two states.
+/// Displacement, stress and fields at the vertices. Displacement and stress are linear in the answer, so that a page
+/// may mix two states.
 #[derive(Debug, Serialize)]
 pub(super) struct State {
     /// Position on the path: gap, force or time.
@@ -23,7 +24,8 @@ pub(super) struct State {
     roots: BTreeMap<&'static str, Packed>,
     /// The shift of each obstacle along its approach direction, in length.
     shifts: Vec<f64>,
-    /// The mean displacement of the contact with each obstacle, with which it is shifted beside a magnified displacement, in length.
+    /// The mean displacement of the contact with each obstacle, with which it is shifted beside a magnified
+    /// displacement, in length.
     carried: Vec<[f64; 3]>,
 }
 

@@ -19,8 +19,8 @@ pub(super) struct SweepShown<'a> {
     points: Vec<Point<'a>>,
     events: &'a [SweepEvent],
     corners: &'a [SweepCorner],
-    /// The closed rows of each piece of the exact path, with the pressures at both ends; for a sweep without a path those of each
-    /// point.
+    /// The closed rows of each piece of the exact path, with the pressures at both ends; for a sweep without a path
+    /// those of each point.
     closed: ClosedShown,
     /// Number of states, kept or not.
     state_count: usize,

@@ -139,8 +139,8 @@ impl About {
         write_page(folder, &page, Packer::default(), stills)
     }
 
-    /// The page of an error against the continuum: the question, the answer on the last mesh if there is one, and the decrease of the error
-    /// from mesh to mesh as a plot, with the picture of the meshes.
+    /// The page of an error against the continuum: the question, the answer on the last mesh if there is one, and the
+    /// decrease of the error from mesh to mesh as a plot, with the picture of the meshes.
     ///
     /// # Errors
     /// As [`write_answer`](Self::write_answer).

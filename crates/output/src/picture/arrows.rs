@@ -6,7 +6,8 @@ use crate::plots::axes::Frame;
 use crate::plots::legend::Entry;
 use crate::plots::ticks::amount;
 
-/// Length of the arrow of the largest force, as a share of the shorter side of the panel, and of the smallest one in pixels.
+/// Length of the arrow of the largest force, as a share of the shorter side of the panel, and of the smallest one in
+/// pixels.
 const LONGEST: f64 = 0.17;
 const SHORTEST: f64 = 16.0;
 /// Arrows closer to each other than this, in pixels, are drawn side by side.
@@ -71,8 +72,8 @@ fn largest(arrows: &[Arrow]) -> f64 {
     arrows.iter().map(Arrow::size).fold(0.0, f64::max)
 }
 
-/// Draws the forces that are more than rounding and act within the frame. Pushing arrows stand outside the body if the frame has room for
-/// them.
+/// Draws the forces that are more than rounding and act within the frame. Pushing arrows stand outside the body if the
+/// frame has room for them.
 pub(crate) fn draw(drawing: &mut Drawing, frame: &Frame, arrows: &[Arrow], magnification: f64) {
     let largest = largest(arrows);
     let mut drawn: Vec<[f64; 2]> = Vec::new();
@@ -89,7 +90,8 @@ pub(crate) fn draw(drawing: &mut Drawing, frame: &Frame, arrows: &[Arrow], magni
         let along = |from: [f64; 2], by: f64| [0, 1].map(|axis| from[axis] + by * direction[axis]);
         let middle = [0, 1].map(|axis| frame.corner[axis] + 0.5 * frame.size[axis]);
         let far = |point: [f64; 2]| (point[0] - middle[0]).hypot(point[1] - middle[1]);
-        // The tip or the tail is at the point of application: the arrow farther from the middle of the body, if it fits in the frame.
+        // The tip or the tail is at the point of application: the arrow farther from the middle of the body, if it fits
+        // in the frame.
         let [push, pull] = [[along(at, -length), at], [at, along(at, length)]];
         let is_push = match (inside(push[0]), inside(pull[1])) {
             (true, false) => true,

@@ -42,9 +42,10 @@ pub struct FieldPanel<'a> {
 
 /// A contact answer as plain data, to be drawn as panels of the same scale side by side.
 ///
-/// On the left are nodal fields (usually the second principal stress, then the von Mises stress), each on the undeformed body with its
-/// colour bar. On the right is the displaced mesh with the obstacles, the forces, the closed candidates as filled dots and the open
-/// ones as hollow dots. A contact that is small beside the body is shown enlarged in a corner.
+/// On the left are nodal fields (usually the second principal stress, then the von Mises stress), each on the
+/// undeformed body with its colour bar. On the right is the displaced mesh with the obstacles, the forces, the closed
+/// candidates as filled dots and the open ones as hollow dots. A contact that is small beside the body is shown
+/// enlarged in a corner.
 #[derive(Clone, Debug)]
 pub struct ContactPicture<'a> {
     /// The title: scene, gap, iteration, number of closed nodes.
@@ -63,8 +64,8 @@ pub struct ContactPicture<'a> {
     pub magnification: f64,
     /// The fields, a panel each.
     pub fields: &'a [FieldPanel<'a>],
-    /// Obstacles. Their edges should reach beyond the body at both sides, to the ends of the picture. If the displacement is magnified,
-    /// they are shifted with their contact.
+    /// Obstacles. Their edges should reach beyond the body at both sides, to the ends of the picture. If the
+    /// displacement is magnified, they are shifted with their contact.
     pub obstacles: &'a [ObstacleLine<'a>],
     /// Candidate nodes, indices from 0.
     pub candidates: &'a [usize],
@@ -74,8 +75,8 @@ pub struct ContactPicture<'a> {
     pub arrows: &'a [Arrow],
     /// The medium: screen or paper.
     pub medium: Medium,
-    /// The visible rectangle `[[x from, x to], [y from, y to]]`; `None` for body and obstacle with a margin. The pictures of a series
-    /// share the [`common_window`] of their [windows](ContactPicture::window).
+    /// The visible rectangle `[[x from, x to], [y from, y to]]`; `None` for body and obstacle with a margin. The
+    /// pictures of a series share the [`common_window`] of their [windows](ContactPicture::window).
     pub window: Option<[[f64; 2]; 2]>,
 }
 
@@ -101,8 +102,8 @@ impl ContactPicture<'_> {
 
     /// Draws the panels of the answer side by side.
     ///
-    /// Values that are not finite are no error: elements without a value are grey, elements with a coordinate that is not finite are
-    /// left out.
+    /// Values that are not finite are no error: elements without a value are grey, elements with a coordinate that is
+    /// not finite are left out.
     ///
     /// # Errors
     /// [`qp::Error::Length`] if an array does not fit the number of nodes or candidates, [`qp::Error::Setting`] if an
@@ -205,7 +206,8 @@ impl ContactPicture<'_> {
         }
     }
 
-    /// Frames with the same window and the same scale in both directions: one for each field, then that of the displaced mesh.
+    /// Frames with the same window and the same scale in both directions: one for each field, then that of the
+    /// displaced mesh.
     fn layout(&self, window: [[f64; 2]; 2]) -> Layout {
         let (count, columns, margin) = (self.fields.len() + 1, self.columns(), self.medium.margin());
         let most = match self.medium {

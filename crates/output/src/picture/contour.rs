@@ -1,9 +1,9 @@
 //! Outlines of the regions in which a nodal field exceeds a level, to be painted one over the other.
 //!
-//! The field is linear on triangles: an element with more than three corners is a fan of triangles around its
-//! centre, which carries the mean of the corners. Inside the region `value >= level` two neighbours see the same piece of
-//! their common edge, so the outline consists of the level line within the triangles and of pieces of the boundary of
-//! the mesh. Only these are written, which keeps a picture small however fine the mesh is.
+//! The field is linear on triangles: an element with more than three corners is a fan of triangles around its centre,
+//! which carries the mean of the corners. Inside the region `value >= level` two neighbours see the same piece of their
+//! common edge, so the outline consists of the level line within the triangles and of pieces of the boundary of the
+//! mesh. Only these are written, which keeps a picture small however fine the mesh is.
 
 use std::collections::HashMap;
 
@@ -160,7 +160,8 @@ fn without_straight(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    /// The square `[0, 100]²` in `n x n` quadrilaterals, every second one split into triangles, clockwise ones among them.
+    /// The square `[0, 100]²` in `n x n` quadrilaterals, every second one split into triangles, clockwise ones among
+    /// them.
     fn square(n: usize) -> (Vec<[f64; 2]>, Vec<Vec<usize>>) {
         let at = |k: usize| 100.0 * k as f64 / n as f64;
         let nodes = (0..=n).flat_map(|j| (0..=n).map(move |i| [at(i), at(j)])).collect();

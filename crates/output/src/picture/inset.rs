@@ -28,8 +28,8 @@ pub(crate) struct Inset {
 }
 
 impl Inset {
-    /// The inset of a contact with these `closed` nodes, if it is small. It should not cover the `open` candidates and all `moved`
-    /// nodes.
+    /// The inset of a contact with these `closed` nodes, if it is small. It should not cover the `open` candidates and
+    /// all `moved` nodes.
     pub fn of(
         frame: &Frame,
         closed: &[[f64; 2]],

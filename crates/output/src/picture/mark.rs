@@ -23,7 +23,8 @@ impl Candidate {
     }
 }
 
-/// An entry for the closed candidates and one for the open ones, with their numbers; `closed` has a flag for each candidate.
+/// An entry for the closed candidates and one for the open ones, with their numbers; `closed` has a flag for each
+/// candidate.
 pub(crate) fn entries(closed: &[bool]) -> Vec<Entry<'static>> {
     let count = closed.iter().filter(|&&closed| closed).count();
     let counts =

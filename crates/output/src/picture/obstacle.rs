@@ -23,8 +23,8 @@ impl ObstacleLine<'_> {
         self.points.len() > 3 && self.points.first() == self.points.last()
     }
 
-    /// The unit vector into the obstacle; for a closed figure from the middle of the body to the middle of the figure. Zero if it is
-    /// not defined.
+    /// The unit vector into the obstacle; for a closed figure from the middle of the body to the middle of the figure.
+    /// Zero if it is not defined.
     fn direction(&self, body: [[f64; 2]; 2]) -> [f64; 2] {
         let into = if self.is_closed() {
             let share = 1.0 / self.points.len() as f64;

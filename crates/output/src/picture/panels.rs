@@ -14,7 +14,8 @@ use crate::plots::ticks::Scale;
 /// Mesh lines closer than this many pixels would only darken the body.
 const FINEST_MESH: f64 = 3.0;
 
-/// The radius of the dot of a candidate: as a share of the distance to the next candidate, and at least and at most in pixels.
+/// The radius of the dot of a candidate: as a share of the distance to the next candidate, and at least and at most in
+/// pixels.
 type Dot = [f64; 3];
 const DOT: Dot = [0.42, 1.8, 5.0];
 /// Over a field: dots cover at most a twentieth of it.
@@ -120,8 +121,8 @@ impl ContactPicture<'_> {
     }
 }
 
-/// The edges of the mesh in the frame, each once, and the mean size of an element there; no edges if they would be too dense to
-/// distinguish.
+/// The edges of the mesh in the frame, each once, and the mean size of an element there; no edges if they would be too
+/// dense to distinguish.
 fn mesh_lines(elements: &[Vec<usize>], places: &[[f64; 2]], frame: &Frame) -> (Vec<[[f64; 2]; 2]>, f64) {
     let far = [0, 1].map(|axis| frame.corner[axis] + frame.size[axis]);
     let is_seen = |element: &&Vec<usize>| {

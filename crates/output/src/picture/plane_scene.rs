@@ -97,8 +97,8 @@ impl PlaneScene {
         Ok(scene)
     }
 
-    /// The outlines of the elements as polygons. The edges of quadratic elements are curves: each is divided at its mid-side node and
-    /// halfway to that node. The added nodes have the values of the shape functions there.
+    /// The outlines of the elements as polygons. The edges of quadratic elements are curves: each is divided at its
+    /// mid-side node and halfway to that node. The added nodes have the values of the shape functions there.
     fn polygons(&mut self, mesh: &Mesh) -> Vec<Vec<usize>> {
         let mut quarters: HashMap<[usize; 2], usize> = HashMap::new();
         let mut polygons = Vec::with_capacity(mesh.element_count());
@@ -205,7 +205,8 @@ pub(crate) fn axes(model: &Model) -> [&'static str; 2] {
     if model.body().formulation().is_axisymmetric() { ["r", "z"] } else { ["x", "y"] }
 }
 
-/// Contact forces, reactions of supports and loads, each with its point of application and the displacement of that point.
+/// Contact forces, reactions of supports and loads, each with its point of application and the displacement of that
+/// point.
 fn arrows(answer: &Answer) -> Result<Vec<Arrow>, Error> {
     let model = answer.model();
     let unit = &model.units().force;
@@ -227,8 +228,8 @@ fn arrows(answer: &Answer) -> Result<Vec<Arrow>, Error> {
     Ok(arrows)
 }
 
-/// Draws a series with common colours, a common window and a common magnification: those of its first `leading` pictures. The ends of
-/// the colour bar mark values outside the colours.
+/// Draws a series with common colours, a common window and a common magnification: those of its first `leading`
+/// pictures. The ends of the colour bar mark values outside the colours.
 ///
 /// # Errors
 /// As [`ContactPicture::draw`] and [`Drawing::write`](crate::Drawing::write).

@@ -87,7 +87,8 @@ fn set_up(model: &Model) -> Result<Drawing, Error> {
     Ok(drawing)
 }
 
-/// Scene, forces of obstacles, and the smallest gap with its place: the gap of the scene says little if the shapes have another one.
+/// Scene, forces of obstacles, and the smallest gap with its place: the gap of the scene says little if the shapes have
+/// another one.
 fn title(model: &Model) -> String {
     let smallest = model.rows().iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
     let Some(row) = smallest else { return format!("{}, set-up", headline(model)) };
@@ -99,8 +100,8 @@ fn title(model: &Model) -> String {
     parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-/// The nodes of a body, each with the vector from the mean of the centroids of the cells around it; it points out of the body at nodes of
-/// the boundary.
+/// The nodes of a body, each with the vector from the mean of the centroids of the cells around it; it points out of
+/// the body at nodes of the boundary.
 struct Outwards {
     nodes: Vec<[f64; 2]>,
     out: Vec<[f64; 2]>,
@@ -157,7 +158,8 @@ fn arrows(model: &Model, body: &Outwards, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
     shown.map(|gathered| gathered.arrow(LONGEST / longest)).collect()
 }
 
-/// The same loads; those closer to each other than half a square, on both sides of a border between squares, share an arrow.
+/// The same loads; those closer to each other than half a square, on both sides of a border between squares, share an
+/// arrow.
 fn merged(squares: impl Iterator<Item = Gathered>) -> Vec<Gathered> {
     let mut merged: Vec<Gathered> = Vec::new();
     for one in squares {

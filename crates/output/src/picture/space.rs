@@ -194,8 +194,8 @@ impl SpacePicture<'_> {
         COLUMNS[self.medium as usize]
     }
 
-    /// Draws the visible faces from far to near, in the colours of the field or their own. Faces that turn away from the light are
-    /// darker.
+    /// Draws the visible faces from far to near, in the colours of the field or their own. Faces that turn away from
+    /// the light are darker.
     fn draw_body(&self, drawing: &mut Drawing, view: &View, place: &Place, range: Option<&ColourRange>) {
         let light = {
             let towards = [0, 1, 2].map(|axis| view.eye[axis] + 0.5 * view.up[axis] - 0.35 * view.right[axis]);

@@ -86,8 +86,8 @@ struct Shared {
     obstacle: Option<usize>,
 }
 
-/// Draws a series of one model in space with common colours, a common magnification and a common part of the contact: those of its
-/// first `leading` pictures.
+/// Draws a series of one model in space with common colours, a common magnification and a common part of the contact:
+/// those of its first `leading` pictures.
 ///
 /// # Errors
 /// As [`Drawing::write`](crate::Drawing::write).
@@ -125,7 +125,8 @@ fn faces(model: &Model) -> Vec<Face> {
     model.body().regions().iter().flat_map(of_region).collect()
 }
 
-/// The picture of a body in space before it is solved: the supported, loaded and candidate faces, and the obstacles at their gap.
+/// The picture of a body in space before it is solved: the supported, loaded and candidate faces, and the obstacles at
+/// their gap.
 pub(crate) fn space_set_up(model: &Model, title: &str) -> Drawing {
     let nodes = model.mesh().nodes();
     let faces = faces(model);
@@ -195,8 +196,8 @@ fn outline(kind: FacetKind, facet: &[usize]) -> Vec<usize> {
     sides.flat_map(|(place, ends)| [facet[ends[0]], facet[reference.corners + place]]).collect()
 }
 
-/// The rigid obstacles over their facets with a row at every node, as far as they are near. `moved` gives the travel of an obstacle
-/// against its approach direction, and the shift with which it is drawn.
+/// The rigid obstacles over their facets with a row at every node, as far as they are near. `moved` gives the travel of
+/// an obstacle against its approach direction, and the shift with which it is drawn.
 fn sheets(model: &Model, moved: impl Fn(usize) -> (f64, [f64; 3])) -> Vec<Sheet> {
     let (nodes, near) = (model.mesh().nodes(), NEAR * model.mesh().size());
     let sheet = |(index, placed): (usize, &PlacedObstacle)| {
@@ -252,7 +253,8 @@ fn plan(answer: &Answer, obstacle: usize) -> Plan {
     }
 }
 
-/// The window around the cells at closed nodes, with a margin, within the boundary; the whole boundary if no node is closed.
+/// The window around the cells at closed nodes, with a margin, within the boundary; the whole boundary if no node is
+/// closed.
 fn plan_window(nodes: &[[f64; 2]], cells: &[Vec<usize>], is_closed: &[bool]) -> [[f64; 2]; 2] {
     let bounds = |chosen: &dyn Fn(&Vec<usize>) -> bool| {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];

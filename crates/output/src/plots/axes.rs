@@ -175,8 +175,8 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// The axes of a window `[[x from, x to], [y from, y to]]`, as large as the larger of two sizes in pixels allows; white space fills
-    /// what is missing to the smaller one.
+    /// The axes of a window `[[x from, x to], [y from, y to]]`, as large as the larger of two sizes in pixels allows;
+    /// white space fills what is missing to the smaller one.
     pub fn of([mut x, mut y]: [[f64; 2]; 2], [most, least]: [[f64; 2]; 2], names: &[Quantity; 2]) -> Self {
         let scale = (most[0] / (x[1] - x[0])).min(most[1] / (y[1] - y[0]));
         for (range, smallest) in [(&mut x, least[0]), (&mut y, least[1])] {

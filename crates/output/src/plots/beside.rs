@@ -5,8 +5,8 @@ use crate::draw::colour::{Colour, WHITE};
 use crate::draw::drawing::{Anchor, Drawing, Paint};
 use crate::draw::typeface::{self, Weight};
 
-/// Possible positions of a name beside a point: pixels to the right (negative to the left, zero centred), and the distance of its upper
-/// edge below the point in multiples of its height.
+/// Possible positions of a name beside a point: pixels to the right (negative to the left, zero centred), and the
+/// distance of its upper edge below the point in multiples of its height.
 const BESIDE: [(f64, f64); 14] = [
     (12.0, -0.5),
     (-12.0, -0.5),

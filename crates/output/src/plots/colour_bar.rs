@@ -37,7 +37,8 @@ impl Outside {
 /// A range of values with its bands of colour. The edges of the bands include the ticks of the bar.
 pub(crate) struct ColourRange {
     axis: Axis,
-    /// Every band as its lower level with its colour: it is painted over the lower bands; the first one covers everything.
+    /// Every band as its lower level with its colour: it is painted over the lower bands; the first one covers
+    /// everything.
     bands: Vec<(f64, Colour)>,
 }
 

@@ -8,8 +8,8 @@ pub enum Medium {
     /// SVG and PNG with a title.
     #[default]
     Screen,
-    /// PDF and SVG, as wide as one column of a journal (85 mm) or two (170 mm), with letters on the panels and without a title, which
-    /// belongs in the caption.
+    /// PDF and SVG, as wide as one column of a journal (85 mm) or two (170 mm), with letters on the panels and without
+    /// a title, which belongs in the caption.
     Paper,
 }
 

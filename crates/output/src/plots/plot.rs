@@ -266,8 +266,8 @@ impl Plot {
 
 /// Draws the plots side by side under one title.
 ///
-/// The legend is placed so that it covers no line, or below the axes if that is not possible. Values that cannot be shown
-/// (not finite, or not positive on a logarithmic axis) interrupt their line; a plot without any says `no data`.
+/// The legend is placed so that it covers no line, or below the axes if that is not possible. Values that cannot be
+/// shown (not finite, or not positive on a logarithmic axis) interrupt their line; a plot without any says `no data`.
 ///
 /// ```
 /// use signorini_output::{Plot, Quantity, Series, line_plots};

@@ -8,8 +8,8 @@ pub(crate) const KEY: f64 = 42.0;
 
 const DASHES: [&[f64]; 5] = [&[], &[9.0, 4.0], &[2.5, 3.5], &[12.0, 4.0, 2.5, 4.0], &[5.0, 3.0]];
 
-/// Colours and widths of nested lines and their markers; the first line is the widest, a fifth repeats the last. The fourth, a formula,
-/// has no markers.
+/// Colours and widths of nested lines and their markers; the first line is the widest, a fifth repeats the last. The
+/// fourth, a formula, has no markers.
 const NESTED: [(Colour, f64, f64); 4] = [
     (Colour(0x8c, 0xc9, 0xee), 9.0, 9.0),
     (Colour(0xe0, 0x6c, 0x10), 4.2, 5.2),
@@ -30,7 +30,8 @@ impl Style {
         Style { index, nested: false }
     }
 
-    /// The look of the line with this index among lines that become thinner one by one, so that coinciding lines are all visible.
+    /// The look of the line with this index among lines that become thinner one by one, so that coinciding lines are
+    /// all visible.
     pub fn nested(index: usize) -> Self {
         Style { index, nested: true }
     }

@@ -20,8 +20,8 @@ impl Quantity {
         if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
     }
 
-    /// The label of an axis with ticks in multiples of ten to the `exponent`: `contact pressure p (MPa)` for pascals and 6; with the
-    /// power of ten if the unit takes no prefix.
+    /// The label of an axis with ticks in multiples of ten to the `exponent`: `contact pressure p (MPa)` for pascals
+    /// and 6; with the power of ten if the unit takes no prefix.
     pub fn label(&self, exponent: i32) -> String {
         if let Some(unit) = prefixed(&self.unit, exponent).filter(|_| exponent != 0) {
             return format!("{} ({unit})", self.name);
@@ -42,8 +42,8 @@ const PREFIXES: [(&str, i32); 8] = [("n", -9), ("µ", -6), ("m", -3), ("", 0), (
 /// Units that take prefixes, with the largest exponent in use: nobody writes megametres.
 const BASES: [(&str, i32); 5] = [("Pa", 12), ("N", 12), ("J", 12), ("m", 3), ("s", 0)];
 
-/// `unit` times ten to the `exponent` as a unit with a prefix: `Pa` and 6 are `MPa`, `kN/m` and 3 `MN/m`. `None` if the unit has no
-/// such prefix.
+/// `unit` times ten to the `exponent` as a unit with a prefix: `Pa` and 6 are `MPa`, `kN/m` and 3 `MN/m`. `None` if the
+/// unit has no such prefix.
 fn prefixed(unit: &str, exponent: i32) -> Option<String> {
     let end = unit.find(['/', ' ', '·']).unwrap_or(unit.len());
     let (head, rest) = unit.split_at(end);

@@ -55,7 +55,8 @@ pub fn rows_at_kink(found: &Sensitivities) -> String {
     kink_text(found)
 }
 
-/// For each output with known derivatives with respect to the places of all nodes their table: the name of its file and its text.
+/// For each output with known derivatives with respect to the places of all nodes their table: the name of its file and
+/// its text.
 pub fn tables_of_places(found: &Sensitivities) -> Vec<(String, String)> {
     let of_output = |(index, output)| Some((format!("nodes-{index}.csv"), places_csv(found.answer.model(), output)?));
     found.outputs.iter().enumerate().filter_map(of_output).collect()

@@ -33,8 +33,8 @@ pub struct MotionReport<'a> {
 }
 
 impl MotionReport<'_> {
-    /// Unstable if the energy grew by more than the work of the loads. Certified if the contact problems of all steps are certified:
-    /// not if springs replace closed rows, and not if the motion was cut short.
+    /// Unstable if the energy grew by more than the work of the loads. Certified if the contact problems of all steps
+    /// are certified: not if springs replace closed rows, and not if the motion was cut short.
     pub fn status(&self) -> Status {
         if !self.summary.warnings().is_empty() {
             return Status::Unstable;

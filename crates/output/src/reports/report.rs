@@ -172,8 +172,8 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
     obstacle_table("", &[(String::new(), contact)], units).lines().map(|line| line.trim_start().into()).collect()
 }
 
-/// The table of obstacles and pairs of bodies at each of some values of a quantity, a line for each; without a name the values are left
-/// out.
+/// The table of obstacles and pairs of bodies at each of some values of a quantity, a line for each; without a name the
+/// values are left out.
 fn obstacle_table(name: &str, contacts: &[(String, &ContactSummary)], units: &Units) -> String {
     let all = || contacts.iter().flat_map(|(_, contact)| &contact.obstacles);
     let has_width = all().any(|one| one.estimate.is_some_and(|estimate| estimate.width.is_some()));
@@ -214,7 +214,8 @@ fn obstacle_table(name: &str, contacts: &[(String, &ContactSummary)], units: &Un
     columns(&table(&ones.collect::<Vec<_>>(), &kept))
 }
 
-/// Components below this share of the largest one, and uncertainties below this share of their value, are rounding in a text.
+/// Components below this share of the largest one, and uncertainties below this share of their value, are rounding in a
+/// text.
 const SHOWN: f64 = 1e-11;
 
 /// Resultants and segments that are shown; the JSON report has all.

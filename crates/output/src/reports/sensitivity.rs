@@ -111,7 +111,8 @@ fn with_unit(number: &str, unit: &str) -> String {
     if unit.is_empty() { number.to_string() } else { format!("{number} {unit}") }
 }
 
-/// The derivatives of an output with respect to the places of all nodes, as comma-separated values; `None` if they are not known.
+/// The derivatives of an output with respect to the places of all nodes, as comma-separated values; `None` if they are
+/// not known.
 pub(crate) fn places_csv(model: &Model, output: &Sensitivity) -> Option<String> {
     let places = output.by.iter().find_map(|row| row.places.as_ref()?.proven())?;
     let (dimension, axes) = (model.body().dimension(), ["x", "y", "z"]);

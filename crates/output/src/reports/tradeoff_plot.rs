@@ -72,7 +72,8 @@ pub(crate) fn tradeoff_plot(medium: Medium, title: &str, tradeoff: &Tradeoff) ->
     line_plots_for(medium, title, &panels)
 }
 
-/// Total error over time: a curve for each way, a point for each mesh: the cheapest answer with hardly more error than the mesh.
+/// Total error over time: a curve for each way, a point for each mesh: the cheapest answer with hardly more error than
+/// the mesh.
 pub(crate) fn total_error_plot(medium: Medium, title: &str, tradeoff: &Tradeoff) -> Drawing {
     let near = |point: &&TradeoffPoint| {
         let of_mesh = tradeoff.meshes.get(point.mesh).and_then(|mesh| mesh.discretisation_error);

@@ -126,7 +126,8 @@ impl<'a> Contacts<'a> {
 }
 
 impl Along {
-    /// A plot of each quantity but the place over the length of the line, with a line for each body; without those that are known nowhere.
+    /// A plot of each quantity but the place over the length of the line, with a line for each body; without those that
+    /// are known nowhere.
     pub fn plots(&self, model: &Model) -> Vec<Plot> {
         let regions = model.body().regions();
         let mut plots = Vec::new();

@@ -8,8 +8,8 @@ use signorini_mechanics::study::{Level, LevelKind, ObstacleContact, Sweep, Sweep
 /// A plotted value of an item.
 type Value<'a, T> = &'a dyn Fn(&T) -> f64;
 
-/// Force, contact width (outside plane strain and plane stress, area) and peak pressure over the gap or force of a sweep; of each obstacle,
-/// if there are several.
+/// Force, contact width (outside plane strain and plane stress, area) and peak pressure over the gap or force of a
+/// sweep; of each obstacle, if there are several.
 pub(crate) fn sweep_plots(sweep: &Sweep) -> Vec<Plot> {
     let points = &sweep.points;
     let Some(first) = points.first() else { return Vec::new() };

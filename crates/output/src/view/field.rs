@@ -1,4 +1,5 @@
-//! The fields of an answer: a name, a unit, and values at the nodes and in the elements. All media take them from this list.
+//! The fields of an answer: a name, a unit, and values at the nodes and in the elements. All media take them from this
+//! list.
 
 use super::limits::{ROUNDING, limits_without, singular};
 use crate::plots::ticks::Quantity;
@@ -38,8 +39,8 @@ pub(crate) struct Colours {
 pub(crate) enum Between {
     /// The page computes it from the stress, which is linear in the answer.
     FromStress,
-    /// The square of the mixture of the roots. An energy is a square of the stress: the value is exact where all components grow by one
-    /// factor, and too large elsewhere.
+    /// The square of the mixture of the roots. An energy is a square of the stress: the value is exact where all
+    /// components grow by one factor, and too large elsewhere.
     OfRoots,
 }
 
@@ -47,11 +48,13 @@ pub(crate) enum Between {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source<'a> {
     pub answer: &'a Answer,
-    /// The nodal velocities of a motion, `dim` a node. Its reactions are not those of an equilibrium: they are left out.
+    /// The nodal velocities of a motion, `dim` a node. Its reactions are not those of an equilibrium: they are left
+    /// out.
     pub velocity: Option<&'a [f64]>,
 }
 
-/// The values of a field, empty where it has none: in the order of the mesh, all components of a node or an element together.
+/// The values of a field, empty where it has none: in the order of the mesh, all components of a node or an element
+/// together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Values {
     pub at_nodes: Vec<f64>,
@@ -153,8 +156,9 @@ impl Source<'_> {
         Ok(Values { at_nodes, in_elements })
     }
 
-    /// The strain energy over the volume, of the components with a strain in the model, from the stress at the centroid of each element and
-    /// at each node; where materials meet, the mean over the elements around the node, each with its own law and stress.
+    /// The strain energy over the volume, of the components with a strain in the model, from the stress at the centroid
+    /// of each element and at each node; where materials meet, the mean over the elements around the node, each with
+    /// its own law and stress.
     fn energy_density(&self) -> Result<Values, Error> {
         let (stress, body) = (self.answer.stress()?, self.answer.model().body());
         let (nodes, mut sums) = (body.mesh().nodes(), vec![(0.0, 0.0); stress.nodes.len()]);

@@ -26,9 +26,9 @@ pub(crate) struct Step {
 /// The displacement and the multiplier of an iteration; `None` if it has none.
 type Found = Option<(Vec<f64>, Vec<f64>)>;
 
-/// For each contact set of the history of a body in the plane or in space: the displacement with the rows of the set held at their
-/// gaps. For a penalty loop: one displacement for each penalty, with its settled set. A set that does not hold the body by itself has
-/// no displacement and is left out.
+/// For each contact set of the history of a body in the plane or in space: the displacement with the rows of the set
+/// held at their gaps. For a penalty loop: one displacement for each penalty, with its settled set. A set that does not
+/// hold the body by itself has no displacement and is left out.
 ///
 /// # Errors
 /// [`qp::Error::Length`] for the history of another model.

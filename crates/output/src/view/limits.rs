@@ -1,5 +1,5 @@
-//! The range of the values of a field, without nodes at which the stress has no limit: under a point load, and at the support of a
-//! single node.
+//! The range of the values of a field, without nodes at which the stress has no limit: under a point load, and at the
+//! support of a single node.
 
 use crate::plots::ticks::Scale;
 use signorini_mechanics::scene::{Hold, Model};
@@ -7,8 +7,8 @@ use signorini_mechanics::scene::{Hold, Model};
 /// Values that differ by less than this share of the largest differ by rounding: a picture would show noise as data.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// For each node of a body in the plane or in space: `true` if it shares an element with a node that alone is loaded, or alone is held.
-/// The stress of these nodes grows with every refinement and says nothing of the rest of the body.
+/// For each node of a body in the plane or in space: `true` if it shares an element with a node that alone is loaded,
+/// or alone is held. The stress of these nodes grows with every refinement and says nothing of the rest of the body.
 pub(crate) fn singular(model: &Model) -> Vec<bool> {
     let (mesh, dimension) = (model.mesh(), model.mesh().dimension());
     let count = mesh.nodes().len();

@@ -1,9 +1,9 @@
 //! How a displacement is magnified beside rigid obstacles.
 //!
-//! The displacement of the body is drawn `m` times as large. An obstacle is rigid: it is shifted as a whole by `m - 1` times the mean
-//! displacement of the nodes that it touches, and keeps its shape. Body and obstacle then touch in the picture at the centre of their
-//! contact. Beside it they touch to within `m - 1` times the differences of the displacement, and `m` is at most so large that nobody
-//! sees them.
+//! The displacement of the body is drawn `m` times as large. An obstacle is rigid: it is shifted as a whole by `m - 1`
+//! times the mean displacement of the nodes that it touches, and keeps its shape. Body and obstacle then touch in the
+//! picture at the centre of their contact. Beside it they touch to within `m - 1` times the differences of the
+//! displacement, and `m` is at most so large that nobody sees them.
 
 use signorini_mechanics::fem::geometry::{length, minus};
 use signorini_mechanics::scene::{Answer, Model};
@@ -11,14 +11,14 @@ use signorini_qp::dot;
 
 /// The largest displacement is drawn at about this share of the size of the body.
 const SEEN: f64 = 0.05;
-/// The distance between a closed node and the drawn obstacle, and the depth of an open node in it, are at most this share of the size
-/// of the body: less than a dot.
+/// The distance between a closed node and the drawn obstacle, and the depth of an open node in it, are at most this
+/// share of the size of the body: less than a dot.
 const UNSEEN: f64 = 0.01;
 /// The same as a share of the extent of the contact, which may be drawn enlarged.
 const UNSEEN_IN_CONTACT: f64 = 0.05;
 
-/// Magnification that makes the displacement visible: 1, 2 or 5 times a power of ten, at least 1. It is 1 if another body is an
-/// obstacle, because that body is displaced by itself.
+/// Magnification that makes the displacement visible: 1, 2 or 5 times a power of ten, at least 1. It is 1 if another
+/// body is an obstacle, because that body is displaced by itself.
 pub(crate) fn magnification(answer: &Answer) -> f64 {
     let (model, dimension) = (answer.model(), answer.model().mesh().dimension());
     if has_pairs(model) {
@@ -32,8 +32,9 @@ pub(crate) fn magnification(answer: &Answer) -> f64 {
     rounded_down(fits.fold(most, f64::min))
 }
 
-/// The mean displacement of the nodes that touch an obstacle, weighted with their forces, in the unit of length. Without contact it is
-/// that of the surface at the deepest node in the obstacle, as in the first steps of a search; zero if no node is inside.
+/// The mean displacement of the nodes that touch an obstacle, weighted with their forces, in the unit of length.
+/// Without contact it is that of the surface at the deepest node in the obstacle, as in the first steps of a search;
+/// zero if no node is inside.
 pub(crate) fn carried(answer: &Answer, obstacle: usize) -> [f64; 3] {
     let dimension = answer.model().mesh().dimension();
     let rows = answer.model().rows().iter().zip(answer.multiplier());
@@ -66,7 +67,8 @@ pub(crate) fn obstacle_name(magnification: f64) -> &'static str {
     if magnification == 1.0 { "obstacle" } else { "obstacle, rigid, shifted with its contact" }
 }
 
-/// The largest magnification at which contact looks like contact: closed nodes lie on the drawn obstacle, open nodes outside.
+/// The largest magnification at which contact looks like contact: closed nodes lie on the drawn obstacle, open nodes
+/// outside.
 fn most_beside(answer: &Answer, obstacle: usize, size: f64) -> f64 {
     let (model, dimension) = (answer.model(), answer.model().mesh().dimension());
     let (carried, remaining) = (carried(answer, obstacle), answer.remaining_gaps());

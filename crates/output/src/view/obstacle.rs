@@ -1,4 +1,5 @@
-//! Obstacles as they are shown: a line in the plane, the part that faces the body in space, and the eye that sees the contact.
+//! Obstacles as they are shown: a line in the plane, the part that faces the body in space, and the eye that sees the
+//! contact.
 
 use signorini_mechanics::fem::geometry::{length, minus};
 use signorini_mechanics::scene::Model;
@@ -13,7 +14,8 @@ const EYE: [f64; 3] = [0.5, -0.8, 0.55];
 /// Slope of the line of sight against the contact of two bodies.
 const TILT: f64 = 0.35;
 
-/// The line of an obstacle that is shifted along its approach direction; before a bar a wall. Empty in space and for another body.
+/// The line of an obstacle that is shifted along its approach direction; before a bar a wall. Empty in space and for
+/// another body.
 pub(crate) fn outline(model: &Model, obstacle: usize, shift: f64) -> Vec<[f64; 2]> {
     match model.mesh().dimension() {
         1 => wall(model, obstacle),
@@ -21,8 +23,8 @@ pub(crate) fn outline(model: &Model, obstacle: usize, shift: f64) -> Vec<[f64; 2
     }
 }
 
-/// The wall that a bar meets: a line across the bar at the point at which the row of its end meets the obstacle. Empty for another
-/// body.
+/// The wall that a bar meets: a line across the bar at the point at which the row of its end meets the obstacle. Empty
+/// for another body.
 fn wall(model: &Model, index: usize) -> Vec<[f64; 2]> {
     let rigid = model.obstacles()[index].rigid();
     let row = model.rows().iter().find(|row| row.obstacle == index).filter(|_| rigid.is_some());
@@ -32,16 +34,16 @@ fn wall(model: &Model, index: usize) -> Vec<[f64; 2]> {
     })
 }
 
-/// The nodes of the rows of an obstacle, each with the vector from its undeformed position to the obstacle, which has moved by `travel`
-/// against its approach direction.
+/// The nodes of the rows of an obstacle, each with the vector from its undeformed position to the obstacle, which has
+/// moved by `travel` against its approach direction.
 pub(crate) fn ways_to_obstacle(model: &Model, obstacle: usize, travel: f64) -> Vec<(usize, [f64; 3])> {
     let approach = model.obstacles()[obstacle].approach();
     let rows = model.rows().iter().filter(|row| row.obstacle == obstacle && length(row.normal) > 0.0);
     rows.map(|row| (row.node, row.normal.map(|part| (row.gap - travel * dot(&row.normal, &approach)) * part))).collect()
 }
 
-/// Direction from the body to the eye: on the side of the obstacle in view. Another body would hide the contact from there: the eye is
-/// then beside the contact, a little on the side of the smaller of the two bodies.
+/// Direction from the body to the eye: on the side of the obstacle in view. Another body would hide the contact from
+/// there: the eye is then beside the contact, a little on the side of the smaller of the two bodies.
 pub(crate) fn eye(model: &Model, obstacle: Option<usize>) -> [f64; 3] {
     let Some(placed) = obstacle.and_then(|obstacle| model.obstacles().get(obstacle)) else { return EYE };
     let approach = placed.approach();

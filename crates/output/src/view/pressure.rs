@@ -13,7 +13,8 @@ use signorini_qp::dot;
 /// The part of the boundary that is shown reaches beyond the contact by this share of its length.
 const BEYOND: f64 = 0.4;
 
-/// Hertz's solution is that of half planes and half spaces: the contact is at most this share of the smallest extent of the body.
+/// Hertz's solution is that of half planes and half spaces: the contact is at most this share of the smallest extent of
+/// the body.
 const SMALL_CONTACT: f64 = 0.08;
 
 /// The gap must be a parabola over the contact to this share of its depth.
@@ -117,8 +118,8 @@ impl Arc {
     }
 }
 
-/// Hertz's pressure of the same force, if his theory applies: bodies of one isotropic material each that are large beside the contact,
-/// and a parabolic gap.
+/// Hertz's pressure of the same force, if his theory applies: bodies of one isotropic material each that are large
+/// beside the contact, and a parabolic gap.
 ///
 /// # Source
 /// K. L. Johnson, *Contact Mechanics*, Cambridge (1985), equations 4.45 and 3.39.
@@ -148,7 +149,8 @@ fn hertz(answer: &Answer, obstacle: usize, along: &[(f64, usize)]) -> Option<Ser
     if !(half > 0.0 && half <= SMALL_CONTACT * smallest) {
         return None;
     }
-    // Points are denser at the edge, where the pressure falls like a square root; a body of revolution has one side of the contact.
+    // Points are denser at the edge, where the pressure falls like a square root; a body of revolution has one side of
+    // the contact.
     let place = |k: i32| (0.5 * std::f64::consts::PI * f64::from(k) / 60.0).sin();
     let points = (-60..=60).map(place).map(|x| [centre + half * x, peak * (1.0 - x * x).max(0.0).sqrt()]);
     let (slack, first, last) = (1e-9 * smallest, along.first()?.0, along.last()?.0);

@@ -13,8 +13,8 @@ use crate::problem::ContactProblem;
 use crate::solution::{Cancellation, Certificate};
 use crate::watch::Watch;
 
-/// Rounding moves an entry of u or lambda by half a unit in the last place: once for the rounding and once for the arithmetic
-/// that made the entry, their sum is excused.
+/// Rounding moves an entry of u or lambda by half a unit in the last place: once for the rounding and once for the
+/// arithmetic that made the entry, their sum is excused.
 const ENTRY_ROUNDING: f64 = f64::EPSILON;
 
 /// The means by which the error is bounded in energy.
@@ -25,8 +25,8 @@ pub(crate) enum Bounding<'a> {
     OwnFactor,
     /// A factor that is at hand.
     Factor(EnergyNorm),
-    /// The cycles of the hierarchy of K, which need no factor and rest on a measured eigenvalue. There is no bound if K is singular
-    /// to the precision of its levels, or if the watch is over before it is found.
+    /// The cycles of the hierarchy of K, which need no factor and rest on a measured eigenvalue. There is no bound if K
+    /// is singular to the precision of its levels, or if the watch is over before it is found.
     Cycles(&'a Multigrid, Watch),
     /// The certificates of pieces without coupling, of which the answer was put together.
     Pieces(&'a [Certificate]),
@@ -61,11 +61,12 @@ fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
 
 impl ContactProblem {
     /// The certificate of an answer: displacement u (length n, in m) and multiplier lambda (length m, in N, `<= 0` in
-    /// compression; with equality rows followed by theirs, of either sign), with the energy bound if K is positive definite or the rows
-    /// that press hold the body.
+    /// compression; with equality rows followed by theirs, of either sign), with the energy bound if K is positive
+    /// definite or the rows that press hold the body.
     ///
     /// # Errors
-    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of memory.
+    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of
+    /// memory.
     pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
         Ok(self.examine(&Bounding::OwnFactor, displacement, multiplier)?.certificate)
     }
@@ -84,7 +85,8 @@ impl ContactProblem {
         }
         let one_level = |multigrid: &Multigrid| multigrid.unknowns().len() <= 1;
         let by = match by {
-            // A hierarchy of one level is already a factor, with so few dofs that another one in double precision costs nothing.
+            // A hierarchy of one level is already a factor, with so few dofs that another one in double precision costs
+            // nothing.
             Bounding::Cycles(multigrid, _) if one_level(multigrid) => &Bounding::OwnFactor,
             by => by,
         };
@@ -129,8 +131,8 @@ impl ContactProblem {
         OfPart { strain, terms, moves, ..OfPart::default() }
     }
 
-    /// The displacement u with those parts at rest that may rest, which is an answer too; `None` if no part may. A method leaves the
-    /// rounding of forces as a displacement of a part at rest, which is wrong by all of it.
+    /// The displacement u with those parts at rest that may rest, which is an answer too; `None` if no part may. A
+    /// method leaves the rounding of forces as a displacement of a part at rest, which is wrong by all of it.
     pub(crate) fn at_rest(&self, u: &[f64], may_rest: &[usize]) -> Option<Vec<f64>> {
         let rests = |dof: usize| may_rest.contains(&self.parts().of_dof(dof));
         let at_rest = || u.iter().enumerate().map(|(dof, &u)| if rests(dof) { 0.0 } else { u }).collect();
@@ -209,8 +211,8 @@ impl ContactProblem {
         Examined { certificate, evidence, may_rest: scales.may_rest(&bound) }
     }
 
-    /// The largest imbalance of forces above rounding, relative to the largest of the forces that balance on the part; on a dof without
-    /// stiffness, to those on the dof.
+    /// The largest imbalance of forces above rounding, relative to the largest of the forces that balance on the part;
+    /// on a dof without stiffness, to those on the dof.
     fn imbalance(&self, residual: &[f64], terms: impl Fn(usize) -> f64) -> f64 {
         let (parts, roots) = (self.parts(), &self.diagonal().roots);
         let (mut left, mut largest, mut without_stiffness) = (vec![0.0; parts.count()], vec![0.0; parts.count()], 0.0);
@@ -264,8 +266,8 @@ impl ContactProblem {
 
     /// The same, with its terms.
     fn accurate_balance(&self, u: &[f64], multipliers: &[&[f64]]) -> Balance {
-        // Summed with opposite sign, K u first: if a body moves far and bends little, its energy is so small that forces
-        // rounded first would leave nothing of that energy.
+        // Summed with opposite sign, K u first: if a body moves far and bends little, its energy is so small that
+        // forces rounded first would leave nothing of that energy.
         let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
         let terms = sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
         let strain = sums.products_by(u, |_| 0, 1)[0];
@@ -419,7 +421,8 @@ mod tests {
         assert!(right.meets(1e-12), "{right:?}");
         let off = problem.certify(&[0.75, 0.0], &[-5.0, 0.0, 0.0]).unwrap();
         assert!((off.energy_error / 0.5 - 1.0).abs() < ROUNDED, "{off:?}");
-        // A force on the loose dof that no row takes has no bound, and neither has one that rows take with another force.
+        // A force on the loose dof that no row takes has no bound, and neither has one that rows take with another
+        // force.
         assert!(!problem.certify(&[1.0, 0.0], &[-4.0, -1e-30, 0.0]).unwrap().has_bound());
         // Without clearance the walls are an equality, which holds the dof by any force.
         let held = problem.with_gap(vec![1.0, 0.0, 0.0]).unwrap();

@@ -13,7 +13,8 @@ use crate::watch::Watch;
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
 const LARGEST_SHARE: f64 = 0.25;
 
-/// Up to this number, contact dofs are ordered last whatever their share: their dense matrices cost less than a millisecond.
+/// Up to this number, contact dofs are ordered last whatever their share: their dense matrices cost less than a
+/// millisecond.
 const FEW_DOFS: usize = 100;
 
 /// The true contraction may be larger than the measured one by this factor.
@@ -55,8 +56,8 @@ pub(crate) struct EnergyNorm {
     pub(super) watch: Watch,
 }
 
-/// Dofs without stiffness, load and contact force. The energy does not see them: in the norm they have a stiffness of one, on
-/// which no force may act.
+/// Dofs without stiffness, load and contact force. The energy does not see them: in the norm they have a stiffness of
+/// one, on which no force may act.
 #[derive(Clone, Debug)]
 pub(super) struct Loose {
     /// The dofs.
@@ -106,8 +107,8 @@ pub(super) struct Known {
 }
 
 impl EnergyNorm {
-    /// The energy norm of `stiffness`, with the boundary of the dofs in the rows `contact`; `None` if the stiffness is not
-    /// positive definite to working precision.
+    /// The energy norm of `stiffness`, with the boundary of the dofs in the rows `contact`; `None` if the stiffness is
+    /// not positive definite to working precision.
     ///
     /// # Errors
     /// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
@@ -123,8 +124,8 @@ impl EnergyNorm {
         Ok(definite.map(|cholesky| Self::new(cholesky, equilibration, dofs)))
     }
 
-    /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or none if
-    /// that is most of the body and the factor is not a whole triangle anyway.
+    /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or
+    /// none if that is most of the body and the factor is not a whole triangle anyway.
     pub fn last_dofs(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Vec<usize> {
         let dofs: Vec<usize> =
             (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect();
@@ -132,7 +133,8 @@ impl EnergyNorm {
         if dofs.len() > most && !Analysis::is_dense_for(stiffness) { Vec::new() } else { dofs }
     }
 
-    /// The energy norm from an available factor of the equilibrated stiffness `c D K D`, with `last` as its last columns.
+    /// The energy norm from an available factor of the equilibrated stiffness `c D K D`, with `last` as its last
+    /// columns.
     pub fn new(cholesky: Cholesky, equilibration: Equilibration, last: Vec<usize>) -> Self {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
@@ -141,8 +143,8 @@ impl EnergyNorm {
         EnergyNorm { cholesky, equilibration, boundary, known: None, widening: 1.0, springs: None, loose: None, watch }
     }
 
-    /// The same norm with the compliance of the rows `contact`, if it serves balances of forces: the rows are `scaled` by D and by powers
-    /// of two with the exponents `shift`.
+    /// The same norm with the compliance of the rows `contact`, if it serves balances of forces: the rows are `scaled`
+    /// by D and by powers of two with the exponents `shift`.
     pub fn with_rows(self, contact: &SparseMatrix, scaled: &SparseMatrix, shift: &[i32]) -> Self {
         let last = self.boundary.as_ref().map_or(&[][..], |boundary| &boundary.dofs);
         let known = Compliance::of(&self.cholesky, last, scaled).map(|compliance| {
@@ -183,8 +185,8 @@ impl EnergyNorm {
         EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }
     }
 
-    /// An estimate from below of `|I - K~^-1 K|` for this factor K~ and the stiffness K: by some steps of the power method,
-    /// since the steps of a refinement may be too few, or too short, to show it.
+    /// An estimate from below of `|I - K~^-1 K|` for this factor K~ and the stiffness K: by some steps of the power
+    /// method, since the steps of a refinement may be too few, or too short, to show it.
     pub fn contraction(&self, stiffness: &SymmetricMatrix) -> f64 {
         let (mut vector, mut contraction) = (generic(self.cholesky.dim(), 0), 0.0_f64);
         let size = |vector: &[f64]| dot(vector, &stiffness.mul(vector)).max(0.0).sqrt();
@@ -201,8 +203,8 @@ impl EnergyNorm {
         contraction
     }
 
-    /// Relative rounding of a norm that comes from sweeps through the factor: some units in the last place over the smallest
-    /// pivot, on a diagonal of order one.
+    /// Relative rounding of a norm that comes from sweeps through the factor: some units in the last place over the
+    /// smallest pivot, on a diagonal of order one.
     pub(super) fn rounding(&self) -> f64 {
         let share = SWEEP_ROUNDING * self.loss();
         if share < LOST { ROUNDED_BOUND + share } else { f64::INFINITY }
@@ -213,8 +215,8 @@ impl EnergyNorm {
         SWEEP_ROUNDING * self.loss() <= ROUNDED_BOUND - 1.0
     }
 
-    /// Amplification of the rounding of a force by a sweep, on a diagonal of order one: one over the smallest pivot, at least
-    /// one.
+    /// Amplification of the rounding of a force by a sweep, on a diagonal of order one: one over the smallest pivot, at
+    /// least one.
     pub(super) fn loss(&self) -> f64 {
         1.0 / self.cholesky.smallest_pivot().min(1.0)
     }
@@ -260,8 +262,8 @@ impl EnergyNorm {
         self.loose.as_ref().is_some_and(|loose| loose.rows[row])
     }
 
-    /// `L^-1 D r`, of which the [`length`](Self::length) is the energy norm of the displacement that the force r causes: the
-    /// squares of the interior added up, and the entries of the boundary.
+    /// `L^-1 D r`, of which the [`length`](Self::length) is the energy norm of the displacement that the force r
+    /// causes: the squares of the interior added up, and the entries of the boundary.
     pub(super) fn sweep(&self, force: &[f64]) -> (f64, Vec<f64>) {
         let swept = self.cholesky.forward(&self.scaled(force));
         let size = self.boundary.as_ref().map_or(0, |boundary| boundary.dofs.len());
@@ -274,8 +276,8 @@ impl EnergyNorm {
         ldexp(square, self.equilibration.factor).sqrt()
     }
 
-    /// The rows of `contact` that `counts`, on the boundary, and no entry of the others; `None` if the boundary is not known, or if such
-    /// a row reaches beyond it.
+    /// The rows of `contact` that `counts`, on the boundary, and no entry of the others; `None` if the boundary is not
+    /// known, or if such a row reaches beyond it.
     pub(super) fn rows_on_boundary(
         &self,
         contact: &SparseMatrix,
@@ -350,8 +352,8 @@ mod tests {
         // For K~ = K + diag(e) on the diagonal only e / (4 + e) of the softest motion is missing at most.
         let found = norm(&pair(4.0 / 0.9, 0.45)).contraction(&stiffness);
         let (soft, stiff): (f64, f64) = (1.0 - 2.0 / (4.0 / 0.9 * 0.55), 1.0 - 6.0 / (4.0 / 0.9 * 1.45));
-        // Each step multiplies the component along (1, 1), of stiffness 2, by the one factor, and that along (1, -1), of 6, by
-        // the other.
+        // Each step multiplies the component along (1, 1), of stiffness 2, by the one factor, and that along (1, -1),
+        // of 6, by the other.
         let start = generic(2, 0);
         let energy = |steps: i32| {
             let (along, across) = ((start[0] + start[1]) * soft.powi(steps), (start[0] - start[1]) * stiff.powi(steps));

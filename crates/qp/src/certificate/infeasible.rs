@@ -7,8 +7,8 @@ use crate::problem::ContactProblem;
 /// Rows must overlap by this share of their weighted gaps, beyond the rounding of the gaps themselves.
 const OVERLAP: f64 = 4.0 * f64::EPSILON;
 
-/// Weights that do not cancel exactly prove nothing about a displacement that is large enough. A contradiction counts if such a
-/// displacement would have to be this many times larger than the gaps.
+/// Weights that do not cancel exactly prove nothing about a displacement that is large enough. A contradiction counts
+/// if such a displacement would have to be this many times larger than the gaps.
 const FAR: f64 = 1e8;
 
 impl ContactProblem {
@@ -28,13 +28,14 @@ impl ContactProblem {
         Error::Infeasible { reason, rows, weights, overlap }
     }
 
-    /// The length by which the contact rows `rows` overlap under the weights y, one for each row: `-g'y` if the largest weight
-    /// is one. `None` if y proves nothing.
+    /// The length by which the contact rows `rows` overlap under the weights y, one for each row: `-g'y` if the largest
+    /// weight is one. `None` if y proves nothing.
     ///
-    /// By Farkas' lemma no displacement satisfies `B u <= g` if and only if there are weights `y >= 0` with `B'y = 0` and
-    /// `g'y < 0`: the rows, weighted, would ask for `0 <= g'y`. Doubles may leave a share s of the terms `|B|'y` of a dof:
-    /// then a displacement that meets the rows is at least as large as `-g'y / s`, in the same terms, which must be 1e8
-    /// times `|g|'y`. All sums have twice the working precision, and neither scaled rows nor scaled dofs change the verdict.
+    /// By Farkas' lemma no displacement satisfies `B u <= g` if and only if there are weights `y >= 0` with `B'y = 0`
+    /// and `g'y < 0`: the rows, weighted, would ask for `0 <= g'y`. Doubles may leave a share s of the terms `|B|'y` of
+    /// a dof: then a displacement that meets the rows is at least as large as `-g'y / s`, in the same terms, which must
+    /// be 1e8 times `|g|'y`. All sums have twice the working precision, and neither scaled rows nor scaled dofs change
+    /// the verdict.
     pub fn overlap(&self, rows: &[usize], weights: &[f64]) -> Option<f64> {
         let size = largest(weights);
         let known = rows.iter().all(|&row| row < self.rows()) && rows.len() == weights.len();
@@ -100,7 +101,8 @@ mod tests {
 
     #[test]
     fn rows_that_cancel_to_a_billionth_contradict_each_other_unless_a_far_displacement_meets_both() {
-        // 1 - b of the terms 1 + b are left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 % of the terms.
+        // 1 - b of the terms 1 + b are left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 % of the
+        // terms.
         for (gap, proven) in [([-1.0, 0.92], false), ([-1.0, 0.89], true)] {
             let found = between(1.0 - 1e-9, gap).overlap(&[0, 1], &[1.0, 1.0]);
             assert_eq!(found.is_some(), proven, "{gap:?}: {found:?}");

@@ -7,8 +7,8 @@ use crate::problem::ContactProblem;
 /// A load drives a mode if its work is beyond this share of its terms.
 const DRIVES: f64 = 1e-9;
 
-/// The work of a load vanishes below this share of its terms, however the direction was found: if a load is out of balance by
-/// its last bit, some row holds it.
+/// The work of a load vanishes below this share of its terms, however the direction was found: if a load is out of
+/// balance by its last bit, some row holds it.
 const IDLE: f64 = 1e-29;
 
 /// Rounding of sums over a direction, as shares of their terms.
@@ -28,7 +28,8 @@ impl Rounding {
     /// For a direction in twice the working precision on which the stiffness does exactly no work.
     const OF_EXACT: Rounding = Rounding { entry: 1e-24, vanishes: 1e-28, zero: 1e-28, sure: 1e-28 };
 
-    /// For a rigid-body mode that the problem declares, which is known only as precisely as rounded entries of the stiffness.
+    /// For a rigid-body mode that the problem declares, which is known only as precisely as rounded entries of the
+    /// stiffness.
     const OF_ROUNDED: Rounding = Rounding { entry: 1e-9, vanishes: 1e-10, zero: 1e-15, sure: 1e-8 };
 
     pub fn of(null: &NullSpace) -> Self {
@@ -77,8 +78,8 @@ impl NullMode {
 }
 
 impl ContactProblem {
-    /// The null mode along a direction, if it is one: `K d` vanishes in every dof. There is no mode if it is not certain
-    /// whether the direction closes, opens or slides along a row.
+    /// The null mode along a direction, if it is one: `K d` vanishes in every dof. There is no mode if it is not
+    /// certain whether the direction closes, opens or slides along a row.
     pub(crate) fn mode_along(&self, direction: &[Twice], rounding: Rounding) -> Option<NullMode> {
         let by_size = |a: &&Twice, b: &&Twice| a.rounded().abs().total_cmp(&b.rounded().abs());
         let size = direction.iter().max_by(by_size)?.abs();

@@ -1,9 +1,10 @@
-//! The proof of the rows of obstacles that forces press: travels are dofs t without stiffness, `b'u + c t <= g`, c > 0, under a force F > 0.
+//! The proof of the rows of obstacles that forces press: travels are dofs t without stiffness, `b'u + c t <= g`, c > 0,
+//! under a force F > 0.
 //!
-//! The energy does not see a travel, but its rows do. Some row of it presses in the exact answer, because only rows carry F, and none is
-//! violated: `t* = min (g - b'u*)/c`. With the bound E on the error of the body in energy and the reach r of each row in the body, each term
-//! is known up to `r E / c`, and so is their least one. The proof is then that of the body alone, with rows that this uncertainty brings
-//! nearer.
+//! The energy does not see a travel, but its rows do. Some row of it presses in the exact answer, because only rows
+//! carry F, and none is violated: `t* = min (g - b'u*)/c`. With the bound E on the error of the body in energy and the
+//! reach r of each row in the body, each term is known up to `r E / c`, and so is their least one. The proof is then
+//! that of the body alone, with rows that this uncertainty brings nearer.
 
 use super::EnergyNorm;
 use super::conditions::{Bounding, Evidence};
@@ -27,7 +28,8 @@ struct Travel {
 }
 
 impl ContactProblem {
-    /// As [`ContactProblem::prove`], if dofs without stiffness are travels, and the rest is definite by itself; `None` otherwise.
+    /// As [`ContactProblem::prove`], if dofs without stiffness are travels, and the rest is definite by itself; `None`
+    /// otherwise.
     ///
     /// # Errors
     /// As [`ContactProblem::certify`].
@@ -61,8 +63,8 @@ impl ContactProblem {
         Ok(body.prove_by(&Bounding::Factor(norm), of_rows))
     }
 
-    /// The travels; `None` without any, or if a dof without stiffness is none: all of its rows stop the same sense of it, no other travel
-    /// is in them, and a force drives it against them.
+    /// The travels; `None` without any, or if a dof without stiffness is none: all of its rows stop the same sense of
+    /// it, no other travel is in them, and a force drives it against them.
     fn travels(&self) -> Option<Vec<Travel>> {
         let dofs = self.without_stiffness();
         let mut is_taken = vec![false; self.rows()];
@@ -79,8 +81,9 @@ impl ContactProblem {
 }
 
 impl Travel {
-    /// Moves the rows of this travel to the place where it can be at most: `violation` is `b'u - g` before, and `b'u + c t - g` after, with
-    /// all that is not known of t. The displacement of the body has an error of at most `error` in energy.
+    /// Moves the rows of this travel to the place where it can be at most: `violation` is `b'u - g` before, and
+    /// `b'u + c t - g` after, with all that is not known of t. The displacement of the body has an error of at most
+    /// `error` in energy.
     fn bring_near(&self, body: &ContactProblem, norm: &EnergyNorm, error: f64, violation: &mut [f64]) {
         let compliance = ComplianceFactor::of(body, norm);
         let rough = compliance.reach_at_once().unwrap_or_else(|| vec![f64::INFINITY; body.rows()]);

@@ -3,9 +3,9 @@
 //! With `|u - u*|_K <= E` and the compliance `G = B K^-1 B'` of the rows:
 //!
 //! * `|B_i (u - u*)| <= sqrt(G_ii) E`: a row with a larger distance is open in the exact answer too.
-//! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a shift with `B_i w = 1` that moves no other row of C. From
-//!   `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row with a larger
-//!   force is closed in the exact answer too. The cheapest such shift has `|w|_K^2 = (G_CC^-1)_ii`.
+//! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a shift with `B_i w = 1` that moves no other row of
+//!   C. From `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row
+//!   with a larger force is closed in the exact answer too. The cheapest such shift has `|w|_K^2 = (G_CC^-1)_ii`.
 
 use super::EnergyNorm;
 use super::bound::Answer;
@@ -27,7 +27,8 @@ const ROUGH: f64 = 1e-2;
 /// Largest number of cycles of that solve.
 const MOST_CYCLES: usize = 20;
 
-/// Multiplications that the compliance of the rows in question may cost; beyond this, one dof of each row is moved alone.
+/// Multiplications that the compliance of the rows in question may cost; beyond this, one dof of each row is moved
+/// alone.
 const MOST_WORK: f64 = 2e9;
 
 /// Number of rows that a sweep of the proof takes at once.
@@ -62,7 +63,8 @@ impl ContactProblem {
         self.prove_alone(WithEvidence { displacement, multiplier, evidence: None })
     }
 
-    /// The same for vectors that fit, with the factor of the certificate that gave the evidence, or with one of its own.
+    /// The same for vectors that fit, with the factor of the certificate that gave the evidence, or with one of its
+    /// own.
     ///
     /// # Errors
     /// As [`ContactProblem::certify`].
@@ -75,8 +77,8 @@ impl ContactProblem {
         Ok(norm.and_then(|norm| self.prove_by(&Bounding::Factor(norm), answer)))
     }
 
-    /// As [`ContactProblem::prove`], by the means of a certificate, for vectors that fit; from the evidence of that certificate if
-    /// there is any.
+    /// As [`ContactProblem::prove`], by the means of a certificate, for vectors that fit; from the evidence of that
+    /// certificate if there is any.
     pub(crate) fn prove_by(&self, by: &Bounding, answer: WithEvidence) -> Option<ProvenSet> {
         let proven = match by {
             Bounding::Factor(norm) => self.prove_in(norm, answer),
@@ -134,8 +136,8 @@ impl ContactProblem {
         Some(ProvenSet { open, closed })
     }
 
-    /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by
-    /// cycles for an M-matrix. `None` if the cycles find no bound, or if K is singular.
+    /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one
+    /// solve by cycles for an M-matrix. `None` if the cycles find no bound, or if K is singular.
     fn prove_by_cycles(&self, multigrid: &Multigrid, watch: &Watch, answer: WithEvidence) -> Option<ProvenSet> {
         let WithEvidence { displacement, multiplier, evidence } = answer;
         // A hierarchy of one level is already a factor.
@@ -249,8 +251,8 @@ impl<'a> ComplianceFactor<'a> {
         }
     }
 
-    /// The lower triangle of the products of the columns of these rows, column by column; `None` if there is no time, or without a
-    /// boundary.
+    /// The lower triangle of the products of the columns of these rows, column by column; `None` if there is no time,
+    /// or without a boundary.
     fn products(&self, rows: &[usize]) -> Option<Vec<f64>> {
         let count = rows.len();
         if let Some(compliance) = &self.rows.compliance {
@@ -290,8 +292,8 @@ impl<'a> ComplianceFactor<'a> {
         ldexp(self.norm.length(square), -self.rows.shift[row])
     }
 
-    /// The reach of all rows, if their compliance is known; otherwise upper bounds by one sweep, if the contact boundary is known: the
-    /// length of a column is at most the sum of its magnitudes.
+    /// The reach of all rows, if their compliance is known; otherwise upper bounds by one sweep, if the contact
+    /// boundary is known: the length of a column is at most the sum of its magnitudes.
     pub(super) fn reach_at_once(&self) -> Option<Vec<f64>> {
         let all = 0..self.rows.shift.len();
         if self.rows.compliance.is_some() {
@@ -364,7 +366,8 @@ mod tests {
 
     #[test]
     fn what_is_out_of_balance_without_the_open_rows_is_free_of_their_forces() {
-        // K = 4, f = 8 and u = 1: a row that is proven open has no force in the exact answer, and -4 on the other balances.
+        // K = 4, f = 8 and u = 1: a row that is proven open has no force in the exact answer, and -4 on the other
+        // balances.
         let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0), (1, 0, -2.0)], &[1.0, 9.0]);
         let (displacement, multiplier) = ([1.0], [-4.0, -0.5]);
         let answer = problem.answer(&displacement, &multiplier);
@@ -411,7 +414,8 @@ mod tests {
             let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
             assert_eq!(norm.boundary.is_some(), on_boundary);
             let compliance = ComplianceFactor::of(&problem, &norm);
-            // A sweep takes one multiplication for each value of the factor: those of a full triangle, or no less than those of K.
+            // A sweep takes one multiplication for each value of the factor: those of a full triangle, or no less than
+            // those of K.
             let full = dofs * (dofs + 1) / 2;
             let least = if on_boundary { full - dofs } else { 2 * dofs - 1 };
             assert!((least as f64..=full as f64).contains(&compliance.sweep()), "{}", compliance.sweep());

@@ -1,18 +1,18 @@
 //! Upper bounds on `sqrt(G_ii)`, `G = B K^-1 B'`: the distance by which a displacement of unit energy norm moves a row.
 //!
-//! If no entry of K off its diagonal is positive and some w > 0 has `K w >= kappa s` with kappa, s > 0, then K is an M-matrix, no
-//! entry of its inverse is negative, and
+//! If no entry of K off its diagonal is positive and some w > 0 has `K w >= kappa s` with kappa, s > 0, then K is an
+//! M-matrix, no entry of its inverse is negative, and
 //!
 //! ```text
 //! (K^-1)_ii s_i <= (K^-1 s)_i <= w_i / kappa
 //! ```
 //!
-//! One solve `K w = s`, of any accuracy, serves all rows; this is the cheapest bound. Rows that need a smaller one are swept
-//! through the factor one by one or, if they are many, read off the selected inverse.
+//! One solve `K w = s`, of any accuracy, serves all rows; this is the cheapest bound. Rows that need a smaller one are
+//! swept through the factor one by one or, if they are many, read off the selected inverse.
 //!
 //! # Source
-//! A. Berman, R. J. Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, SIAM (1994), theorem 6.2.3: condition I27 of
-//! an M-matrix.
+//! A. Berman, R. J. Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, SIAM (1994), theorem 6.2.3:
+//! condition I27 of an M-matrix.
 
 use super::EnergyNorm;
 use super::proof::ComplianceFactor;
@@ -35,8 +35,8 @@ const OF_TERM: f64 = 2.0 * f64::EPSILON;
 const BLOCKED: f64 = 4.0;
 
 impl ContactProblem {
-    /// Upper bounds on `sqrt(G_ii)` of every row, from one solve: `solve(s)` returns about `K^-1 s`. `None` if that does not show
-    /// that K is an M-matrix.
+    /// Upper bounds on `sqrt(G_ii)` of every row, from one solve: `solve(s)` returns about `K^-1 s`. `None` if that
+    /// does not show that K is an M-matrix.
     pub(super) fn monotone_reach(&self, solve: impl FnOnce(&[f64]) -> Option<Vec<f64>>) -> Option<Vec<f64>> {
         if self.stiffness().lower().triplets().any(|(row, column, value)| row != column && value > 0.0) {
             return None;
@@ -92,8 +92,8 @@ impl ContactProblem {
         squares.into_iter().map(|square| (square / mu).sqrt()).collect()
     }
 
-    /// Lower bounds on `sqrt(G_ii)` of every row, `max |b_ij| / sqrt(K_jj)` over the dofs with stiffness: the distance by which unit
-    /// energy norm of a single dof moves it.
+    /// Lower bounds on `sqrt(G_ii)` of every row, `max |b_ij| / sqrt(K_jj)` over the dofs with stiffness: the distance
+    /// by which unit energy norm of a single dof moves it.
     pub(super) fn least_reach(&self) -> Vec<f64> {
         let (roots, mut least) = (&self.diagonal().roots, vec![0.0_f64; self.rows()]);
         for (dof, &root) in roots.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
@@ -102,7 +102,8 @@ impl ContactProblem {
         least
     }
 
-    /// The sum over the entries b of each row of `of_entry(b^2, K_jj)`, the compliance of a row if its dofs stand alone.
+    /// The sum over the entries b of each row of `of_entry(b^2, K_jj)`, the compliance of a row if its dofs stand
+    /// alone.
     pub(super) fn compliance_of_rows(&self, of_entry: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let mut compliance = vec![0.0; self.rows()];
         for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
@@ -115,7 +116,8 @@ impl ContactProblem {
         compliance
     }
 
-    /// The rows of `rows` with a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs less.
+    /// The rows of `rows` with a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs
+    /// less.
     pub(super) fn within_reach(
         &self,
         norm: &EnergyNorm,
@@ -214,8 +216,8 @@ mod tests {
             let reach = lattice.measured_reach(least, largest);
             let exact = exact(&lattice, &norm);
             assert!(reach.iter().zip(&exact).all(|(reach, exact)| reach >= exact && *reach < 100.0 * exact));
-            // Every row has the coefficient 2 and the stiffness d. The first step of the power iteration is at the smooth
-            // displacement itself, which is close to the softest motion: the others add little.
+            // Every row has the coefficient 2 and the stiffness d. The first step of the power iteration is at the
+            // smooth displacement itself, which is close to the softest motion: the others add little.
             let d = 4.0 + 2.0 * twist;
             let force: Vec<f64> = smooth.iter().map(|value| d * value).collect();
             let quotient = dot(&force, &multigrid.cycle(&force)) / dot(&force, &smooth);

@@ -36,8 +36,8 @@ pub(super) struct OfPart {
     pub strain: f64,
     /// The sum of `|u_i| (|K| |u|)_i`, the terms of the strain.
     pub terms: f64,
-    /// `max |F_i| / sqrt(K_ii)` over loads, contact forces and couplings to other parts F: the energy norm that they could give
-    /// a single dof.
+    /// `max |F_i| / sqrt(K_ii)` over loads, contact forces and couplings to other parts F: the energy norm that they
+    /// could give a single dof.
     pub force: f64,
     /// The sum of the squares `F_i^2 / K_ii`.
     pub force_squares: f64,
@@ -71,7 +71,8 @@ pub(super) fn relative(value: f64, scale: f64) -> f64 {
 }
 
 impl Scales {
-    /// The scales of a displacement u of `problem` in this balance, under the loads and contact forces `applied`, `|f| + |B' lambda|`.
+    /// The scales of a displacement u of `problem` in this balance, under the loads and contact forces `applied`,
+    /// `|f| + |B' lambda|`.
     pub fn of(problem: &ContactProblem, u: &[f64], balance: &Balance, applied: &[f64]) -> Self {
         let (parts, diagonal) = (problem.parts(), problem.diagonal());
         let strains = if parts.count() == 1 { vec![balance.strain] } else { problem.energies(parts, u) };
@@ -94,8 +95,8 @@ impl Scales {
         Scales { reach: problem.least_reach(), of_parts, whole }
     }
 
-    /// The distance by which the forces on its `part`, if that rests, could move a single dof of a row, its loads and elastic forces
-    /// at most; zero for a part that moves.
+    /// The distance by which the forces on its `part`, if that rests, could move a single dof of a row, its loads and
+    /// elastic forces at most; zero for a part that moves.
     pub fn rest_of_row(&self, row: usize, part: usize) -> f64 {
         let part = &self.of_parts[part];
         let rests = part.is_stiff && !part.moves;
@@ -103,10 +104,11 @@ impl Scales {
     }
 }
 
-/// A dof without stiffness and load, and a row with gap zero, have no scale of their own: rows give them one, which they share with the dofs
-/// that they couple them to.
+/// A dof without stiffness and load, and a row with gap zero, have no scale of their own: rows give them one, which
+/// they share with the dofs that they couple them to.
 impl ContactProblem {
-    /// The lengths of the rows; of those with gap zero at least those that rows to dofs with stiffness give to their dofs without stiffness.
+    /// The lengths of the rows; of those with gap zero at least those that rows to dofs with stiffness give to their
+    /// dofs without stiffness.
     pub(super) fn coupled_lengths(&self, own: Vec<f64>) -> Vec<f64> {
         let roots = &self.diagonal().roots;
         if roots.iter().all(|&root| root > 0.0) {
@@ -131,7 +133,8 @@ impl ContactProblem {
         coupled
     }
 
-    /// The forces that balance on each dof; on one without stiffness and load at least those that its rows pass on from dofs with stiffness.
+    /// The forces that balance on each dof; on one without stiffness and load at least those that its rows pass on from
+    /// dofs with stiffness.
     pub(super) fn balanced_forces(&self, own: Vec<f64>) -> Vec<f64> {
         let roots = &self.diagonal().roots;
         if roots.iter().all(|&root| root > 0.0) {
@@ -161,8 +164,8 @@ impl ContactProblem {
         sums.products_by(w, |dof| parts.of_dof(dof), parts.count())
     }
 
-    /// The forces on each dof by other parts: by their displacements u, and by those that `forces` could give each of their dofs
-    /// alone. Empty if there is one part.
+    /// The forces on each dof by other parts: by their displacements u, and by those that `forces` could give each of
+    /// their dofs alone. Empty if there is one part.
     fn couplings(&self, parts: &Parts, u: &[f64], forces: &[f64]) -> Vec<f64> {
         if parts.count() == 1 {
             return Vec::new();
@@ -184,7 +187,8 @@ impl ContactProblem {
 mod tests {
     use super::*;
 
-    /// A dof of stiffness 4 and one without, joined by a row with gap zero; the second has a row with gap zero, and one with a gap of 6.
+    /// A dof of stiffness 4 and one without, joined by a row with gap zero; the second has a row with gap zero, and one
+    /// with a gap of 6.
     fn joined(load: f64) -> ContactProblem {
         let rows = [(0, 0, 2.0), (0, 1, -0.5), (1, 1, -3.0), (2, 1, -3.0)];
         ContactProblem::of_entries(&[(0, 0, 4.0)], &[10.0, load], &rows, &[0.0, 0.0, 6.0])

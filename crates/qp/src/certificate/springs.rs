@@ -38,8 +38,8 @@ impl Springs {
         residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
     }
 
-    /// Returns `true` if every row with a spring is `closed`, and its certain force exceeds twice the force that `left(row)`, the dual norm
-    /// of the forces left over on its part, could take off.
+    /// Returns `true` if every row with a spring is `closed`, and its certain force exceeds twice the force that
+    /// `left(row)`, the dual norm of the forces left over on its part, could take off.
     pub fn hold(&self, closed: &[bool], certain_force: impl Fn(usize) -> f64, left: impl Fn(usize) -> f64) -> bool {
         let springs = self.stiffness.iter().enumerate().filter(|spring| *spring.1 != 0.0);
         let presses = |row: usize, stiffness: f64| certain_force(row) > 2.0 * stiffness.sqrt() * left(row);

@@ -1,15 +1,16 @@
-//! From a bound on the error to the numbers that decide: relative to the energy norm of each part, or to the forces on a part
-//! that rests.
+//! From a bound on the error to the numbers that decide: relative to the energy norm of each part, or to the forces on
+//! a part that rests.
 
 use super::bound::ErrorBound;
 use super::scales::{OfPart, Scales, larger, relative};
 use crate::solution::Certificate;
 
-/// An error up to this multiple of `eps sqrt(|u|'|K||u|)` is what rounding u to doubles does: half a unit in the last place of
-/// each entry, once for the rounding of u and once for the rounding of the bound.
+/// An error up to this multiple of `eps sqrt(|u|'|K||u|)` is what rounding u to doubles does: half a unit in the last
+/// place of each entry, once for the rounding of u and once for the rounding of the bound.
 const AS_ROUNDED: f64 = f64::EPSILON;
 
-/// An error of a part that rests is rounding of its forces up to this multiple of these forces and of the loss of the factor.
+/// An error of a part that rests is rounding of its forces up to this multiple of these forces and of the loss of the
+/// factor.
 pub(super) const FORCES_ROUNDED: f64 = f64::EPSILON;
 
 /// Relative error of sums with twice the working precision stays below this share of their terms: no bound is smaller.
@@ -19,8 +20,8 @@ const LEAST: f64 = 1e-28;
 const OF_ENERGY: f64 = 1e-31;
 
 impl OfPart {
-    /// The part of the energy norm that is certain: a body that moves far and does not bend has only energy from rounding of
-    /// its terms.
+    /// The part of the energy norm that is certain: a body that moves far and does not bend has only energy from
+    /// rounding of its terms.
     pub fn certain_norm(&self) -> f64 {
         (self.strain - OF_ENERGY * self.terms).max(0.0).sqrt()
     }
@@ -35,8 +36,8 @@ impl OfPart {
         error + LEAST * self.terms.sqrt()
     }
 
-    /// Returns `true` if an error of a part without displacement is rounding of its forces, in a factor that amplifies rounding
-    /// by `loss`.
+    /// Returns `true` if an error of a part without displacement is rounding of its forces, in a factor that amplifies
+    /// rounding by `loss`.
     fn is_rest(&self, error: f64, loss: f64) -> bool {
         !self.moves && error <= FORCES_ROUNDED * loss * self.force_squares.sqrt()
     }
@@ -66,7 +67,8 @@ impl Worst {
 }
 
 impl Certificate {
-    /// Sets the numbers that follow from a bound on the error, in a norm whose factor amplifies rounding by `loss`. Returns the part that is farthest from its goal, or `None` if that is the whole.
+    /// Sets the numbers that follow from a bound on the error, in a norm whose factor amplifies rounding by `loss`.
+    /// Returns the part that is farthest from its goal, or `None` if that is the whole.
     pub(super) fn set_bounds(&mut self, bound: &ErrorBound, scales: &Scales, loss: f64) -> Option<usize> {
         let Scales { of_parts: parts, whole, .. } = scales;
         let mut worst = Worst::default();
@@ -130,7 +132,8 @@ impl Certificate {
 }
 
 impl Scales {
-    /// Indices of the parts that move in the answer, but whose error is so large that they may rest in the exact one, increasing.
+    /// Indices of the parts that move in the answer, but whose error is so large that they may rest in the exact one,
+    /// increasing.
     pub fn may_rest(&self, bound: &ErrorBound) -> Vec<usize> {
         let errors = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
         let may_rest = |of: &OfPart, error: f64| {

@@ -53,8 +53,8 @@ impl BodyFactor {
     }
 
     /// The same, or less if an order by minimum degree shows that the factor of a body in space is smaller: slender and
-    /// thin-walled bodies have far smaller factors than cubes. The order takes a few hundredths of the time of a solve by
-    /// multigrid.
+    /// thin-walled bodies have far smaller factors than cubes. The order takes a few hundredths of the time of a solve
+    /// by multigrid.
     pub fn by_degree(problem: &ContactProblem) -> Self {
         let by_size = Self::by_size(problem);
         let in_space = problem.near_null().is_some_and(|near_null| near_null.count() >= MODES_IN_SPACE);
@@ -86,7 +86,8 @@ pub(super) struct Direct {
     pub factor_entries: f64,
     pub seconds: f64,
     pub shared_seconds: f64,
-    /// `true` if a few cycles of multigrid, which find a set near the last one, cost less than the sets on the way there.
+    /// `true` if a few cycles of multigrid, which find a set near the last one, cost less than the sets on the way
+    /// there.
     pub starts_near: bool,
 }
 
@@ -111,7 +112,8 @@ impl Direct {
     }
 }
 
-/// Returns `true` if the direct path starts from a few cycles of multigrid, which cost less than the sets on the way there.
+/// Returns `true` if the direct path starts from a few cycles of multigrid, which cost less than the sets on the way
+/// there.
 pub(crate) fn starts_near(problem: &ContactProblem) -> bool {
     is_everywhere(problem) && Direct::of(problem, Smooth::of(problem), BodyFactor::by_size(problem)).starts_near
 }

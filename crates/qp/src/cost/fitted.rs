@@ -12,10 +12,12 @@ pub(crate) enum Way {
     PenaltyRung,
 }
 
-/// The way for an accuracy and all lower accuracies, and for sizes up to `up_to` that no other step of that accuracy covers.
+/// The way for an accuracy and all lower accuracies, and for sizes up to `up_to` that no other step of that accuracy
+/// covers.
 ///
-/// The size of a condensed problem is the multiplications of its factor. That of an uncondensed one, with a factorisation in every
-/// iteration, is the multiplications for each row: a measure of the width of the factor relative to its contact.
+/// The size of a condensed problem is the multiplications of its factor. That of an uncondensed one, with a
+/// factorisation in every iteration, is the multiplications for each row: a measure of the width of the factor relative
+/// to its contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step {
     pub condensed: bool,

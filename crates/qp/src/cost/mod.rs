@@ -19,11 +19,12 @@ pub(crate) use smooth::Smooth;
 /// Rows that are bounds only after reflections take more cycles by this factor.
 const TURNED: f64 = 1.6;
 
-/// A singular stiffness takes this many times the seconds: factors for the start and for the sets of rows that hold the body.
+/// A singular stiffness takes this many times the seconds: factors for the start and for the sets of rows that hold the
+/// body.
 const SINGULAR: f64 = 2.5;
 
-/// If a cube would take less than this many times the seconds of multigrid, a slender body may take less than multigrid: the
-/// order by minimum degree is then computed.
+/// If a cube would take less than this many times the seconds of multigrid, a slender body may take less than
+/// multigrid: the order by minimum degree is then computed.
 const LOOK: f64 = 12.0;
 
 /// The hierarchy of a stiff volume takes this many times the bytes: patches, and a prolongator of several steps.
@@ -42,8 +43,8 @@ const DENSE_SHARE: f64 = 0.4;
 /// Estimated time and memory of the two paths.
 ///
 /// Calibrated on blocks of Q4 and Hex8 (`cargo run --release --example multigrid`) and on parts of tetrahedra
-/// (`cargo run --release --example kinds -- --scenes FOLDER`, on the output of `reference/parts.py`); accurate to a factor of
-/// about two.
+/// (`cargo run --release --example kinds -- --scenes FOLDER`, on the output of `reference/parts.py`); accurate to a
+/// factor of about two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Bytes of the direct path at its peak, the problem itself included.
@@ -52,7 +53,8 @@ pub struct Estimate {
     pub factor_entries: f64,
     /// Seconds of the factorisations on one processor of 2024.
     pub direct_seconds: f64,
-    /// Bytes of the iterative path at its peak, the problem itself included; infinite if multigrid cannot take the problem.
+    /// Bytes of the iterative path at its peak, the problem itself included; infinite if multigrid cannot take the
+    /// problem.
     pub multigrid_bytes: f64,
     /// Seconds of hierarchy and iteration.
     pub multigrid_seconds: f64,
@@ -70,8 +72,9 @@ impl Estimate {
     /// Bytes that the program takes before it reads a problem.
     pub const START: f64 = bytes::START;
 
-    /// Bytes of the direct path for a problem that is not assembled yet, without those of the program: `dofs` unknowns, `entries` of the
-    /// stiffness, both triangles, `factor_entries` values of its factor, and at most `contact_dofs` on which it may be condensed.
+    /// Bytes of the direct path for a problem that is not assembled yet, without those of the program: `dofs` unknowns,
+    /// `entries` of the stiffness, both triangles, `factor_entries` values of its factor, and at most `contact_dofs` on
+    /// which it may be condensed.
     pub fn bytes_of_factor(dofs: f64, entries: f64, factor_entries: f64, contact_dofs: f64) -> f64 {
         // With a larger dense matrix nothing is condensed.
         let dense = contact_dofs.powi(2).min(DENSE_SHARE * factor_entries.max(FEW_VALUES)).sqrt();

@@ -1,5 +1,5 @@
-//! Seconds of a step of a solve, estimated for the machine of the fit; [`Watch::timed`] measures the ratio of this machine to
-//! it.
+//! Seconds of a step of a solve, estimated for the machine of the fit; [`Watch::timed`] measures the ratio of this
+//! machine to it.
 
 use std::hint::black_box;
 
@@ -18,7 +18,8 @@ const ORDERING: f64 = 1.3e-7;
 /// The same of minimum degree alone, the order that slender bodies keep.
 const MINIMUM_DEGREE: f64 = 1.3e-8;
 
-/// Seconds of a hierarchy for an unknown, and for an entry of the lower triangle (`cargo run --release --example kinds`).
+/// Seconds of a hierarchy for an unknown, and for an entry of the lower triangle
+/// (`cargo run --release --example kinds`).
 const HIERARCHY: [f64; 2] = [5e-7, 5.3e-8];
 
 /// The same of an iteration with one cycle.
@@ -81,7 +82,8 @@ pub(crate) fn factorisation(analysis: &Analysis) -> f64 {
     factor_seconds(analysis.multiplications(), analysis.factor_entries(), Width::Double)
 }
 
-/// Seconds of one step of the interior-point method on a matrix with this analysis, with a row for each of its contact dofs.
+/// Seconds of one step of the interior-point method on a matrix with this analysis, with a row for each of its contact
+/// dofs.
 pub(crate) fn interior_point(analysis: &Analysis) -> f64 {
     MORE_FILL * ENTRY_BY_ENTRY * analysis.multiplications()
 }

@@ -1,4 +1,5 @@
-//! Number of cycles of an answer by multigrid, from the near-null space of the hierarchy and the quality of its smoother.
+//! Number of cycles of an answer by multigrid, from the near-null space of the hierarchy and the quality of its
+//! smoother.
 
 use crate::linear::SymmetricMatrix;
 use crate::method::mprgp::takes_travels;
@@ -10,16 +11,17 @@ const ROW_SUM_ROUNDING: f64 = 1e-9;
 /// If most dofs of a diffusion have couplings to their neighbours that differ by more than this, multigrid is slow.
 const UNEVEN: f64 = 1e3;
 
-/// A row is smoothed slowly if its entries off the diagonal add up to more than this many times the diagonal: the largest
-/// eigenvalue of D^-1 K may be as large as one plus that sum over the diagonal. At nu = 0.3 linear elements stay below 3.2;
-/// quadratic ones reach 5.5 in a tenth of their rows.
+/// A row is smoothed slowly if its entries off the diagonal add up to more than this many times the diagonal: the
+/// largest eigenvalue of D^-1 K may be as large as one plus that sum over the diagonal. At nu = 0.3 linear elements
+/// stay below 3.2; quadratic ones reach 5.5 in a tenth of their rows.
 const HEAVY: f64 = 4.2;
 
 /// A stiffness counts as heavy from this share of such rows on.
 const HEAVY_SHARE: f64 = 0.1;
 
-/// Most rows of a stiff volume outweigh their diagonal more than this many times: at nu = 0.499 half of the rows of quadratic elements
-/// reach 6.4 to 11.7, at nu = 0.3 they reach 3.4 to 6.2, and those of linear elements stay below 5.8 at any ratio.
+/// Most rows of a stiff volume outweigh their diagonal more than this many times: at nu = 0.499 half of the rows of
+/// quadratic elements reach 6.4 to 11.7, at nu = 0.3 they reach 3.4 to 6.2, and those of linear elements stay below 5.8
+/// at any ratio.
 const STIFF: f64 = 6.3;
 
 /// Displacements of almost no energy that a hierarchy is given.
@@ -125,8 +127,8 @@ mod tests {
     use super::RowSums;
     use crate::linear::{SparseMatrix, SymmetricMatrix};
 
-    /// A ring in which the off-diagonal entries of each of the first `heavy` rows add up to about `sum` times the diagonal, and those
-    /// of the others to 3.2 times, as those of linear elements in space do.
+    /// A ring in which the off-diagonal entries of each of the first `heavy` rows add up to about `sum` times the
+    /// diagonal, and those of the others to 3.2 times, as those of linear elements in space do.
     fn ring(rows: usize, heavy: usize, sum: f64) -> SymmetricMatrix {
         let entry = |row: usize, next: usize| {
             let of = |row: usize| if row < heavy { 0.5 * sum } else { 1.6 };

@@ -4,8 +4,8 @@ use crate::error::Error;
 use crate::linear::{SparseMatrix, SymmetricMatrix, check_vector, dot};
 use crate::problem::ContactProblem;
 
-/// A change of the data per unit of a parameter p, as it acts on an answer (u, lambda): out of balance by `load`, and off the gaps by
-/// `distance`. Changes of several data add up.
+/// A change of the data per unit of a parameter p, as it acts on an answer (u, lambda): out of balance by `load`, and
+/// off the gaps by `distance`. Changes of several data add up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     /// `df - dK u + dB' lambda`, length n, in force per unit of p.
@@ -15,13 +15,14 @@ pub struct Change {
 }
 
 impl Change {
-    /// A change of the load, df (length n, in force per unit of the parameter), of a problem with this number of contact and equality rows.
+    /// A change of the load, df (length n, in force per unit of the parameter), of a problem with this number of
+    /// contact and equality rows.
     pub fn of_load(load: Vec<f64>, rows: usize) -> Self {
         Change { load, distance: vec![0.0; rows] }
     }
 
-    /// A change of the gaps, dg, in length per unit of the parameter, positive if the obstacle moves away: one entry for each row of B, then
-    /// for each equality row, of a problem with this number of dofs.
+    /// A change of the gaps, dg, in length per unit of the parameter, positive if the obstacle moves away: one entry
+    /// for each row of B, then for each equality row, of a problem with this number of dofs.
     pub fn of_gap(gap: Vec<f64>, dofs: usize) -> Self {
         Change { load: vec![0.0; dofs], distance: gap }
     }
@@ -42,8 +43,8 @@ impl Change {
         Ok(self)
     }
 
-    /// The same with a change of the rows, dB (rows x n), at the displacement u (length n, in length) and the multiplier lambda (in force,
-    /// `<= 0`) of the answer; equality rows follow those of B.
+    /// The same with a change of the rows, dB (rows x n), at the displacement u (length n, in length) and the
+    /// multiplier lambda (in force, `<= 0`) of the answer; equality rows follow those of B.
     ///
     /// # Errors
     /// [`Error::Shape`] and [`Error::Length`] for numbers that do not fit.
@@ -85,8 +86,8 @@ impl Change {
 pub struct Tangent {
     /// du, length n, in length per unit of the parameter.
     pub displacement: Vec<f64>,
-    /// dlambda, one entry for each row of B, then for each equality row, in force per unit of the parameter: negative if the pressure grows,
-    /// zero on open rows.
+    /// dlambda, one entry for each row of B, then for each equality row, in force per unit of the parameter: negative
+    /// if the pressure grows, zero on open rows.
     pub multiplier: Vec<f64>,
     /// The relative accuracy of the linear solve, as in [`Adjoint::error`].
     pub error: f64,
@@ -104,14 +105,14 @@ impl Tangent {
 pub struct Adjoint {
     /// w, length n: the derivative with respect to the load, in the unit of the output over force.
     pub displacement: Vec<f64>,
-    /// nu, one entry for each row of B, then for each equality row, in the unit of the output over length; zero on open rows, of either sign
-    /// elsewhere. The derivative with respect to a gap is `-nu`.
+    /// nu, one entry for each row of B, then for each equality row, in the unit of the output over length; zero on open
+    /// rows, of either sign elsewhere. The derivative with respect to a gap is `-nu`.
     pub multiplier: Vec<f64>,
     /// The answer, u and lambda.
     pub(super) answer: [Vec<f64>; 2],
     pub(super) inequalities: usize,
-    /// The error of this solution of the linear system. With a factor: the last correction, relative to the largest entry. With a
-    /// hierarchy, and at a kink: the relative error bound of its energy, as that of a certificate.
+    /// The error of this solution of the linear system. With a factor: the last correction, relative to the largest
+    /// entry. With a hierarchy, and at a kink: the relative error bound of its energy, as that of a certificate.
     pub error: f64,
 }
 
@@ -126,20 +127,21 @@ impl Adjoint {
         &self.displacement
     }
 
-    /// The derivatives with respect to the gaps g, length m, in the unit of the output over length: positive if the output grows as the
-    /// obstacle moves away.
+    /// The derivatives with respect to the gaps g, length m, in the unit of the output over length: positive if the
+    /// output grows as the obstacle moves away.
     pub fn of_gap(&self) -> Vec<f64> {
         // Adding zero removes the sign of a zero.
         self.multiplier[..self.inequalities].iter().map(|nu| 0.0 - nu).collect()
     }
 
-    /// The derivatives with respect to the values e of the equality rows, length p, in the unit of the output over length.
+    /// The derivatives with respect to the values e of the equality rows, length p, in the unit of the output over
+    /// length.
     pub fn of_equality_values(&self) -> Vec<f64> {
         self.multiplier[self.inequalities..].iter().map(|nu| 0.0 - nu).collect()
     }
 
-    /// The derivatives with respect to the entries of K, on the pattern of its lower triangle (n x n): an entry off the diagonal stands
-    /// for both of its places.
+    /// The derivatives with respect to the entries of K, on the pattern of its lower triangle (n x n): an entry off the
+    /// diagonal stands for both of its places.
     ///
     /// # Errors
     /// [`Error::Length`] for a problem of another size.

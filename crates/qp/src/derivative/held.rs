@@ -22,8 +22,8 @@ pub(super) struct Held {
 }
 
 impl Derivatives {
-    /// `K x - B_C' y = force`, `B_C x = distances` on the rows of `closed`: with a factor, corrected by residuals in twice the precision.
-    /// `None` if the rows do not hold the body, or follow from each other.
+    /// `K x - B_C' y = force`, `B_C x = distances` on the rows of `closed`: with a factor, corrected by residuals in
+    /// twice the precision. `None` if the rows do not hold the body, or follow from each other.
     ///
     /// # Errors
     /// [`Error::Numerical`] and [`Error::Interrupted`].

@@ -1,7 +1,7 @@
 //! Derivatives of an answer with respect to all data of its problem, and a verdict on whether they exist.
 //!
-//! With the closed rows C of the exact answer, and as long as every closed row presses and every open row has a gap, the answer is smooth
-//! in the data: it is that of a linear system. For a change of the data along a parameter,
+//! With the closed rows C of the exact answer, and as long as every closed row presses and every open row has a gap,
+//! the answer is smooth in the data: it is that of a linear system. For a change of the data along a parameter,
 //!
 //! ```text
 //! K du - B_C' dl = r,   B_C du = d,     r = df - dK u + dB_C' lambda_C,   d = dg_C - dB_C u        (tangent)
@@ -13,12 +13,13 @@
 //! K w - B_C' nu = dphi/du,   B_C w = -dphi/dlambda_C,     dphi = w'r - nu'd                        (adjoint)
 //! ```
 //!
-//! Rows that are *proven* closed press and are independent, rows that are proven open have a gap: then the derivative exists. A row whose
-//! gap and force are exactly zero makes a kink, with a derivative on each side. A row that is neither proven nor exactly zero may be either.
+//! Rows that are *proven* closed press and are independent, rows that are proven open have a gap: then the derivative
+//! exists. A row whose gap and force are exactly zero makes a kink, with a derivative on each side. A row that is
+//! neither proven nor exactly zero may be either.
 //!
 //! # Source
-//! J. F. Bonnans, A. Shapiro, *Perturbation Analysis of Optimization Problems*, Springer (2000), section 5.2. B. Amos, J. Z. Kolter,
-//! *OptNet: differentiable optimization as a layer in neural networks*, ICML (2017), for the adjoint.
+//! J. F. Bonnans, A. Shapiro, *Perturbation Analysis of Optimization Problems*, Springer (2000), section 5.2. B. Amos,
+//! J. Z. Kolter, *OptNet: differentiable optimization as a layer in neural networks*, ICML (2017), for the adjoint.
 
 mod change;
 mod held;
@@ -58,8 +59,8 @@ pub enum Derivative<T> {
     },
     /// The proof leaves some rows undecided, or a kink belongs to more than one parameter.
     Undecided {
-        /// The derivatives with all of these rows open, and with all of them closed, if both exist. If there are several rows, the true
-        /// derivative may belong to another combination of them.
+        /// The derivatives with all of these rows open, and with all of them closed, if both exist. If there are
+        /// several rows, the true derivative may belong to another combination of them.
         between: Vec<T>,
         /// Indices of these contact rows, from 0, in increasing order.
         rows: Vec<usize>,
@@ -207,12 +208,14 @@ impl Derivatives {
         Derivatives { settings: self.settings.clone().watched(watch), ..self.clone() }
     }
 
-    /// The adjoint solution of an output with these derivatives with respect to the displacement u (length n) and to the multiplier lambda
-    /// (length m, then one for each equality row), in the unit of the output over that of length, and of force. At a kink the gradient
-    /// does not exist: it is undecided between both sides, and only [`tangent`](Self::tangent) tells them apart.
+    /// The adjoint solution of an output with these derivatives with respect to the displacement u (length n) and to
+    /// the multiplier lambda (length m, then one for each equality row), in the unit of the output over that of length,
+    /// and of force. At a kink the gradient does not exist: it is undecided between both sides, and only
+    /// [`tangent`](Self::tangent) tells them apart.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit; [`Error::Numerical`] and [`Error::Interrupted`] of the solve.
+    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit; [`Error::Numerical`] and
+    /// [`Error::Interrupted`] of the solve.
     pub fn adjoint(&self, by_displacement: &[f64], by_multiplier: &[f64]) -> Result<Derivative<Adjoint>, Error> {
         let (problem, rows) = (&self.problem, self.given_rows());
         check_vector(
@@ -303,8 +306,8 @@ impl Derivatives {
         })
     }
 
-    /// The tangent for a growing parameter at a kink: a contact problem of the weak rows, with the pressing rows held. `None` if its set
-    /// is not confirmed.
+    /// The tangent for a growing parameter at a kink: a contact problem of the weak rows, with the pressing rows held.
+    /// `None` if its set is not confirmed.
     fn one_sided(&self, closed: &ContactSet, weak: &[usize], change: &Change) -> Result<Option<Tangent>, Error> {
         let problem = &self.problem;
         let distances = self.on_first_rows(&change.distance);
@@ -339,7 +342,8 @@ impl Derivatives {
         self.problem.inequalities() + self.problem.equality_rows()
     }
 
-    /// Values of the rows as they were given, for all rows of the problem: an equality is held by the first of its two rows.
+    /// Values of the rows as they were given, for all rows of the problem: an equality is held by the first of its two
+    /// rows.
     fn on_first_rows(&self, given: &[f64]) -> Vec<f64> {
         let mut values = given.to_vec();
         values.resize(self.problem.rows(), 0.0);
@@ -354,8 +358,8 @@ const SIGN_TOLERANCE: f64 = 1e-10;
 const NOT_HELD: &str = "the rows that press do not hold the body, or follow from each other";
 
 impl Prepared {
-    /// The derivatives of an answer of this problem, under the current load, and at the gaps of the problem that was prepared or of
-    /// [`with_gap`](Self::with_gap). If the answer brings no proof of its rows, they are proven here.
+    /// The derivatives of an answer of this problem, under the current load, and at the gaps of the problem that was
+    /// prepared or of [`with_gap`](Self::with_gap). If the answer brings no proof of its rows, they are proven here.
     ///
     /// # Errors
     /// [`Error::Length`] for an answer that does not fit, and those of the proof.

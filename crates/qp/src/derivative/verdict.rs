@@ -17,13 +17,14 @@ const NEARLY: f64 = 1e-25;
 /// Values of an answer that may be a zero, relative to the largest. Whether they are is decided exactly.
 const DUST: f64 = 1e-20;
 
-/// What is known about the rows of the exact answer. Sets are those of all rows of the problem, one row of each equality included.
+/// What is known about the rows of the exact answer. Sets are those of all rows of the problem, one row of each
+/// equality included.
 #[derive(Clone, Debug)]
 pub(super) enum Rows {
     /// The rows of `closed` press, and all others have a gap.
     Smooth { closed: ContactSet },
-    /// The rows of `closed` press, gap and force of the `weak` ones are exactly zero, and all others have a gap; closed and weak rows are
-    /// independent.
+    /// The rows of `closed` press, gap and force of the `weak` ones are exactly zero, and all others have a gap; closed
+    /// and weak rows are independent.
     Kink { closed: ContactSet, weak: Vec<usize> },
     /// The rows of `closed` press; the `undecided` ones may be open or closed.
     Undecided { closed: ContactSet, undecided: Vec<usize> },
@@ -99,8 +100,9 @@ fn proven_here(
     }
 }
 
-/// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: every force is in balance, and every
-/// condition holds, without any rounding. The answer is unique, because a bound on its error is known.
+/// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: every force is in
+/// balance, and every condition holds, without any rounding. The answer is unique, because a bound on its error is
+/// known.
 fn exact_answer(
     problem: &ContactProblem,
     engine: &dyn Engine,
@@ -143,8 +145,8 @@ fn without_dust(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&value| if value.abs() <= least { 0.0 } else { value }).collect()
 }
 
-/// The closed and the weak rows of an answer in which an equality has a multiplier of either sign on its first row; `None` if it is
-/// not exact.
+/// The closed and the weak rows of an answer in which an equality has a multiplier of either sign on its first row;
+/// `None` if it is not exact.
 fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<(ContactSet, Vec<usize>)> {
     let mut sums = vec![ExactSum::default(); problem.dofs()];
     for (i, j, stiffness) in problem.stiffness().lower().triplets() {

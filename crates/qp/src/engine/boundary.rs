@@ -22,8 +22,9 @@ impl Body for Condensed {
 }
 
 impl Factored {
-    /// The result of the method with the certificate of the condensed problem: its conditions recomputed there, and its error bound if
-    /// it is asked for. `None` if it does not meet the goal, or if the condensed problem is that of a refinement only.
+    /// The result of the method with the certificate of the condensed problem: its conditions recomputed there, and its
+    /// error bound if it is asked for. `None` if it does not meet the goal, or if the condensed problem is that of a
+    /// refinement only.
     ///
     /// # Errors
     /// As [`Engine::make`](super::interface::Engine::make).

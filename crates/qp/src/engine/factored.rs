@@ -182,7 +182,8 @@ impl Factored {
         self.reduction.selection.expand_set(set)
     }
 
-    /// The result of a method, on the contact boundary if the problem is condensed; `None` if the step has no means here.
+    /// The result of a method, on the contact boundary if the problem is condensed; `None` if the step has no means
+    /// here.
     pub(super) fn find(&self, task: &Task) -> Result<Option<Reduced>, Error> {
         self.check_gap(task.problem.gap())?;
         let gap = task.problem.gap().to_vec();
@@ -263,8 +264,9 @@ impl Factored {
         Ending::Infeasible { rows, weights }
     }
 
-    /// The best answer, changed by the repair that its bound computes. This helps if rows hold many dofs, or no dof except for rounding,
-    /// and if forces cancel almost all of each other: then a step of a method has nothing left to improve. `None` without a factor at hand.
+    /// The best answer, changed by the repair that its bound computes. This helps if rows hold many dofs, or no dof
+    /// except for rounding, and if forces cancel almost all of each other: then a step of a method has nothing left to
+    /// improve. `None` without a factor at hand.
     fn repaired(&self, task: &Task, best: &Solution) -> Option<Found> {
         let norm = match &self.reduction.norm {
             Norm::Kept(norm) if !self.is_single() => norm.watched(&task.settings.watch.finishing()),
@@ -280,14 +282,15 @@ impl Factored {
         })
     }
 
-    /// The energy norm of a stiffness that is definite by itself, with bounds that end when `watch` says so; `None` also if
-    /// there is no time to make it.
+    /// The energy norm of a stiffness that is definite by itself, with bounds that end when `watch` says so; `None`
+    /// also if there is no time to make it.
     fn norm_within(&self, watch: &Watch) -> Option<EnergyNorm> {
         let in_time = self.reduction.is_norm_at_hand() || watch.allows(self.norm_seconds);
         if in_time { self.reduction.norm().map(|norm| norm.watched(watch)) } else { None }
     }
 
-    /// A watch that is over as soon as there is no time left for one more factorisation of a loop and for the certificate.
+    /// A watch that is over as soon as there is no time left for one more factorisation of a loop and for the
+    /// certificate.
     ///
     /// # Errors
     /// [`Error::OutOfTime`] if there is no time for the first factorisation.
@@ -325,15 +328,16 @@ impl Factored {
         self.condensed_norm.get_or_init(of_boundary).clone()
     }
 
-    /// The ratio of the energy norm of a displacement of the condensed problem, of the square `on_boundary`, to that of the whole body.
+    /// The ratio of the energy norm of a displacement of the condensed problem, of the square `on_boundary`, to that of
+    /// the whole body.
     fn share_of_boundary(&self, loading: &Loading, unit: i32, on_boundary: f64) -> f64 {
         let Some(condensed) = &self.reduction.condensation else { return 1.0 };
         let interior = ldexp(condensed.interior_energy(&loading.sweep), 2 * (loading.unit - unit));
         if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
     }
 
-    /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row), pushing or pulling,
-    /// and all others free; `None` if they do not hold the body, or contradict each other.
+    /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row),
+    /// pushing or pulling, and all others free; `None` if they do not hold the body, or contradict each other.
     pub(crate) fn balanced(&self, closed: &ContactSet, load: Vec<f64>, gap: &[f64]) -> Option<[Vec<f64>; 2]> {
         let loading = Loading::of(&self.reduction, load, &self.reduction.selection.gap(gap));
         let (problem, unit) = self.scaled(&loading, gap).ok()?;

@@ -87,10 +87,12 @@ pub(crate) trait Engine: Debug + Send + Sync {
     /// Makes a step; `None` if the step has no means here.
     ///
     /// # Errors
-    /// [`Error::Numerical`], [`Error::OutOfTime`], [`Error::NotConvex`], and [`Error::NotFinite`] for gaps that do not fit.
+    /// [`Error::Numerical`], [`Error::OutOfTime`], [`Error::NotConvex`], and [`Error::NotFinite`] for gaps that do not
+    /// fit.
     fn make(&self, task: &Task) -> Result<Option<Found>, Error>;
 
-    /// The means of a certificate, with bounds that end when `watch` says so. `contraction` is that of a refined answer.
+    /// The means of a certificate, with bounds that end when `watch` says so. `contraction` is that of a refined
+    /// answer.
     fn bounding(&self, watch: &Watch, contraction: f64) -> Bounding<'_>;
 
     /// Bytes of the prepared data, estimated.
@@ -109,8 +111,8 @@ pub(crate) trait Engine: Debug + Send + Sync {
         Ok(None)
     }
 
-    /// The displacement without a certificate; `None` if the method did not settle on a set, or if an answer of the method is
-    /// only valid with a certificate.
+    /// The displacement without a certificate; `None` if the method did not settle on a set, or if an answer of the
+    /// method is only valid with a certificate.
     ///
     /// # Errors
     /// As [`Engine::make`].
@@ -123,7 +125,8 @@ pub(crate) trait Engine: Debug + Send + Sync {
         None
     }
 
-    /// The exact way from a task to the gaps `to`; `None` if the task has no answer on the boundary that meets its goal.
+    /// The exact way from a task to the gaps `to`; `None` if the task has no answer on the boundary that meets its
+    /// goal.
     ///
     /// # Errors
     /// As [`Prepared::path`](crate::Prepared::path).
@@ -131,8 +134,8 @@ pub(crate) trait Engine: Debug + Send + Sync {
         Err(Error::NotCondensed { step: "the exact path" })
     }
 
-    /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row), pushing or pulling,
-    /// and all others free; `None` if these rows do not hold the body, or contradict each other.
+    /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row),
+    /// pushing or pulling, and all others free; `None` if these rows do not hold the body, or contradict each other.
     ///
     /// # Errors
     /// As [`Engine::make`].

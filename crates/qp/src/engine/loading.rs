@@ -18,8 +18,8 @@ impl Load {
         Load { force, swept: OnceLock::new() }
     }
 
-    /// The load swept through the factor of `reduction`; the first call does this in a unit that fits `gap`, the gaps of the
-    /// selected rows.
+    /// The load swept through the factor of `reduction`; the first call does this in a unit that fits `gap`, the gaps
+    /// of the selected rows.
     pub(super) fn swept(&self, reduction: &Reduction, gap: &[f64]) -> Arc<Loading> {
         self.swept.get_or_init(|| Arc::new(Loading::of(reduction, self.force.clone(), gap))).clone()
     }
@@ -80,9 +80,9 @@ impl Loading {
 
     /// The exponent of the reference displacement with the gaps of the selected rows.
     ///
-    /// If the stiffness is definite, the reference displacement is the larger of what the load alone causes and what the
-    /// obstacle enforces. It is at most the larger of the gaps and the load over the stiffness, because on a soft support the
-    /// free body would move far.
+    /// If the stiffness is definite, the reference displacement is the larger of what the load alone causes and what
+    /// the obstacle enforces. It is at most the larger of the gaps and the load over the stiffness, because on a soft
+    /// support the free body would move far.
     pub fn unit_with(&self, gap: &[f64]) -> i32 {
         let local = largest(gap).max(self.statics);
         let enforced = gap.iter().fold(0.0, |enforced: f64, gap| enforced.max(-gap));

@@ -1,5 +1,5 @@
-//! Engines: a problem prepared once, for many gaps, loads and starts. One engine has a factor of the stiffness, the other a multigrid
-//! hierarchy. An engine makes the steps that a ladder asks for, and judges nothing.
+//! Engines: a problem prepared once, for many gaps, loads and starts. One engine has a factor of the stiffness, the
+//! other a multigrid hierarchy. An engine makes the steps that a ladder asks for, and judges nothing.
 
 mod boundary;
 mod factored;

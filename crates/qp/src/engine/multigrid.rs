@@ -30,8 +30,8 @@ const MOST_HELD_CYCLES: usize = 400;
 
 /// A contact problem with the multigrid hierarchy of its stiffness: built once, for all gaps, loads and starts.
 ///
-/// Nothing is scaled here: the hierarchy gives each node a unit, in which MPRGP compares relative quantities. The bound on the energy error
-/// takes a few more cycles; it rests on a measured eigenvalue, as its certificates say.
+/// Nothing is scaled here: the hierarchy gives each node a unit, in which MPRGP compares relative quantities. The bound
+/// on the energy error takes a few more cycles; it rests on a measured eigenvalue, as its certificates say.
 #[derive(Debug)]
 pub(crate) struct Hierarchical {
     problem: ContactProblem,
@@ -43,7 +43,8 @@ impl Hierarchical {
     /// Builds the hierarchy from the near-null space of `problem`, or from constants if it has none.
     ///
     /// # Errors
-    /// Those of [`Multigrid::new`], also for a dof without stiffness that is no travel; before that [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
+    /// Those of [`Multigrid::new`], also for a dof without stiffness that is no travel; before that
+    /// [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { watch, threads, .. } = settings;
         if watch.acknowledge() {

@@ -27,8 +27,8 @@ impl Expansion for ToRows {
 }
 
 impl Factored {
-    /// The way from the answer of a task to the answer at the gaps `to`; `None` if the task has no answer on the boundary that meets
-    /// its goal.
+    /// The way from the answer of a task to the answer at the gaps `to`; `None` if the task has no answer on the
+    /// boundary that meets its goal.
     ///
     /// # Errors
     /// As [`Prepared::path`](crate::Prepared::path).

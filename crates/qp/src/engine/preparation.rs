@@ -102,8 +102,8 @@ struct Factoring<'a> {
 }
 
 impl Factoring<'_> {
-    /// The factor in single precision if that is asked for and loses nothing, otherwise in double; `None` for a stiffness that
-    /// is not definite to working precision.
+    /// The factor in single precision if that is asked for and loses nothing, otherwise in double; `None` for a
+    /// stiffness that is not definite to working precision.
     ///
     /// # Errors
     /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
@@ -147,8 +147,9 @@ impl Factoring<'_> {
     }
 }
 
-/// The condensation onto the contact dofs `last`, from the factor of the stiffness or, without one, from that of the stiffness
-/// with its rows; `None` if even all rows together do not hold the body: the full problem then gives the reason.
+/// The condensation onto the contact dofs `last`, from the factor of the stiffness or, without one, from that of the
+/// stiffness with its rows; `None` if even all rows together do not hold the body: the full problem then gives the
+/// reason.
 fn condensed(
     cholesky: Option<&Cholesky>,
     scaling: &Scaling,

@@ -40,7 +40,8 @@ impl Reduction {
         self.definiteness() == Definiteness::Definite
     }
 
-    /// The compliance of the rows, if the energy norm has one: balances by it then cost less than by factors of the augmented matrix.
+    /// The compliance of the rows, if the energy norm has one: balances by it then cost less than by factors of the
+    /// augmented matrix.
     pub fn compliance(&self) -> Option<&Compliance> {
         if let Norm::Kept(norm) = &self.norm { norm.compliance() } else { None }
     }

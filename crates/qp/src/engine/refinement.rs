@@ -1,15 +1,16 @@
 //! Refinement: with the available factor an answer is brought to the digits of doubles, or to the requested accuracy.
 //!
-//! With the factor K~, in single precision or in double precision with the digits that condensation and bending have left,
-//! every step solves a contact problem for the residual,
+//! With the factor K~, in single precision or in double precision with the digits that condensation and bending have
+//! left, every step solves a contact problem for the residual,
 //!
 //! ```text
 //! minimise 1/2 d' K~ d - (f - K u)' d   subject to   B d <= g - B u
 //! ```
 //!
-//! condensed, by the same method, and adds d to u. The residual is computed with twice the working precision. If d is zero, the
-//! conditions are those of the problem itself; until then the error shrinks by `|I - K~^-1 K|` from step to step. With a factor
-//! in single precision that contraction is measured; it widens the bound of the certificate, which uses K~ only.
+//! condensed, by the same method, and adds d to u. The residual is computed with twice the working precision. If d is
+//! zero, the conditions are those of the problem itself; until then the error shrinks by `|I - K~^-1 K|` from step to
+//! step. With a factor in single precision that contraction is measured; it widens the bound of the certificate, which
+//! uses K~ only.
 
 use std::sync::Arc;
 
@@ -98,8 +99,8 @@ impl Factored {
         }
     }
 
-    /// The step d: the answer to the contact problem for the residual of an `answer` (u, lambda), started from its contact set,
-    /// together with the whole multiplier.
+    /// The step d: the answer to the contact problem for the residual of an `answer` (u, lambda), started from its
+    /// contact set, together with the whole multiplier.
     fn step_from(&self, task: &Task, answer: &Answer) -> Result<Option<Reduced>, Error> {
         let Answer { displacement, multiplier, contact_set } = *answer;
         // The contact force is balanced on its own dofs; only the imbalance is swept.
@@ -119,7 +120,8 @@ impl Factored {
         self.find_step(loaded, &Task { step: Step::Method, start: &contact_set.into(), ..*task })
     }
 
-    /// The best answer, refined by one step. `None` if there is no answer for its residual: it may still be good enough.
+    /// The best answer, refined by one step. `None` if there is no answer for its residual: it may still be good
+    /// enough.
     pub(super) fn refined_answer(&self, task: &Task, best: &Solution) -> Option<Found> {
         task.settings.watch.step("refinement", 0);
         let Solution { displacement, multiplier, contact_set, .. } = best;

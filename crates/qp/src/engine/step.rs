@@ -70,12 +70,12 @@ impl ScaledStep<'_> {
 
     /// The active-set loop, started again from the set that the penalty ladder reaches.
     ///
-    /// On fine meshes a contact zone that starts too wide shrinks by one row an iteration. A penalty that grows from the stiffness
-    /// to its best value reaches the zone in few iterations on every mesh.
+    /// On fine meshes a contact zone that starts too wide shrinks by one row an iteration. A penalty that grows from
+    /// the stiffness to its best value reaches the zone in few iterations on every mesh.
     ///
     /// # Source
-    /// K. Ito and K. Kunisch, *Semi-smooth Newton methods for variational inequalities of the first kind*, ESAIM: M2AN 37
-    /// (2003) 41-62.
+    /// K. Ito and K. Kunisch, *Semi-smooth Newton methods for variational inequalities of the first kind*, ESAIM: M2AN
+    /// 37 (2003) 41-62.
     fn continued(self) -> Result<Outcome, Error> {
         let (scaled, most_iterations) = (self.scaled, self.most_iterations);
         let ladder = Penalty { penetration_threshold: 0.0, ..Penalty::default() };

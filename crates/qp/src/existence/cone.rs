@@ -1,8 +1,8 @@
 //! Cones in the few coordinates of the modes without energy.
 //!
-//! A point of a cone is found in doubles and decided in twice the working precision: the point is made to slide exactly along
-//! the rows that stop it, one after the other. So rows that are parallel except for their last bits leave exactly the
-//! directions that these doubles leave.
+//! A point of a cone is found in doubles and decided in twice the working precision: the point is made to slide exactly
+//! along the rows that stop it, one after the other. So rows that are parallel except for their last bits leave exactly
+//! the directions that these doubles leave.
 
 use crate::error::Error;
 use crate::linear::{SparseMatrix, SymmetricMatrix, Twice, exponent, largest, ldexp};
@@ -85,8 +85,8 @@ impl Cone<'_> {
         }
     }
 
-    /// The same as the answer to a contact problem with K = I, in doubles. The fixed function may be negative: in doubles two
-    /// opposed rows would leave nothing.
+    /// The same as the answer to a contact problem with K = I, in doubles. The fixed function may be negative: in
+    /// doubles two opposed rows would leave nothing.
     fn nearest_in_doubles(&self, c: &[f64]) -> Option<Vec<f64>> {
         let (size, dofs) = (largest(c), c.len());
         if dofs == 0 || !(size > 0.0 && size.is_finite()) {

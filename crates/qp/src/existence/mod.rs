@@ -1,6 +1,6 @@
-//! Whether a problem has an answer, and only one: it may be not convex, infeasible, unbounded, or not held enough (`Error::UnderHeld`:
-//! the answer can move along a mode without energy). This is decided here, from the problem alone, if a method meets a motion
-//! without energy, or if an answer has no bound.
+//! Whether a problem has an answer, and only one: it may be not convex, infeasible, unbounded, or not held enough
+//! (`Error::UnderHeld`: the answer can move along a mode without energy). This is decided here, from the problem alone,
+//! if a method meets a motion without energy, or if an answer has no bound.
 //!
 //! With N a basis of the null space of K, all of it depends on cones in the few coordinates a of d = N a:
 //!
@@ -9,10 +9,10 @@
 //! not held enough   d = N a with  B d <= 0 on the rows that touch       and  f'd = 0,  from a displacement u that is an answer
 //! ```
 //!
-//! The point of a cone that is nearest to some c is itself the answer to a contact problem, with K = I. It is zero exactly if
-//! no direction of the cone has a positive product with c. N and the signs of all these sums have twice the working precision:
-//! what is found holds for the given doubles of the problem. If a method left no answer, steps with `K + rho E` instead of K find
-//! one.
+//! The point of a cone that is nearest to some c is itself the answer to a contact problem, with K = I. It is zero
+//! exactly if no direction of the cone has a positive product with c. N and the signs of all these sums have twice the
+//! working precision: what is found holds for the given doubles of the problem. If a method left no answer, steps with
+//! `K + rho E` instead of K find one.
 
 mod cone;
 mod proximal;
@@ -36,8 +36,8 @@ const BALANCED: f64 = 1e-9;
 /// A row presses if its force on a dof exceeds this share of the forces in balance there; smaller forces are rounding.
 const PRESSED: f64 = 1e-13;
 
-/// If an answer leaves forces out of balance that may move a row by more than this share of its displacement and gap, it does
-/// not show which rows touch.
+/// If an answer leaves forces out of balance that may move a row by more than this share of its displacement and gap,
+/// it does not show which rows touch.
 const SETTLED_FORCES: f64 = 1e-4;
 
 /// A row that is open by less than this share of its displacement and gap may touch.
@@ -49,7 +49,8 @@ const STRAINED: f64 = 1e-13;
 /// An answer is settled to this share of its largest displacement, in the units of equal stiffness.
 const SETTLED_TO: f64 = 1e-11;
 
-/// A body moves at most this many times as far as a dof that a force moves alone: enough for bodies that are not slender.
+/// A body moves at most this many times as far as a dof that a force moves alone: enough for bodies that are not
+/// slender.
 const BENDS: f64 = 1e3;
 
 /// Refuses a factorisation of the stiffness if memory or time do not allow it.
@@ -94,7 +95,8 @@ pub(super) struct Existence {
     rows: Vec<(usize, Row)>,
     /// `-f'N`: as a row, the load stops directions against it.
     against_load: Row,
-    /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with which.
+    /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with
+    /// which.
     within_rounding: Option<(usize, f64)>,
     solve: Solve,
 }
@@ -103,7 +105,8 @@ impl Existence {
     /// The null space of the stiffness of `problem`; `None` if the range of doubles does not allow it.
     ///
     /// # Errors
-    /// [`Error::NotConvex`] with a direction of negative energy; [`Error::TooLarge`], [`Error::OutOfTime`], [`Error::Numerical`].
+    /// [`Error::NotConvex`] with a direction of negative energy; [`Error::TooLarge`], [`Error::OutOfTime`],
+    /// [`Error::Numerical`].
     pub fn of(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<Option<Self>, Error> {
         let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
         let Ok(scaled) = scaled(problem, &scaling) else { return Ok(None) };
@@ -148,7 +151,8 @@ impl Existence {
         Err(Error::Unbounded { mode: mode.in_words(), direction: self.expanded(&mode) })
     }
 
-    /// The reason why existence is not decided, if the stiffness holds a motion by no more than the rounding of its entries.
+    /// The reason why existence is not decided, if the stiffness holds a motion by no more than the rounding of its
+    /// entries.
     pub fn doubt(&self) -> Option<String> {
         let (dof, share) = self.within_rounding?;
         Some(format!(
@@ -158,8 +162,8 @@ impl Existence {
         ))
     }
 
-    /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and without a mode
-    /// that the load drives, has an answer.
+    /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and
+    /// without a mode that the load drives, has an answer.
     ///
     /// # Errors
     /// [`Error::UnderHeld`] with such a mode.
@@ -196,22 +200,22 @@ impl Existence {
         self.mode(&cone.nearest(&along_load)?).filter(NullMode::escapes)
     }
 
-    /// A mode without energy on which the load does no work, and that no row stops from any start: a problem with such a mode
-    /// has more than one answer if it has any.
+    /// A mode without energy on which the load does no work, and that no row stops from any start: a problem with such
+    /// a mode has more than one answer if it has any.
     fn drift(&self) -> Option<NullMode> {
         self.idle(&|_| true)
     }
 
     /// A mode without energy that leads from an answer to others.
     ///
-    /// If a displacement differs from u by a d with `K d = 0` and `f'd = 0`, it has the same energy. It meets the rows if d
-    /// closes no row that touches.
+    /// If a displacement differs from u by a d with `K d = 0` and `f'd = 0`, it has the same energy. It meets the rows
+    /// if d closes no row that touches.
     fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<NullMode> {
         let u = &solution.displacement;
         let violation = problem.accurate_violation(u);
         let sizes = problem.contact().mul_abs(u);
-        // Two scales: the displacement by the load of dofs held by their own stiffness only, and the rounding that the largest
-        // displacement leaves in others. Any u below these may be rounding.
+        // Two scales: the displacement by the load of dofs held by their own stiffness only, and the rounding that the
+        // largest displacement leaves in others. Any u below these may be rounding.
         let ones = self.scaling.expand_displacement(&vec![1.0; u.len()], 0);
         let largest_move = u.iter().zip(&ones).fold(0.0, |most: f64, (u, one)| most.max(u.abs() / one));
         let unit = STRAINED * largest(self.scaled.load()) + SETTLED_TO * largest_move;
@@ -236,9 +240,9 @@ impl Existence {
         self.idle(&touches).filter(|mode| self.rows.iter().all(|&(row, _)| !presses(row) || mode.approach[row] == 0.0))
     }
 
-    /// Returns `true` if these forces of the rows hold the load on all modes without energy: they do so to the digits of
-    /// doubles, in their own terms, and the rows that carry them can do so exactly. The last bit of the load may need another
-    /// row.
+    /// Returns `true` if these forces of the rows hold the load on all modes without energy: they do so to the digits
+    /// of doubles, in their own terms, and the rows that carry them can do so exactly. The last bit of the load may
+    /// need another row.
     fn is_carried_by(&self, forces: &[f64]) -> bool {
         let (mut left, mut terms) = (self.against_load.values.clone(), Vec::new());
         terms.extend(left.iter().map(|value| value.rounded().abs()));
@@ -295,8 +299,8 @@ fn coordinates<I: Iterator<Item = (usize, f64)>>(null: &NullSpace, entries: impl
     Row { values, terms }
 }
 
-/// Upper bounds on the moves of rows by the imbalance of u and lambda: a force moves its dof against no more than the stiffness
-/// of that dof, and a body that bends moves further.
+/// Upper bounds on the moves of rows by the imbalance of u and lambda: a force moves its dof against no more than the
+/// stiffness of that dof, and a body that bends moves further.
 fn moved_by_residual(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<f64> {
     let residual = problem.accurate_residual(u, lambda);
     let alone = problem.stiffness().diagonal();
@@ -323,8 +327,8 @@ mod tests {
     use super::*;
     use crate::solve;
 
-    /// A dof of stiffness 2 under a force of 4 before a wall at 1, with that dof alone or with a second one that only a wall at
-    /// 5 holds.
+    /// A dof of stiffness 2 under a force of 4 before a wall at 1, with that dof alone or with a second one that only a
+    /// wall at 5 holds.
     fn before_a_wall(dofs: usize) -> ContactProblem {
         let walls: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
         ContactProblem::of_entries(&[(0, 0, 2.0)], &[4.0, 0.0][..dofs], &walls, &[1.0, 5.0][..dofs])
@@ -338,8 +342,8 @@ mod tests {
         (Existence::with(scaled, scaling.clone(), null, solve), scaling)
     }
 
-    /// Returns `true` if `freedom` finds a mode for this displacement of the first dof and this force of its wall; the second
-    /// dof is at rest.
+    /// Returns `true` if `freedom` finds a mode for this displacement of the first dof and this force of its wall; the
+    /// second dof is at rest.
     fn is_free(displacement: f64, force: f64) -> bool {
         let (problem, alone) = (before_a_wall(2), before_a_wall(1));
         let mut solution = solve(&alone, &Settings::default()).unwrap();

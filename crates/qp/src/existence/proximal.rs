@@ -30,8 +30,8 @@ fn added(scaling: &Scaling) -> Vec<f64> {
 }
 
 /// Answers by steps with `K + rho E`, E the diagonal that the scaling makes the identity: minimise the energy plus
-/// `rho/2` times the squared distance, in E, from the last answer. Those of the last two steps are returned, without a certificate for
-/// the problem itself, each also without the rounding of its step.
+/// `rho/2` times the squared distance, in E, from the last answer. Those of the last two steps are returned, without a
+/// certificate for the problem itself, each also without the rounding of its step.
 ///
 /// # Errors
 /// [`Error::Infeasible`] for contact rows that contradict each other.
@@ -109,8 +109,8 @@ fn with_diagonal(stiffness: &SymmetricMatrix, added: &[f64]) -> Result<Symmetric
     SymmetricMatrix::from_lower(SparseMatrix::from_triplets(added.len(), added.len(), &entries)?)
 }
 
-/// The answer of a step: unchanged, without forces that come from the added diagonal and the rounding of the displacement, and
-/// also without the displacements that such forces cause.
+/// The answer of a step: unchanged, without forces that come from the added diagonal and the rounding of the
+/// displacement, and also without the displacements that such forces cause.
 fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: &[f64]) -> [(Vec<f64>, Vec<f64>); 3] {
     let mut rounding = vec![0.0_f64; problem.rows()];
     for (row, dof, b) in problem.contact().triplets().filter(|entry| entry.2 != 0.0) {
@@ -149,7 +149,8 @@ mod tests {
 
     #[test]
     fn steps_end_with_the_answer_when_they_gain_nothing() {
-        // A dof of stiffness 2 under a force of 4 before a wall at 3, and one that a force of 3 presses to a wall at 1/2.
+        // A dof of stiffness 2 under a force of 4 before a wall at 3, and one that a force of 3 presses to a wall at
+        // 1/2.
         let problem = two([2.0, 0.0], [4.0, 3.0], [3.0, 0.5]);
         let solves = Arc::new(AtomicUsize::new(0));
         let counted = Arc::clone(&solves);
@@ -160,8 +161,8 @@ mod tests {
         let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
         let found = answers(&scaling, &problem, &settings, solve).unwrap();
         assert!(found.iter().all(|found| found.displacement == [2.0, 0.5] && found.multiplier[1] == -3.0));
-        // Each step multiplies the error by about 2^-20: the third leaves less than the last bit, the fourth has the length of
-        // rounding, and there is no fifth.
+        // Each step multiplies the error by about 2^-20: the third leaves less than the last bit, the fourth has the
+        // length of rounding, and there is no fifth.
         let solves = solves.load(Ordering::SeqCst);
         assert!((FEWEST_STEPS..=5).contains(&solves), "{solves}");
     }
@@ -175,8 +176,8 @@ mod tests {
             without_rounding(&problem, &[0.5; 2], &[1.0, 0.0], &[force, 0.0])[1].1[0] / force
         };
         assert_eq!((kept_force(0.9), kept_force(1.1)), (0.0, 1.0));
-        // On the second dof a load of one is rounded by OF_STEP, against a stiffness of 2 and the added 1/2. The rounding of
-        // its own row is a share of OF_STEP of that.
+        // On the second dof a load of one is rounded by OF_STEP, against a stiffness of 2 and the added 1/2. The
+        // rounding of its own row is a share of OF_STEP of that.
         let is_kept = |share: f64| {
             let small = share * OF_STEP / 2.5;
             let [.., (u, _)] = without_rounding(&problem, &[0.5; 2], &[1.0, small], &[0.0; 2]);

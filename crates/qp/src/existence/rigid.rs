@@ -3,12 +3,12 @@
 use crate::linear::{norm, take_out};
 use crate::problem::ContactProblem;
 
-/// A direction is a rigid-body mode if it differs from one by less than this share of its length: null vectors of rounded
-/// entries have about ten digits.
+/// A direction is a rigid-body mode if it differs from one by less than this share of its length: null vectors of
+/// rounded entries have about ten digits.
 const RIGID: f64 = 1e-6;
 
-/// Returns `true` if a displacement, of one body, is one of the rigid-body modes that the problem declares. `bodies` gives the body
-/// of each dof.
+/// Returns `true` if a displacement, of one body, is one of the rigid-body modes that the problem declares. `bodies`
+/// gives the body of each dof.
 pub(super) fn is_rigid(problem: &ContactProblem, displacement: &[f64], bodies: &[usize]) -> bool {
     let Some(modes) = problem.near_null() else { return false };
     let body = bodies[place_of_largest(displacement)];

@@ -4,8 +4,9 @@ use pulp::{Arch, Simd, WithSimd};
 
 /// Sums that keep the rounding errors of their terms.
 ///
-/// A fused multiply-add of two factors and their negative product gives the rounding error of the product. The loop over a
-/// matrix is compiled for processors with that instruction and for those without; the sums are the same, bit by bit.
+/// A fused multiply-add of two factors and their negative product gives the rounding error of the product. The loop
+/// over a matrix is compiled for processors with that instruction and for those without; the sums are the same, bit by
+/// bit.
 ///
 /// # Source
 /// T. Ogita, S. M. Rump, S. Oishi, 2005, "Accurate sum and dot product", SIAM J. Sci. Comput. 26.

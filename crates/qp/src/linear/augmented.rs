@@ -125,8 +125,8 @@ pub struct Augmented {
 }
 
 impl Augmented {
-    /// That of K (n x n) and B (m x n), factorised with this number of threads; an `analysis` of K is kept if K has a place for every
-    /// entry.
+    /// That of K (n x n) and B (m x n), factorised with this number of threads; an `analysis` of K is kept if K has a
+    /// place for every entry.
     pub fn new(stiffness: &SymmetricMatrix, rows: &SparseMatrix, analysis: Option<Analysis>, threads: usize) -> Self {
         Augmented { stiffness: stiffness.clone(), rows: rows.clone(), analysis, threads, matrix: OnceLock::new() }
     }
@@ -153,8 +153,8 @@ impl Augmented {
     }
 }
 
-/// A lower triangle with a place, zero if it had none, for every `(column, row)` of `added` and of the diagonal; the same memory
-/// if nothing was missing.
+/// A lower triangle with a place, zero if it had none, for every `(column, row)` of `added` and of the diagonal; the
+/// same memory if nothing was missing.
 fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>) -> SparseMatrix {
     let mut search = Search::of(lower);
     let diagonal = (0..lower.columns()).map(|column| (column, column));

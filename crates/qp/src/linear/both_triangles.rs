@@ -1,19 +1,19 @@
 //! The lower triangle of a symmetric matrix given with both triangles, in one pass.
 //!
-//! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image in column
-//! r, which was walked before. As c grows, the mirror images of row r come in the order of column r: only a cursor for each column must be
-//! kept.
+//! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image
+//! in column r, which was walked before. As c grows, the mirror images of row r come in the order of column r: only a
+//! cursor for each column must be kept.
 
 use super::columns::{Columns, Taken};
 use super::{SparseMatrix, check_rows};
 use crate::error::Error;
 
-/// Two triangles count as equal if mirrored entries differ by at most this times the larger diagonal entry of their row and column:
-/// assembly in another order differs by rounding, and 1e-10 is far above it.
+/// Two triangles count as equal if mirrored entries differ by at most this times the larger diagonal entry of their row
+/// and column: assembly in another order differs by rounding, and 1e-10 is far above it.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
-/// A symmetric matrix that takes its columns, or its rows, with both triangles, one after another: its lower triangle under
-/// construction.
+/// A symmetric matrix that takes its columns, or its rows, with both triangles, one after another: its lower triangle
+/// under construction.
 pub struct SymmetricLines {
     dim: usize,
     starts: Vec<usize>,
@@ -94,12 +94,12 @@ impl SymmetricLines {
         SparseMatrix::from_parts(self.dim, self.starts, self.rows, self.values)
     }
 
-    /// Takes the next row or column: indices from 0, increasing, and values. Keeps what lies on and below the diagonal of a column,
-    /// and compares what lies above.
+    /// Takes the next row or column: indices from 0, increasing, and values. Keeps what lies on and below the diagonal
+    /// of a column, and compares what lies above.
     ///
     /// # Errors
-    /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`]; [`Error::NotSymmetric`] for an entry that differs from
-    /// its mirror image in a row or column before.
+    /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`]; [`Error::NotSymmetric`] for an entry that
+    /// differs from its mirror image in a row or column before.
     pub fn take<R: Copy + TryInto<usize>>(&mut self, rows: &[R], values: &[f64]) -> Result<(), Error> {
         let column = self.cursor.len();
         let (start, mut above, mut least) = (self.rows.len(), 0, 0);
@@ -189,8 +189,8 @@ impl SymmetricLines {
         if is_there { self.values[place].abs() } else { 0.0 }
     }
 
-    /// Makes sure that an entry below the diagonal and its mirror image differ by rounding at most; `diagonal` is the size of the
-    /// diagonal entry of its row.
+    /// Makes sure that an entry below the diagonal and its mirror image differ by rounding at most; `diagonal` is the
+    /// size of the diagonal entry of its row.
     fn alike(&self, (row, column): (usize, usize), values: [f64; 2], diagonal: f64) -> Result<(), Error> {
         let [value, mirrored] = values;
         let size = self.diagonal(column).max(diagonal);

@@ -63,7 +63,8 @@ enum Values {
     Dense(LowerTriangle),
 }
 
-/// Calls a function of a sparse factor in its precision; gives `None` for a matrix without columns, and for a dense factor.
+/// Calls a function of a sparse factor in its precision; gives `None` for a matrix without columns, and for a dense
+/// factor.
 macro_rules! by_precision {
     ($cholesky:expr, $factor:ident => $call:expr) => {
         $cholesky.supernodes().and_then(|nodes| match &$cholesky.values {
@@ -171,8 +172,8 @@ impl Analysis {
         self.factor_last(matrix.clone())
     }
 
-    /// As [`Analysis::factor`], for a matrix that is no longer needed: its values are freed before those of the factor are
-    /// made.
+    /// As [`Analysis::factor`], for a matrix that is no longer needed: its values are freed before those of the factor
+    /// are made.
     ///
     /// # Errors
     /// As [`Analysis::factor`].
@@ -335,8 +336,8 @@ impl Cholesky {
         matches!(self.values, Values::Single(_))
     }
 
-    /// The solution x of A x = b, length `dim`. If faer fails or b does not fit, every entry of x is NaN, which no certificate
-    /// accepts.
+    /// The solution x of A x = b, length `dim`. If faer fails or b does not fit, every entry of x is NaN, which no
+    /// certificate accepts.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         if b.len() == self.dim() { self.backward(self.forward(b)) } else { vec![f64::NAN; b.len()] }
     }
@@ -370,8 +371,8 @@ impl Cholesky {
         x
     }
 
-    /// The trailing block of L that belongs to the columns put last, m x m. Its product with its transpose is their Schur
-    /// complement.
+    /// The trailing block of L that belongs to the columns put last, m x m. Its product with its transpose is their
+    /// Schur complement.
     pub fn trailing_block(&self) -> LowerTriangle {
         let size = self.analysis.trailing;
         if let Values::Dense(triangle) = &self.values {

@@ -10,7 +10,8 @@ pub(super) struct Columns<'a, S, R> {
     pub values: &'a [f64],
 }
 
-/// The triangle that gives the values if mirrored entries differ by rounding: the lower one for columns, the upper one for rows.
+/// The triangle that gives the values if mirrored entries differ by rounding: the lower one for columns, the upper one
+/// for rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Taken {
     Lower,
@@ -52,7 +53,8 @@ impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
 }
 
 impl Taken {
-    /// Checks that the indices of a line increase and lie inside a matrix of this shape, and that its values are finite.
+    /// Checks that the indices of a line increase and lie inside a matrix of this shape, and that its values are
+    /// finite.
     ///
     /// # Errors
     /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`].

@@ -6,8 +6,8 @@
 //! K du - B_C' dl = r,     B_C du = d:     W_C'W_C dl = d - W_C' L^-1 r,     L' du = L^-1 r + W_C dl
 //! ```
 //!
-//! W depends on neither load nor gap nor set: a set costs a factor of its own rows alone, and the bound of an answer and its proof take
-//! the same W.
+//! W depends on neither load nor gap nor set: a set costs a factor of its own rows alone, and the bound of an answer
+//! and its proof take the same W.
 
 use std::sync::OnceLock;
 
@@ -21,7 +21,8 @@ const DEPENDENT: f64 = 1e-8;
 /// Sets of closed rows until one is settled, each with a factor of `K + w B_C'B_C` otherwise.
 const SETS: f64 = 5.0;
 
-/// Multiplications of a factorisation in blocks that take the time of one product of two entries of a row, which is put in its place.
+/// Multiplications of a factorisation in blocks that take the time of one product of two entries of a row, which is put
+/// in its place.
 const OF_PRODUCT: f64 = 10.0;
 
 /// The rows B of a dense definite K, on the columns that its factor eliminates last.
@@ -51,8 +52,8 @@ pub struct Held<'a> {
 }
 
 impl Compliance {
-    /// The rows B of the matrix K with this factor, which eliminates the columns of B last; `None` if the factor is not dense or not
-    /// safely definite, or if factors of `K + w B_C'B_C` cost less.
+    /// The rows B of the matrix K with this factor, which eliminates the columns of B last; `None` if the factor is not
+    /// dense or not safely definite, or if factors of `K + w B_C'B_C` cost less.
     pub fn of(cholesky: &Cholesky, last: &[usize], rows: &SparseMatrix) -> Option<Self> {
         let (size, count) = (rows.columns() as f64, rows.rows() as f64);
         let own = size * size * count / 2.0 + size * count * count / 2.0;
@@ -119,8 +120,8 @@ impl Compliance {
 }
 
 impl Held<'_> {
-    /// The displacement, length n, and the force on each held row, that take up the `force`, length n, and put the held rows at
-    /// these `distances`.
+    /// The displacement, length n, and the force on each held row, that take up the `force`, length n, and put the held
+    /// rows at these `distances`.
     pub fn solve(&self, force: &[f64], distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let cholesky = &self.compliance.cholesky;
         let mut swept = cholesky.forward(force);

@@ -1,5 +1,5 @@
-//! The step of conjugate gradients. Its callers give operator and preconditioned residual, and decide after each step, or before
-//! the next, whether to stop.
+//! The step of conjugate gradients. Its callers give operator and preconditioned residual, and decide after each step,
+//! or before the next, whether to stop.
 
 use super::dot;
 
@@ -40,7 +40,8 @@ impl Blocks<'_> {
     }
 }
 
-/// The state of conjugate gradients for A x = b. Each block has its own, with scale, step lengths and Ritz values of its own.
+/// The state of conjugate gradients for A x = b. Each block has its own, with scale, step lengths and Ritz values of
+/// its own.
 #[derive(Clone, Debug)]
 pub struct Iterate<'a> {
     blocks: Blocks<'a>,
@@ -68,12 +69,13 @@ impl<'a> Iterate<'a> {
         Iterate { blocks, solution, rest, direction: zeros.clone(), moved: zeros, energies, shares, lengths }
     }
 
-    /// Moves x along the preconditioned residual, made conjugate to the last direction. A block in which the preconditioned residual
-    /// is zero from here on stays where it is. If another block has no positive energy or no finite step, this returns `false` and
-    /// moves nothing; the direction and its energies remain as evidence.
+    /// Moves x along the preconditioned residual, made conjugate to the last direction. A block in which the
+    /// preconditioned residual is zero from here on stays where it is. If another block has no positive energy or no
+    /// finite step, this returns `false` and moves nothing; the direction and its energies remain as evidence.
     pub fn step(&mut self, preconditioned: Vec<f64>, operator: impl FnOnce(&[f64]) -> Vec<f64>) -> bool {
         let ratio = |(a, b): (f64, &f64)| if a == 0.0 && *b == 0.0 { 0.0 } else { a / b };
-        // Made conjugate to the last direction itself, so that rounding of the preconditioner to single precision does no harm.
+        // Made conjugate to the last direction itself, so that rounding of the preconditioner to single precision does
+        // no harm.
         let along = self.blocks.dots(&preconditioned, &self.moved);
         self.shares = along.into_iter().zip(&self.energies).map(|entry| -ratio(entry)).collect();
         let last = std::mem::replace(&mut self.direction, preconditioned);

@@ -3,7 +3,8 @@
 use super::power_iteration::power_iteration;
 use super::{Cholesky, Equilibration, FactorError, SymmetricMatrix, largest};
 
-/// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is computed.
+/// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is
+/// computed.
 const SAFE_PIVOT: f64 = 1e-9;
 
 /// `norm(A x)` of a null vector x is rounding: up to this many units in the last place of the terms that cancel.
@@ -12,13 +13,14 @@ pub(super) const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
-/// On a diagonal of order one, a negative eigenvalue above this, or above this for each column, is rounding of the entries
-/// and of the factor.
+/// On a diagonal of order one, a negative eigenvalue above this, or above this for each column, is rounding of the
+/// entries and of the factor.
 const LEAST_NEGATIVE: f64 = 1e-12;
 const NEGATIVE_BY_COLUMN: f64 = 8.0 * f64::EPSILON;
 
 impl Cholesky {
-    /// Returns `true` if the pivots of this factor alone show that the matrix, with a diagonal of order one, is definite.
+    /// Returns `true` if the pivots of this factor alone show that the matrix, with a diagonal of order one, is
+    /// definite.
     pub fn is_safely_definite(&self) -> bool {
         self.smallest_pivot() > SAFE_PIVOT
     }
@@ -39,8 +41,8 @@ impl Cholesky {
 }
 
 impl SymmetricMatrix {
-    /// Returns `true` if the matrix is positive semidefinite, to rounding: its equilibrated form plus a small multiple of the unit
-    /// matrix has a factor.
+    /// Returns `true` if the matrix is positive semidefinite, to rounding: its equilibrated form plus a small multiple
+    /// of the unit matrix has a factor.
     ///
     /// # Errors
     /// Those of the factorisation, except for [`FactorError::NotPositiveDefinite`].

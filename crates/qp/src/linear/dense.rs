@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::error::Error;
 
-/// The maximum norm: the entry farthest from zero, by its magnitude; 0 for an empty slice. For the crates of this workspace.
+/// The maximum norm: the entry farthest from zero, by its magnitude; 0 for an empty slice. For the crates of this
+/// workspace.
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }
@@ -142,8 +143,8 @@ impl LowerTriangle {
         y
     }
 
-    /// Upper bounds on the sums of magnitudes of each column of `L^-1`, by one sweep: no entry of the inverse is larger than
-    /// that of the triangle with the magnitudes of L on the diagonal and the negative magnitudes of L below.
+    /// Upper bounds on the sums of magnitudes of each column of `L^-1`, by one sweep: no entry of the inverse is larger
+    /// than that of the triangle with the magnitudes of L on the diagonal and the negative magnitudes of L below.
     ///
     /// # Source
     /// N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, SIAM (2002), section 8.2: the comparison matrix.
@@ -187,8 +188,8 @@ impl LowerTriangle {
     }
 }
 
-/// An upper triangle R that grows column by column, as in `Z = Q R` of vectors Z. Columns that follow from those before them
-/// take no part in solutions.
+/// An upper triangle R that grows column by column, as in `Z = Q R` of vectors Z. Columns that follow from those before
+/// them take no part in solutions.
 #[derive(Clone, Debug, Default)]
 pub struct UpperTriangle {
     /// The columns, each down to its diagonal entry.
@@ -225,8 +226,8 @@ impl UpperTriangle {
         self.independent[self.columns.len() - 1] = false;
     }
 
-    /// Removes the column at `place`. Rotations remove the entries that later columns then have below their diagonal. Each one
-    /// calls `turn(i, c, s)`: rows i and i + 1 of R were turned by a plane rotation with cosine c and sine s.
+    /// Removes the column at `place`. Rotations remove the entries that later columns then have below their diagonal.
+    /// Each one calls `turn(i, c, s)`: rows i and i + 1 of R were turned by a plane rotation with cosine c and sine s.
     pub fn remove(&mut self, place: usize, mut turn: impl FnMut(usize, f64, f64)) {
         self.columns.remove(place);
         self.independent.remove(place);
@@ -242,8 +243,8 @@ impl UpperTriangle {
         }
     }
 
-    /// The length of each column of `R'^-1`: that of `Z x` for the shortest shift that moves one of the columns of Z by one and
-    /// leaves the others; zero on columns that follow from others.
+    /// The length of each column of `R'^-1`: that of `Z x` for the shortest shift that moves one of the columns of Z by
+    /// one and leaves the others; zero on columns that follow from others.
     pub fn lengths_of_inverse(&self) -> Vec<f64> {
         let length = |place: usize| {
             if !self.independent[place] {

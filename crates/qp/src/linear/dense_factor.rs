@@ -1,4 +1,5 @@
-//! The Cholesky factor of a dense matrix, and many columns at once, on faer: sweeps through a triangle, and their products.
+//! The Cholesky factor of a dense matrix, and many columns at once, on faer: sweeps through a triangle, and their
+//! products.
 
 use faer::dyn_stack::MemStack;
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
@@ -15,8 +16,8 @@ const FEW_COLUMNS: usize = 4;
 /// Up to this size a factorisation in blocks gains nothing.
 const SMALL: usize = 32;
 
-/// Factorises the symmetric matrix with this lower triangle (n x n, column by column; the entries above are not read) on this number of
-/// threads.
+/// Factorises the symmetric matrix with this lower triangle (n x n, column by column; the entries above are not read)
+/// on this number of threads.
 ///
 /// # Errors
 /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for lack of memory.
@@ -91,8 +92,8 @@ pub fn forward_all(triangle: &LowerTriangle, mut columns: Vec<f64>) -> Vec<f64> 
     columns
 }
 
-/// The lower triangle of `Z'Z` (m x m, column by column) of columns Z (n x m, column by column), zeros above; every entry is NaN if
-/// faer fails.
+/// The lower triangle of `Z'Z` (m x m, column by column) of columns Z (n x m, column by column), zeros above; every
+/// entry is NaN if faer fails.
 pub fn products(size: usize, columns: &[f64]) -> Vec<f64> {
     let count = columns.len().checked_div(size).unwrap_or(0);
     let mut products = vec![0.0; count * count];

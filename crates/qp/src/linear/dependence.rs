@@ -1,7 +1,8 @@
 //! The rows of a matrix that follow from others: exactly, for the given doubles, without a threshold.
 //!
-//! Doubles are integers times powers of two, so elimination modulo a prime finds their rank. Rows that are independent modulo a
-//! prime are independent. The converse fails if the prime divides a minor; this happens for about one minor in 2^61.
+//! Doubles are integers times powers of two, so elimination modulo a prime finds their rank. Rows that are independent
+//! modulo a prime are independent. The converse fails if the prime divides a minor; this happens for about one minor in
+//! 2^61.
 
 use super::SparseMatrix;
 

@@ -6,8 +6,8 @@ const LEAST_PRODUCT: f64 = f64::MIN_POSITIVE / f64::EPSILON / f64::EPSILON;
 /// An exact sum: parts that do not overlap, in increasing order.
 ///
 /// # Source
-/// J. R. Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, Discrete Comput. Geom. 18
-/// (1997) 305-363, section 2.4.
+/// J. R. Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, Discrete
+/// Comput. Geom. 18 (1997) 305-363, section 2.4.
 #[derive(Clone, Debug, Default)]
 pub struct ExactSum {
     parts: Vec<f64>,

@@ -61,7 +61,8 @@ pub(super) fn memory(request: StackReq) -> Result<MemBuffer, FactorError> {
     MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
 }
 
-/// The floating-point numbers in which a factor or a hierarchy is stored; iterations around it are always in double precision.
+/// The floating-point numbers in which a factor or a hierarchy is stored; iterations around it are always in double
+/// precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
     /// 64 bits, about sixteen digits.
@@ -113,7 +114,8 @@ impl Real for f32 {
 /// The values of a factor with its structure.
 pub(super) type Factor<'a, T> = supernodal::SupernodalLltRef<'a, usize, T>;
 
-/// The lower triangle of a matrix in compressed columns, in the order of elimination; the rows of a column are in any order.
+/// The lower triangle of a matrix in compressed columns, in the order of elimination; the rows of a column are in any
+/// order.
 pub(crate) struct Permuted<T> {
     pub starts: Vec<usize>,
     pub rows: Vec<usize>,
@@ -130,8 +132,8 @@ pub(super) fn factorise<T: Real>(
     par: Par,
 ) -> Result<(Vec<T>, f64), FactorError> {
     let size = supernodes.len_val();
-    // Memory is requested first, because a vector of zeros ends the program if memory is short; the zeros come untouched
-    // from the system.
+    // Memory is requested first, because a vector of zeros ends the program if memory is short; the zeros come
+    // untouched from the system.
     let request = Vec::<T>::new().try_reserve_exact(size);
     request.map_err(|_| FactorError::Failed("out of memory".into()))?;
     let mut values = vec![T::default(); size];
@@ -170,8 +172,8 @@ fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, v
     (smallest, finite)
 }
 
-/// A vector swept through a factor: scaled and rounded before, if the factor is in single precision, and converted back to doubles
-/// after. If the sweep fails or the vector does not fit, every entry is NaN.
+/// A vector swept through a factor: scaled and rounded before, if the factor is in single precision, and converted back
+/// to doubles after. If the sweep fails or the vector does not fit, every entry is NaN.
 fn swept<T: Real>(factor: Factor<T>, load: &[f64], sweep: impl FnOnce(MatMut<T>, &mut MemStack)) -> Vec<f64> {
     if load.len() != factor.symbolic().nrows() {
         return vec![f64::NAN; load.len()];

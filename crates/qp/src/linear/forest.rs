@@ -1,6 +1,7 @@
 //! Connected components.
 
-/// Connected components by union and find: each unknown points towards the first of its tree. For the crates of this workspace.
+/// Connected components by union and find: each unknown points towards the first of its tree. For the crates of this
+/// workspace.
 pub struct Forest {
     parent: Vec<usize>,
     trees: usize,

@@ -1,6 +1,7 @@
 //! Members gathered by their groups.
 
-/// The start of each of `count` groups among all members, and the number of members at the end, from the group of each member.
+/// The start of each of `count` groups among all members, and the number of members at the end, from the group of each
+/// member.
 pub fn group_starts(count: usize, groups: impl Iterator<Item = usize>) -> Vec<usize> {
     let mut starts = vec![0; count + 1];
     groups.for_each(|group| starts[group + 1] += 1);

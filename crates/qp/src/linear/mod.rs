@@ -65,7 +65,8 @@ use grouped::group_starts;
 
 /// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.
 ///
-/// Clones share their memory, and so do matrices of one pattern: a stiffness and its scaled form keep one set of indices.
+/// Clones share their memory, and so do matrices of one pattern: a stiffness and its scaled form keep one set of
+/// indices.
 ///
 /// ```
 /// use signorini_qp::SparseMatrix;
@@ -82,8 +83,8 @@ pub struct SparseMatrix {
     values: Arc<Vec<f64>>,
 }
 
-/// The positions of the entries, column by column. A column with the last rows of those before it shares them: of a stiffness, the
-/// columns of a node have one list of rows, which takes a third of the memory in space.
+/// The positions of the entries, column by column. A column with the last rows of those before it shares them: of a
+/// stiffness, the columns of a node have one list of rows, which takes a third of the memory in space.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Pattern {
     /// The first entry of each column, and their number at the end.
@@ -119,8 +120,8 @@ impl SparseMatrix {
     /// entries with the same row and column are added.
     ///
     /// # Errors
-    /// [`Error::IndexOutOfRange`] for an entry outside, [`Error::NotFinite`] for a value that is not finite, [`Error::Pattern`] for
-    /// 2^32 rows or more.
+    /// [`Error::IndexOutOfRange`] for an entry outside, [`Error::NotFinite`] for a value that is not finite,
+    /// [`Error::Pattern`] for 2^32 rows or more.
     pub fn from_triplets(rows: usize, columns: usize, triplets: &[(usize, usize, f64)]) -> Result<Self, Error> {
         check_rows(rows)?;
         for &(row, column, value) in triplets {
@@ -154,8 +155,8 @@ impl SparseMatrix {
         Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
-    /// The matrix of `rows` rows with given compressed columns: `column_starts` of length `columns + 1`, and for each entry its
-    /// row, from 0 and increasing within a column, and its value. Starts and values are not copied.
+    /// The matrix of `rows` rows with given compressed columns: `column_starts` of length `columns + 1`, and for each
+    /// entry its row, from 0 and increasing within a column, and its value. Starts and values are not copied.
     ///
     /// ```
     /// use signorini_qp::SparseMatrix;
@@ -167,9 +168,9 @@ impl SparseMatrix {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows that do not
-    /// increase, or for 2^32 rows or more, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`] for a value that is
-    /// not finite.
+    /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows
+    /// that do not increase, or for 2^32 rows or more, [`Error::IndexOutOfRange`] for a row beyond the last,
+    /// [`Error::NotFinite`] for a value that is not finite.
     pub fn from_csc(
         rows: usize,
         column_starts: Vec<usize>,
@@ -184,8 +185,9 @@ impl SparseMatrix {
         Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
-    /// The matrix with given compressed columns, which must be sorted and in range: `column_starts` has one entry per column and one more, the
-    /// others one entry per value. For the crates of this workspace, which know that; others take [`from_csc`](Self::from_csc).
+    /// The matrix with given compressed columns, which must be sorted and in range: `column_starts` has one entry per
+    /// column and one more, the others one entry per value. For the crates of this workspace, which know that; others
+    /// take [`from_csc`](Self::from_csc).
     pub fn from_parts(rows: usize, column_starts: Vec<usize>, row_indices: Vec<u32>, values: Vec<f64>) -> Self {
         SparseMatrix { rows, pattern: Arc::new(Pattern::of(column_starts, row_indices)), values: Arc::new(values) }
     }
@@ -195,7 +197,8 @@ impl SparseMatrix {
         SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
     }
 
-    /// The matrix with `count` more rows and columns of zeros at its end; values are not copied, positions only if they are shared.
+    /// The matrix with `count` more rows and columns of zeros at its end; values are not copied, positions only if they
+    /// are shared.
     pub(super) fn with_empty(self, count: usize) -> Self {
         let SparseMatrix { rows, pattern, values } = self;
         let mut pattern = Arc::unwrap_or_clone(pattern);
@@ -241,7 +244,8 @@ impl SparseMatrix {
         rows.iter().map(|&row| row as usize).zip(values.iter().copied())
     }
 
-    /// Calls `take(of_row, value)` for each entry of a column, with the item of its row: a column of all rows is walked as one run.
+    /// Calls `take(of_row, value)` for each entry of a column, with the item of its row: a column of all rows is walked
+    /// as one run.
     pub(crate) fn with_rows<T>(&self, column: usize, of_rows: &mut [T], mut take: impl FnMut(&mut T, f64)) {
         let (rows, values) = self.column_slices(column);
         match rows.len() == of_rows.len() {
@@ -345,7 +349,8 @@ impl SparseMatrix {
         self.select(kept.len(), place, 0..self.columns())
     }
 
-    /// The given columns, as a matrix of `rows` rows; `place` gives the new place of a row, increasing, or `None` to leave it out.
+    /// The given columns, as a matrix of `rows` rows; `place` gives the new place of a row, increasing, or `None` to
+    /// leave it out.
     pub(crate) fn select(
         &self,
         rows: usize,

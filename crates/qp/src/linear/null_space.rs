@@ -33,19 +33,19 @@ const NO_ENTRY: f64 = 1e-24;
 pub struct NullSpace {
     /// Linearly independent vectors of length about one.
     pub vectors: Vec<Vec<Twice>>,
-    /// The largest share of its terms that is left in an entry of `A v`, for each vector: zero if `A v` vanishes exactly, for the
-    /// doubles of the matrix. Otherwise it would vanish with the entries rounded in another way, and the vector has no more
-    /// digits than the entries.
+    /// The largest share of its terms that is left in an entry of `A v`, for each vector: zero if `A v` vanishes
+    /// exactly, for the doubles of the matrix. Otherwise it would vanish with the entries rounded in another way, and
+    /// the vector has no more digits than the entries.
     pub shares: Vec<f64>,
 }
 
 impl NullSpace {
-    /// If a change of every entry of A by this share of itself makes `A v` vanish, A may be a singular matrix with rounded entries,
-    /// rounded several times during assembly.
+    /// If a change of every entry of A by this share of itself makes `A v` vanish, A may be a singular matrix with
+    /// rounded entries, rounded several times during assembly.
     ///
     /// # Source
-    /// W. Oettli, W. Prager, *Compatibility of approximate solution of linear equations with given error bounds for coefficients and
-    /// right-hand sides*, Numer. Math. 6 (1964) 405-409.
+    /// W. Oettli, W. Prager, *Compatibility of approximate solution of linear equations with given error bounds for
+    /// coefficients and right-hand sides*, Numer. Math. 6 (1964) 405-409.
     pub const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
 
     /// Returns `true` if A vanishes exactly on all vectors.
@@ -69,10 +69,11 @@ impl NullSpace {
 }
 
 impl SymmetricMatrix {
-    /// A basis of the null space of a positive semidefinite matrix with a diagonal of order one or zero; `None` if it has more
-    /// than 256 vectors.
+    /// A basis of the null space of a positive semidefinite matrix with a diagonal of order one or zero; `None` if it
+    /// has more than 256 vectors.
     ///
-    /// Inverse iteration with A + 1e-10 I, each vector orthogonal to those before, ends at the first vector with energy.
+    /// Inverse iteration with A + 1e-10 I, each vector orthogonal to those before, ends at the first vector with
+    /// energy.
     ///
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] if an eigenvalue is clearly negative, and those of the factorisation.
@@ -102,10 +103,11 @@ impl SymmetricMatrix {
         Ok(Some(basis))
     }
 
-    /// A null vector in twice the working precision, and the largest share of its terms that is left in an entry of `A v`.
+    /// A null vector in twice the working precision, and the largest share of its terms that is left in an entry of
+    /// `A v`.
     ///
-    /// `(A + s I)^-1 A v` is the component of v with energy, except for the share `s / eigenvalue`; the rounding in it lies
-    /// mostly in the null space.
+    /// `(A + s I)^-1 A v` is the component of v with energy, except for the share `s / eigenvalue`; the rounding in it
+    /// lies mostly in the null space.
     fn corrected(&self, factor: &Cholesky, vector: &[f64]) -> (Vec<Twice>, f64) {
         let mut vector: Vec<Twice> = vector.iter().map(|&value| value.into()).collect();
         let mut left = self.resistance(&vector);
@@ -183,9 +185,9 @@ impl SymmetricMatrix {
         forest.into_trees()
     }
 
-    /// A null vector as the sum of null vectors of single components, of length one: the components are independent of each
-    /// other, and one may be smaller than another by more digits than doubles have. Iteration errors in a component with energy
-    /// are left out.
+    /// A null vector as the sum of null vectors of single components, of length one: the components are independent of
+    /// each other, and one may be smaller than another by more digits than doubles have. Iteration errors in a
+    /// component with energy are left out.
     fn in_components(&self, vector: &[f64], (component, count): &(Vec<usize>, usize)) -> Vec<Vec<f64>> {
         if *count == 1 {
             return vec![vector.to_vec()];

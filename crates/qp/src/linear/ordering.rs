@@ -12,8 +12,8 @@ use super::factor::{call, memory};
 use super::quotient::Quotient;
 use super::{FactorError, SparseMatrix, SymmetricMatrix};
 
-/// Nested dissection takes about as long as this many multiplications of the factorisation for each edge of the graph; it is
-/// tried if minimum degree leaves a factorisation that costs several times as much.
+/// Nested dissection takes about as long as this many multiplications of the factorisation for each edge of the graph;
+/// it is tried if minimum degree leaves a factorisation that costs several times as much.
 const WORTH_DISSECTING: f64 = 50_000.0;
 
 /// Diagonals for which minimum degree gets memory: more than it needs.
@@ -46,8 +46,8 @@ impl Fill {
 /// A fill-reducing order of the columns of a symmetric matrix, given by its lower triangle: `order[i]` is the column
 /// that is eliminated as the i-th. The columns of `last` come last, as they are given.
 ///
-/// Columns with the same neighbours (the dofs of a node) are ordered as one, which is faster and gives less fill. The order is
-/// that of minimum degree, or of nested dissection if that is worth its time and needs fewer multiplications.
+/// Columns with the same neighbours (the dofs of a node) are ordered as one, which is faster and gives less fill. The
+/// order is that of minimum degree, or of nested dissection if that is worth its time and needs fewer multiplications.
 ///
 /// # Errors
 /// [`FactorError::Failed`] if memory or the index range does not suffice.
@@ -100,7 +100,8 @@ fn nested_dissection(quotient: &Quotient) -> Result<Vec<u32>, FactorError> {
 
 /// The elimination of the groups of a quotient graph in some order; groups without columns are left out.
 struct Elimination {
-    /// The groups in postorder of the elimination tree: each after all of its descendants, and these next to each other.
+    /// The groups in postorder of the elimination tree: each after all of its descendants, and these next to each
+    /// other.
     postorder: Vec<u32>,
     /// Multiplications of the factorisation, approximately.
     multiplications: f64,

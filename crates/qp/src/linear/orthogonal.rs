@@ -1,5 +1,5 @@
-//! The distance of vectors from the span of the others, by orthogonal directions: products of vectors would lose half the
-//! digits.
+//! The distance of vectors from the span of the others, by orthogonal directions: products of vectors would lose half
+//! the digits.
 
 use super::dense::wide_dot;
 use super::{UpperTriangle, dense_factor, dot, norm, take_out};
@@ -7,8 +7,8 @@ use super::{UpperTriangle, dense_factor, dot, norm, take_out};
 /// The component of a vector orthogonal to the others is rounding if it is below this share of the terms that cancel.
 const CANCELLED_VECTOR: f64 = 64.0 * f64::EPSILON;
 
-/// `sqrt((Z'Z)^-1_ii)`, one over the distance of column i of Z from the span of the others, for independent columns. It is
-/// infinite for columns that take part in a dependence to rounding. `None` if it `is_over` before.
+/// `sqrt((Z'Z)^-1_ii)`, one over the distance of column i of Z from the span of the others, for independent columns. It
+/// is infinite for columns that take part in a dependence to rounding. `None` if it `is_over` before.
 ///
 /// # Source
 /// Å. Björck, *Numerics of Gram-Schmidt orthogonalization*, Linear Algebra Appl. 197/198 (1994) 297-316.
@@ -28,12 +28,12 @@ pub fn inverse_lengths(columns: Vec<Vec<f64>>, is_over: impl Fn() -> bool) -> Op
     Some(lengths)
 }
 
-/// The largest number of lengths of a column that one over its distance from the span of the others may be, so that products of columns
-/// leave it more digits than a bound needs.
+/// The largest number of lengths of a column that one over its distance from the span of the others may be, so that
+/// products of columns leave it more digits than a bound needs.
 const CLEAR: f64 = 1e3;
 
-/// As [`inverse_lengths`], from the lower triangle of the products of this number of columns (column by column); `None` if they are not
-/// clearly independent.
+/// As [`inverse_lengths`], from the lower triangle of the products of this number of columns (column by column); `None`
+/// if they are not clearly independent.
 pub fn inverse_lengths_by_products(count: usize, mut products: Vec<f64>) -> Option<Vec<f64>> {
     let sizes: Vec<f64> = (0..count).map(|place| products[place * count + place].sqrt()).collect();
     if sizes.iter().any(|size| !(size * size).is_normal()) {

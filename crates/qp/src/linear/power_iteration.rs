@@ -2,8 +2,9 @@
 
 use super::factor::Real;
 
-/// The vector that `map` makes of a vector without symmetry, the same in every run, in `steps` applications, fewer if one gives `None`;
-/// the largest entry is one after each. The entries of the first vector are spread evenly from `least` to `least + 1`.
+/// The vector that `map` makes of a vector without symmetry, the same in every run, in `steps` applications, fewer if
+/// one gives `None`; the largest entry is one after each. The entries of the first vector are spread evenly from
+/// `least` to `least + 1`.
 pub fn power_iteration<T: Real>(
     dim: usize,
     least: f64,

@@ -30,7 +30,8 @@ impl Quotient {
         quotient
     }
 
-    /// Finds the neighbours: one member represents its group; neighbours above the diagonal come from their own columns.
+    /// Finds the neighbours: one member represents its group; neighbours above the diagonal come from their own
+    /// columns.
     fn connect(&mut self, lower: &SparseMatrix) {
         let count = self.count();
         let (mut below_starts, mut below) = (vec![0], Vec::new());

@@ -1,8 +1,8 @@
 //! The rows of a symmetric matrix, with both triangles, from the stored triangle.
 //!
-//! The lower triangle is stored column by column: the entries of a row right of its diagonal are one column of the triangle, those on
-//! the left are spread over the previous columns. A cursor for each column gives its next entry, and the columns with their next entry
-//! in the same row are linked in a list.
+//! The lower triangle is stored column by column: the entries of a row right of its diagonal are one column of the
+//! triangle, those on the left are spread over the previous columns. A cursor for each column gives its next entry, and
+//! the columns with their next entry in the same row are linked in a list.
 
 use super::SymmetricMatrix;
 
@@ -17,8 +17,8 @@ impl SymmetricMatrix {
         lengths
     }
 
-    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order. In addition to the matrix this
-    /// takes 16 bytes for each row.
+    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order. In addition to
+    /// the matrix this takes 16 bytes for each row.
     ///
     /// # Errors
     /// Those of `take`.

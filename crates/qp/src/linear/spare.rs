@@ -1,5 +1,5 @@
-//! Long work vectors that are kept for the next use. Up to some length an allocator keeps freed memory itself; beyond it the system clears
-//! every page at each use, and that takes longer than the work on it.
+//! Long work vectors that are kept for the next use. Up to some length an allocator keeps freed memory itself; beyond
+//! it the system clears every page at each use, and that takes longer than the work on it.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

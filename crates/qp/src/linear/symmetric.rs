@@ -21,7 +21,8 @@ pub struct SymmetricMatrix {
 }
 
 impl SymmetricMatrix {
-    /// The same without entries beside the diagonal that are at most `share` of the root of the product of their diagonal entries.
+    /// The same without entries beside the diagonal that are at most `share` of the root of the product of their
+    /// diagonal entries.
     pub fn without_rounding(&self, share: f64) -> Self {
         let diagonal = self.diagonal();
         let is_rounding = |i: usize, j: usize, value: f64| {
@@ -45,9 +46,9 @@ impl SymmetricMatrix {
         Ok(SymmetricMatrix { lower: Columns { starts, rows: &rows, values }.lower()? })
     }
 
-    /// From the compressed columns of both triangles, which must be alike as in [`SymmetricMatrix::from_full`]: `column_starts` of
-    /// length `dim + 1`, and for each entry its row, from 0 and increasing within a column, and its value. The indices have any
-    /// type. One pass; only the lower triangle is copied.
+    /// From the compressed columns of both triangles, which must be alike as in [`SymmetricMatrix::from_full`]:
+    /// `column_starts` of length `dim + 1`, and for each entry its row, from 0 and increasing within a column, and its
+    /// value. The indices have any type. One pass; only the lower triangle is copied.
     ///
     /// ```
     /// use signorini_qp::SymmetricMatrix;
@@ -60,9 +61,9 @@ impl SymmetricMatrix {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows that do not
-    /// increase, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`], [`Error::NotSymmetric`] if the triangles
-    /// differ, [`Error::Numerical`] for lack of memory.
+    /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows
+    /// that do not increase, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`],
+    /// [`Error::NotSymmetric`] if the triangles differ, [`Error::Numerical`] for lack of memory.
     pub fn from_csc<I>(column_starts: &[I], row_indices: &[I], values: &[f64]) -> Result<Self, Error>
     where
         I: Copy + TryInto<usize>,
@@ -283,8 +284,8 @@ impl SymmetricMatrix {
         self.product(0..self.dim(), &magnitude, f64::abs)
     }
 
-    /// The contribution of some columns, and of the rows with the same numbers, to A x, from the first column on as far as they reach;
-    /// `entry` makes the entries of A.
+    /// The contribution of some columns, and of the rows with the same numbers, to A x, from the first column on as far
+    /// as they reach; `entry` makes the entries of A.
     fn product(&self, columns: Range<usize>, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let first = columns.start;
         let end = |column: usize| self.lower.column_rows(column).last().map_or(first, |&row| row as usize + 1);

@@ -69,8 +69,8 @@ fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactP
 /// Reads the gaps in `g1.mtx` and the load in `f1.mtx` of a directory, as [`ContactProblem::read_other_end`] describes.
 ///
 /// # Errors
-/// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps that are
-/// infinite in other rows.
+/// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps
+/// that are infinite in other rows.
 pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem, Error> {
     let [gap_file, load_file] = ["g1.mtx", "f1.mtx"].map(|name| directory.join(name));
     if !gap_file.exists() && !load_file.exists() {
@@ -104,8 +104,8 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
     }
 }
 
-/// The near-null space of the body: from `near_null.mtx`, one column for each vector, or from `coordinates.mtx`, one row for each node.
-/// The dofs of a node then follow each other and are all free.
+/// The near-null space of the body: from `near_null.mtx`, one column for each vector, or from `coordinates.mtx`, one
+/// row for each node. The dofs of a node then follow each other and are all free.
 fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
     let file = directory.join("near_null.mtx");
     if file.exists() {
@@ -194,8 +194,8 @@ fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
     Ok(vector)
 }
 
-/// Name and text of the Matrix Market files of an answer: `u.mtx` (displacement, length n), `lambda.mtx` (multiplier, length m), and with
-/// equality rows `mu.mtx` (their multiplier, length p).
+/// Name and text of the Matrix Market files of an answer: `u.mtx` (displacement, length n), `lambda.mtx` (multiplier,
+/// length m), and with equality rows `mu.mtx` (their multiplier, length p).
 pub fn solution_files(solution: &Solution) -> Vec<(&'static str, String)> {
     let vectors = [
         ("u.mtx", &solution.displacement),

@@ -1,9 +1,9 @@
 //! Matrix Market files: the raw form in which problems and answers are exchanged.
 //!
-//! A problem directory holds `K.mtx` (symmetric), `f.mtx`, `B.mtx` and `g.mtx`; an answer adds `u.mtx` and `lambda.mtx`.
-//! Indices are the free dofs. A gap may be `inf`: a row without obstacle. Multigrid reads `near_null.mtx` (one column for
-//! each displacement that costs next to no energy, as the rigid-body modes) or `coordinates.mtx` (one row for each node).
-//! A sweep goes to other gaps, `g1.mtx`, another load, `f1.mtx`, or both.
+//! A problem directory holds `K.mtx` (symmetric), `f.mtx`, `B.mtx` and `g.mtx`; an answer adds `u.mtx` and
+//! `lambda.mtx`. Indices are the free dofs. A gap may be `inf`: a row without obstacle. Multigrid reads `near_null.mtx`
+//! (one column for each displacement that costs next to no energy, as the rigid-body modes) or `coordinates.mtx` (one
+//! row for each node). A sweep goes to other gaps, `g1.mtx`, another load, `f1.mtx`, or both.
 //!
 //! # Source
 //! R. F. Boisvert, R. Pozo, K. A. Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
@@ -19,7 +19,8 @@ use std::io::{self, Write};
 use crate::file::Streamed;
 use crate::linear::{SparseMatrix, SymmetricMatrix};
 
-/// The Matrix Market file of a vector in any unit, as text: an array of one column, one entry per line, in the order of the vector.
+/// The Matrix Market file of a vector in any unit, as text: an array of one column, one entry per line, in the order of
+/// the vector.
 pub fn format_vector(vector: &[f64]) -> String {
     Streamed::new("vector", |out| write_columns(out, &[vector])).text()
 }

@@ -177,8 +177,8 @@ impl Source<'_> {
         Ok(content)
     }
 
-    /// Reserves room for the announced entries, as far as the length of the file makes their number credible: without it, a growing
-    /// vector would take twice the memory for a while.
+    /// Reserves room for the announced entries, as far as the length of the file makes their number credible: without
+    /// it, a growing vector would take twice the memory for a while.
     fn make_room(&self, content: &mut Content, announced: usize) {
         let credible = (self.length / LEAST_OF_ENTRY) as usize;
         // Without reserved room, entries are taken one by one.

@@ -5,10 +5,10 @@
 //!                        [ C  I-C] [l] = [ C g ]      C <- diag heaviside( (I-C)(u-g) - C l )     until C is settled
 //! ```
 //!
-//! A primal-dual active set, or semismooth Newton, method: from most starts it ends in a few steps. It can cycle. When a set
-//! returns, the loop goes on by block principal pivoting, with single pivots (largest row first) if a block exchange does not
-//! reduce the number of violations: finite for every P-matrix. The loop ends unsettled if closed rows contradict each other, or
-//! if a set returns under pivoting too.
+//! A primal-dual active set, or semismooth Newton, method: from most starts it ends in a few steps. It can cycle. When
+//! a set returns, the loop goes on by block principal pivoting, with single pivots (largest row first) if a block
+//! exchange does not reduce the number of violations: finite for every P-matrix. The loop ends unsettled if closed rows
+//! contradict each other, or if a set returns under pivoting too.
 //!
 //! # Source
 //! J. J. Júdice and F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
@@ -94,7 +94,8 @@ impl Solver for ActiveSet<'_> {
     }
 }
 
-/// The factor of an earlier set for the steps of a loop, if K is definite, every row bounds one dof, and a factor is expensive.
+/// The factor of an earlier set for the steps of a loop, if K is definite, every row bounds one dof, and a factor is
+/// expensive.
 ///
 /// # Errors
 /// [`Error::Numerical`] for lack of memory.
@@ -106,9 +107,9 @@ fn earlier_factor<'a>(scaled: &ScaledProblem<'a>) -> Result<Option<EarlierFactor
     Ok(if most_steps >= TRIAL { EarlierFactor::of(scaled.problem, most_steps) } else { None })
 }
 
-/// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the factor of an
-/// `earlier` set if that takes few steps, or by the compliance of the rows if they do not follow from each other, otherwise by its own.
-/// The ending of the loop if there is none.
+/// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the
+/// factor of an `earlier` set if that takes few steps, or by the compliance of the rows if they do not follow from each
+/// other, otherwise by its own. The ending of the loop if there is none.
 ///
 /// # Errors
 /// As [`ScaledProblem::hold_with_more`].
@@ -135,8 +136,8 @@ fn balance(
     }))
 }
 
-/// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if they do not
-/// hold the body, or contradict each other.
+/// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if
+/// they do not hold the body, or contradict each other.
 ///
 /// # Errors
 /// [`Error::Numerical`] for lack of memory.
@@ -193,8 +194,8 @@ impl Rule {
     }
 }
 
-/// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding and beyond a share of the largest displacement or
-/// multiplier.
+/// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding and beyond a share of the
+/// largest displacement or multiplier.
 fn wrong_rows(problem: &ContactProblem, balance: &Equilibrium, closed: &ContactSet, share: f64) -> Vec<usize> {
     let Equilibrium { displacement: u, multiplier, along_rows: along, .. } = balance;
     let (gap, reach, strongest) = (problem.gap(), reach(problem, along), share * largest(multiplier));

@@ -1,8 +1,8 @@
 //! Balance of forces on a set of closed rows, by conjugate gradients with the factor of an earlier set.
 //!
-//! From one set of an active-set loop to the next few rows change sides. If every row bounds one dof, the dofs that are free in
-//! both sets use the earlier factor as preconditioner, and those that became free their own diagonal: a few steps cost less
-//! than a factorisation.
+//! From one set of an active-set loop to the next few rows change sides. If every row bounds one dof, the dofs that are
+//! free in both sets use the earlier factor as preconditioner, and those that became free their own diagonal: a few
+//! steps cost less than a factorisation.
 
 use super::equilibrium::Equilibrium;
 use crate::linear::{Analysis, Blocks, Cholesky, Iterate, dot};
@@ -12,8 +12,8 @@ use crate::solution::ContactSet;
 /// Number of multiplications of a factorisation, for each value of the factor, that take about as long as a step.
 const WORK_OF_STEP: f64 = 10.0;
 
-/// Largest number of steps for one set, however expensive a factor is: beyond this, rounding of the conjugate directions costs
-/// further steps.
+/// Largest number of steps for one set, however expensive a factor is: beyond this, rounding of the conjugate
+/// directions costs further steps.
 const MOST_STEPS: f64 = 25.0;
 
 /// Number of steps after which the rate of convergence shows whether the remaining steps suffice.
@@ -46,7 +46,8 @@ pub struct EarlierFactor<'a> {
 }
 
 impl<'a> EarlierFactor<'a> {
-    /// No factor yet, for at most `most_steps` steps from one set to the next; `None` if a row has several entries, or none.
+    /// No factor yet, for at most `most_steps` steps from one set to the next; `None` if a row has several entries, or
+    /// none.
     pub fn of(problem: &'a ContactProblem, most_steps: usize) -> Option<Self> {
         let by_row = problem.contact().transposed();
         let single = |row| {
@@ -64,8 +65,8 @@ impl<'a> EarlierFactor<'a> {
         self.factor = Some((cholesky, held));
     }
 
-    /// The balance of a set, from a displacement `near` it. `None` if that would take too many steps, or if two of its rows hold one
-    /// dof; then the factor is freed, because there is room for one at a time.
+    /// The balance of a set, from a displacement `near` it. `None` if that would take too many steps, or if two of its
+    /// rows hold one dof; then the factor is freed, because there is room for one at a time.
     pub fn balance(&mut self, closed: &ContactSet, near: &[f64]) -> Option<Equilibrium> {
         let factor = self.factor.take()?;
         let balance = self.balance_by(&factor, closed, near)?;
@@ -144,8 +145,8 @@ impl Task<'_> {
         self.on_free(step)
     }
 
-    /// The displacement after conjugate gradients until the remaining energy falls to `enough`; `None` if that takes more steps than
-    /// are left. `step` is the preconditioned residual.
+    /// The displacement after conjugate gradients until the remaining energy falls to `enough`; `None` if that takes
+    /// more steps than are left. `step` is the preconditioned residual.
     fn descend(&mut self, mut iterate: Iterate, mut step: Vec<f64>) -> Option<Vec<f64>> {
         let first = dot(&iterate.rest, &step);
         let (mut left, mut taken, most) = (first, 0, self.steps_left);

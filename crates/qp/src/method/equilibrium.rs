@@ -4,14 +4,15 @@ use crate::linear::{Cholesky, Compliance, largest};
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
 
-/// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains about four
-/// digits, and the factorisation loses as many.
+/// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains
+/// about four digits, and the factorisation loses as many.
 pub const WEIGHT: f64 = 65536.0;
 
 /// Corrections of the multipliers; four or five suffice if the closed rows are consistent.
 const CORRECTIONS: usize = 25;
 
-/// A correction by the compliance below this is the last: a factor that is safely definite makes the next one its square, or less.
+/// A correction by the compliance below this is the last: a factor that is safely definite makes the next one its
+/// square, or less.
 const SQUARED: f64 = 1e-9;
 
 /// Closed rows that still miss their gap by this, relative to the displacement, contradict each other.
@@ -30,8 +31,8 @@ pub struct Equilibrium {
     pub consistent: bool,
 }
 
-/// The size of the displacements that matter: those of the contact rows or, if all of these are zero except for rounding, the
-/// displacement by the load of a stiffness of order one. `along_rows` is the displacement of the rows.
+/// The size of the displacements that matter: those of the contact rows or, if all of these are zero except for
+/// rounding, the displacement by the load of a stiffness of order one. `along_rows` is the displacement of the rows.
 pub fn reach(problem: &ContactProblem, along_rows: &[f64]) -> f64 {
     largest(along_rows).max(largest(problem.load()))
 }
@@ -56,8 +57,9 @@ pub fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &Conta
     corrected(problem, closed, Correcting { weight: WEIGHT, enough: f64::EPSILON, correct, is_near })
 }
 
-/// The same by the compliance of the rows, which solves the saddle-point system itself; `None` if closed rows follow from others. A
-/// balance that is not the one sought, because it `is_near` no answer, is left as it is after the first correction.
+/// The same by the compliance of the rows, which solves the saddle-point system itself; `None` if closed rows follow
+/// from others. A balance that is not the one sought, because it `is_near` no answer, is left as it is after the first
+/// correction.
 pub fn by_compliance(
     problem: &ContactProblem,
     compliance: &Compliance,

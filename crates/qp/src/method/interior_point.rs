@@ -25,7 +25,8 @@ const NOTHING_EXPONENT: i32 = 60;
 /// Largest number of corrections of the unit.
 const UNIT_CORRECTIONS: usize = 4;
 
-/// Number of steps after which more do not help: on ill-conditioned data the residuals stall while the barrier parameter falls.
+/// Number of steps after which more do not help: on ill-conditioned data the residuals stall while the barrier
+/// parameter falls.
 const MAX_STEPS: u32 = 50;
 
 /// Options of [`Method::Qp`](crate::Method::Qp): its tolerance, and whether the active-set loop settles its contact
@@ -67,11 +68,11 @@ pub struct Barrier<'a> {
 }
 
 impl Solver for Barrier<'_> {
-    /// Solves the QP; the method has no use for a start. The contact set is that of the rows with `z / z_scale > s / s_scale`,
-    /// and `iterations` counts the steps over all units that were tried.
+    /// Solves the QP; the method has no use for a start. The contact set is that of the rows with
+    /// `z / z_scale > s / s_scale`, and `iterations` counts the steps over all units that were tried.
     ///
-    /// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the outcome is then
-    /// unsettled, and at rest if there is no answer in it.
+    /// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the
+    /// outcome is then unsettled, and at rest if there is no answer in it.
     ///
     /// # Errors
     /// [`Error::Numerical`] if the solver refuses its input.
@@ -111,8 +112,8 @@ fn unpolished(outcome: Outcome) -> Outcome {
     Outcome { history, variant: "-unpolished", ..outcome }
 }
 
-/// Units in which the answer is of order one, as exponents of two: if a fine mesh makes the stiffness large beside the forces,
-/// multipliers of order one in the scaled problem would need a displacement far beyond the gap.
+/// Units in which the answer is of order one, as exponents of two: if a fine mesh makes the stiffness large beside the
+/// forces, multipliers of order one in the scaled problem would need a displacement far beyond the gap.
 #[derive(Clone, Copy, Debug)]
 struct Unit {
     displacement: i32,

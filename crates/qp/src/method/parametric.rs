@@ -6,12 +6,13 @@
 //! d = b + G l,   d <= 0,   l <= 0,   d'l = 0,        b(t) = b_0 + t b_1
 //! ```
 //!
-//! Its solution is piecewise linear in t. The walk follows one piece to the first t at which an open row touches or a closed
-//! row loses its pressure, changes that row, and goes on: every such t is found exactly. If several rows change at once, the
-//! next set is the one with slopes of the right signs.
+//! Its solution is piecewise linear in t. The walk follows one piece to the first t at which an open row touches or a
+//! closed row loses its pressure, changes that row, and goes on: every such t is found exactly. If several rows change
+//! at once, the next set is the one with slopes of the right signs.
 //!
 //! # Source
-//! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, section 4.5 (parametric principal pivoting).
+//! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, section 4.5 (parametric principal
+//! pivoting).
 
 use super::SIGN_TOLERANCE;
 use crate::error::Error;
@@ -80,8 +81,8 @@ impl Compliance {
         self.constant.len()
     }
 
-    /// The rows of `closed`, and the Cholesky factor R of their block of G, without those that depend on others before them, which
-    /// hold them already. On the walk a dependent row does not join, because its violation does not grow.
+    /// The rows of `closed`, and the Cholesky factor R of their block of G, without those that depend on others before
+    /// them, which hold them already. On the walk a dependent row does not join, because its violation does not grow.
     fn independent(&self, closed: &ContactSet) -> (Vec<usize>, UpperTriangle) {
         let (mut kept, mut triangle) = (Vec::<usize>::new(), UpperTriangle::default());
         for row in closed.iter() {
@@ -168,8 +169,8 @@ impl Compliance {
         Err(Error::Numerical { step: "the exact path", reason })
     }
 
-    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found from `next` by
-    /// block pivoting on these rows, and by single pivots if that does not help.
+    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found from
+    /// `next` by block pivoting on these rows, and by single pivots if that does not help.
     fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: &Scales) -> Result<ContactSet, Error> {
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {

@@ -6,9 +6,9 @@
 //!     stop when norm(C (u - g)) < threshold
 //! ```
 //!
-//! The relative error of the multiplier is k/(k + eps) plus a rounding part that grows with eps. Both are equal near eps = 1e8
-//! k; there the ladder ends. The rounding part comes from cancellation in u - g, so each solve is for the change from the last
-//! displacement, in which u - g is small.
+//! The relative error of the multiplier is k/(k + eps) plus a rounding part that grows with eps. Both are equal near
+//! eps = 1e8 k; there the ladder ends. The rounding part comes from cancellation in u - g, so each solve is for the
+//! change from the last displacement, in which u - g is small.
 
 use std::collections::HashSet;
 
@@ -21,7 +21,8 @@ use crate::solution::{ContactSet, Iteration};
 /// The penalty at which the two parts of the error are equal: one over the square root of the machine precision.
 pub const BEST_PENALTY: f64 = 1e8;
 
-/// The ladder of penalties of [`Method::Penalty`](crate::Method::Penalty), and the conditions under which it ends early.
+/// The ladder of penalties of [`Method::Penalty`](crate::Method::Penalty), and the conditions under which it ends
+/// early.
 ///
 /// ```
 /// use signorini_qp::{Method, Penalty, Settings};
@@ -214,8 +215,8 @@ impl Rung {
         Rung { penalty, displacement: state.displacement.clone(), multiplier, closed }
     }
 
-    /// Richardson's extrapolation to an infinite penalty: to the first order, the error of either answer is proportional to one
-    /// over its penalty.
+    /// Richardson's extrapolation to an infinite penalty: to the first order, the error of either answer is
+    /// proportional to one over its penalty.
     fn extrapolated(&self, before: &Rung) -> Rung {
         let share = before.penalty / (self.penalty - before.penalty);
         let beyond = |now: &[f64], before: &[f64]| -> Vec<f64> {

@@ -10,8 +10,8 @@ use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
 
-/// Differences below this, relative to the largest displacement or multiplier, are rounding. Without this tolerance on signs a
-/// weakly active row would close and open without end.
+/// Differences below this, relative to the largest displacement or multiplier, are rounding. Without this tolerance on
+/// signs a weakly active row would close and open without end.
 pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
 
 /// A method, together with the problem that it works on.
@@ -39,7 +39,8 @@ pub struct ScaledProblem<'a> {
     pub problem: &'a ContactProblem,
     definiteness: Definiteness,
     augmented: &'a Augmented,
-    /// The compliance of the rows, by which a method balances forces; `None` if factors of the augmented matrix cost less.
+    /// The compliance of the rows, by which a method balances forces; `None` if factors of the augmented matrix cost
+    /// less.
     pub(super) compliance: Option<&'a Compliance>,
     factor_seconds: Cell<f64>,
     watch: Watch,
@@ -112,7 +113,8 @@ pub enum Ending {
     Settled,
     /// A limit ended the loop, or it came no further.
     Unsettled,
-    /// No row stops a motion without energy, or the energy is negative along one: there may be no answer, or more than one.
+    /// No row stops a motion without energy, or the energy is negative along one: there may be no answer, or more than
+    /// one.
     Unheld,
     /// No displacement meets these rows together, as verified weights of Farkas show.
     Infeasible {

@@ -6,8 +6,8 @@ use crate::solution::{ContactSet, Solution};
 
 /// Earlier knowledge of the answer: nothing, a contact set, a displacement, or both.
 ///
-/// It changes the number of iterations, not the answer. The active-set and the penalty loop start from the contact set, MPRGP
-/// from either; the interior-point method of Clarabel has no warm start, but its polish starts from the set.
+/// It changes the number of iterations, not the answer. The active-set and the penalty loop start from the contact set,
+/// MPRGP from either; the interior-point method of Clarabel has no warm start, but its polish starts from the set.
 ///
 /// ```
 /// use signorini_qp::{ContactProblem, Prepared, Settings, SparseMatrix, Start, SymmetricMatrix};
@@ -38,7 +38,8 @@ impl Start {
         self.displacement.is_none() && self.contact_set.is_none()
     }
 
-    /// An answer that was found earlier, one entry per dof, in length, and one per row, in force: the rows that press are closed.
+    /// An answer that was found earlier, one entry per dof, in length, and one per row, in force: the rows that press
+    /// are closed.
     pub fn earlier(displacement: Vec<f64>, multiplier: &[f64]) -> Self {
         let closed = multiplier.iter().map(|&force| force < 0.0).collect();
         Start { displacement: Some(displacement), contact_set: Some(closed) }

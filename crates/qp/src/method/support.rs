@@ -1,5 +1,5 @@
-//! Checks whether a set of closed rows holds the body; if not, finds the direction along which it is free, and whether the
-//! load drives it.
+//! Checks whether a set of closed rows holds the body; if not, finds the direction along which it is free, and whether
+//! the load drives it.
 
 use super::scaled::{Ending, ScaledProblem};
 use crate::error::Error;
@@ -34,9 +34,9 @@ struct FreeMode {
 }
 
 impl ScaledProblem<'_> {
-    /// The start of a loop: C = 0 if K is definite; otherwise all rows are replaced by springs, which hold the body, and those
-    /// in compression are closed. `None` if not even all rows together hold the body, or if K is not positive semidefinite to
-    /// the largest of the shifts.
+    /// The start of a loop: C = 0 if K is definite; otherwise all rows are replaced by springs, which hold the body,
+    /// and those in compression are closed. `None` if not even all rows together hold the body, or if K is not positive
+    /// semidefinite to the largest of the shifts.
     ///
     /// # Errors
     /// [`Error::Numerical`] for lack of memory.
@@ -67,8 +67,8 @@ impl ScaledProblem<'_> {
         Ok(self.factor(matrix)?.filter(holds))
     }
 
-    /// The same, once those rows have joined C that stop its free modes from `displacement`. The ending of a loop if there is no factor:
-    /// no row stops a mode, the energy is negative along some direction, or time is over.
+    /// The same, once those rows have joined C that stop its free modes from `displacement`. The ending of a loop if
+    /// there is no factor: no row stops a mode, the energy is negative along some direction, or time is over.
     ///
     /// # Errors
     /// [`Error::Numerical`] for lack of memory.
@@ -92,8 +92,8 @@ impl ScaledProblem<'_> {
         }
     }
 
-    /// The projection of the load onto the null space or, if the load does no work there, any null vector; `None` if no shift makes
-    /// the matrix definite.
+    /// The projection of the load onto the null space or, if the load does no work there, any null vector; `None` if no
+    /// shift makes the matrix definite.
     fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<Option<FreeMode>, Error> {
         // A weight does not change the null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
@@ -113,8 +113,8 @@ impl ScaledProblem<'_> {
         Ok(None)
     }
 
-    /// Closes the open rows that stop a mode first, if it starts from `displacement`; a mode that the load does not drive may go
-    /// either way. Returns `false` if no row stops it.
+    /// Closes the open rows that stop a mode first, if it starts from `displacement`; a mode that the load does not
+    /// drive may go either way. Returns `false` if no row stops it.
     fn stop(&self, mode: &FreeMode, displacement: &[f64], closed: &mut ContactSet) -> bool {
         let (contact, violation) = (self.problem.contact(), self.problem.violation(displacement));
         let (speed, terms) = (contact.mul(&mode.direction), contact.mul_abs(&mode.direction));

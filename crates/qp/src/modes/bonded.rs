@@ -30,8 +30,8 @@ struct Pivot {
 }
 
 impl Bonded {
-    /// The space in which the rows of B (m x n) with the indices `closed` vanish. The unknowns of `first` are eliminated where they can be;
-    /// otherwise that with the largest entry of a row.
+    /// The space in which the rows of B (m x n) with the indices `closed` vanish. The unknowns of `first` are
+    /// eliminated where they can be; otherwise that with the largest entry of a row.
     ///
     /// # Errors
     /// [`Error::IndexOutOfRange`] for a row beyond the last.
@@ -118,8 +118,8 @@ impl Bonded {
         self.lift.mul_transposed(y)
     }
 
-    /// The multipliers of the first `rows` rows of B: with those of the others `B' lambda` equals `force` (length n), which must be such
-    /// a sum. Rows that are not closed, or follow from others, have zero.
+    /// The multipliers of the first `rows` rows of B: with those of the others `B' lambda` equals `force` (length n),
+    /// which must be such a sum. Rows that are not closed, or follow from others, have zero.
     pub fn multiplier(&self, rows: usize, force: &[f64]) -> Vec<f64> {
         let mut multiplier = vec![0.0; rows];
         for Pivot { unknown, made_of, .. } in &self.pivots {

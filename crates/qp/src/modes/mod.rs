@@ -1,12 +1,14 @@
 //! Natural vibrations: the lowest solutions of `K x = w M x`, with a proof by counting that none is missed.
 //!
-//! With the factor `K + s M = L L'` the lowest eigenvalues w are the largest 1/(w + s) of `L^-1 M L^-T`, which a block Krylov space finds
-//! after few products. The negative pivots of `K - t M` count the eigenvalues below t: if the space has as many, it has them all.
+//! With the factor `K + s M = L L'` the lowest eigenvalues w are the largest 1/(w + s) of `L^-1 M L^-T`, which a block
+//! Krylov space finds after few products. The negative pivots of `K - t M` count the eigenvalues below t: if the space
+//! has as many, it has them all.
 //!
 //! # Source
-//! T. Ericsson, A. Ruhe, *The spectral transformation Lanczos method for the numerical solution of large sparse generalized symmetric
-//! eigenvalue problems*, Math. Comp. 35 (1980) 1251-1268. R. G. Grimes, J. G. Lewis, H. D. Simon, *A shifted block Lanczos algorithm for
-//! solving sparse symmetric generalized eigenproblems*, SIAM J. Matrix Anal. Appl. 15 (1994) 228-272.
+//! T. Ericsson, A. Ruhe, *The spectral transformation Lanczos method for the numerical solution of large sparse
+//! generalized symmetric eigenvalue problems*, Math. Comp. 35 (1980) 1251-1268. R. G. Grimes, J. G. Lewis, H. D. Simon,
+//! *A shifted block Lanczos algorithm for solving sparse symmetric generalized eigenproblems*, SIAM J. Matrix Anal.
+//! Appl. 15 (1994) 228-272.
 
 mod bonded;
 
@@ -20,11 +22,12 @@ use bonded::Bonded;
 /// A pivot of a matrix with a diagonal of order one below this is rounding: the matrix may be singular.
 const SINGULAR: f64 = 1e-12;
 
-/// Shift of a singular matrix, relative to the smallest ratio of diagonal entries: far above the rounding of its pivots, far below the
-/// eigenvalues that are not zero.
+/// Shift of a singular matrix, relative to the smallest ratio of diagonal entries: far above the rounding of its
+/// pivots, far below the eigenvalues that are not zero.
 const SHIFT: f64 = 1e-8;
 
-/// The largest ratio of the largest and the smallest eigenvalue of the operator: with more, the smallest have too few digits.
+/// The largest ratio of the largest and the smallest eigenvalue of the operator: with more, the smallest have too few
+/// digits.
 const SPREAD: f64 = 1e6;
 
 /// Pairs after the last wanted one among which a gap for the count is looked for.
@@ -51,23 +54,27 @@ const MOST_COLUMNS: usize = 240;
 /// The lowest natural vibrations of a problem with some rows held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// Eigenvalues w = (2 pi f)^2, one for each mode, not decreasing, in one over time squared; exactly zero for a motion without energy.
+    /// Eigenvalues w = (2 pi f)^2, one for each mode, not decreasing, in one over time squared; exactly zero for a
+    /// motion without energy.
     pub values: Vec<f64>,
-    /// A vector x of each eigenvalue, length n, in one over the root of mass: `x'M x = 1`, and the largest entry is positive.
+    /// A vector x of each eigenvalue, length n, in one over the root of mass: `x'M x = 1`, and the largest entry is
+    /// positive.
     pub vectors: Vec<Vec<f64>>,
-    /// The forces of the rows in each mode, length m, in the unit of `K x`: `K x - w M x = B' lambda`; of either sign, zero for open rows.
+    /// The forces of the rows in each mode, length m, in the unit of `K x`: `K x - w M x = B' lambda`; of either sign,
+    /// zero for open rows.
     pub multipliers: Vec<Vec<f64>>,
-    /// For each pair, dimensionless, `>= 0`: the norm of `K x - w M x` in the inverse of K + s M over the root of w + s. An eigenvalue w*
-    /// exists with `|w* - w| <= residual (w* + s)` up to rounding; s is zero unless K is singular, or w is spread over many digits.
+    /// For each pair, dimensionless, `>= 0`: the norm of `K x - w M x` in the inverse of K + s M over the root of w +
+    /// s. An eigenvalue w* exists with `|w* - w| <= residual (w* + s)` up to rounding; s is zero unless K is singular,
+    /// or w is spread over many digits.
     pub residuals: Vec<f64>,
     /// `true` if the count of negative pivots shows that no eigenvalue below the last one is missed.
     pub is_complete: bool,
 }
 
 impl ContactProblem {
-    /// The `count` lowest pairs of `K x = w M x`, with the mass M (n x n, positive semidefinite), on the vectors on which the rows `closed`
-    /// and all equality rows vanish; fewer if M has a smaller rank. Unknowns of `first`, such as those without stiffness, are eliminated where
-    /// a row allows it.
+    /// The `count` lowest pairs of `K x = w M x`, with the mass M (n x n, positive semidefinite), on the vectors on
+    /// which the rows `closed` and all equality rows vanish; fewer if M has a smaller rank. Unknowns of `first`, such
+    /// as those without stiffness, are eliminated where a row allows it.
     ///
     /// ```
     /// use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, Watch};
@@ -87,8 +94,8 @@ impl ContactProblem {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Shape`] if the sizes differ, [`Error::IndexOutOfRange`] for a row beyond the last; [`Error::NotConvex`] if both matrices
-    /// vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
+    /// [`Error::Shape`] if the sizes differ, [`Error::IndexOutOfRange`] for a row beyond the last; [`Error::NotConvex`]
+    /// if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
     pub fn modes(
         &self,
         mass: &SymmetricMatrix,
@@ -230,7 +237,8 @@ impl Shifted<'_> {
         Ok(space)
     }
 
-    /// A shift with which the largest eigenvalue keeps its digits, if the smallest of the first `count` lie far below it.
+    /// A shift with which the largest eigenvalue keeps its digits, if the smallest of the first `count` lie far below
+    /// it.
     fn better_shift(&self, pairs: &Pairs, count: usize) -> Option<f64> {
         let (first, last) = (pairs.values.first()?, pairs.values[..with_mass(pairs, count)].last()?);
         (first / last > SPREAD).then(|| (1.0 / last - self.shift) / SPREAD.sqrt())
@@ -316,8 +324,8 @@ impl Shifted<'_> {
         })
     }
 
-    /// The ends of a gap of the eigenvalues w at or after the first `count` ones, and how many of the pairs lie below it; `None` without a
-    /// gap.
+    /// The ends of a gap of the eigenvalues w at or after the first `count` ones, and how many of the pairs lie below
+    /// it; `None` without a gap.
     fn gap_after(&self, pairs: &Pairs, count: usize) -> Option<([f64; 2], usize)> {
         let all = pairs.values.len();
         // Eigenvalues 1/(w + s), decreasing.

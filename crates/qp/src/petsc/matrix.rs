@@ -88,7 +88,8 @@ impl Rows {
     /// Reads the next row; `false` behind the last.
     ///
     /// # Errors
-    /// [`Error::File`]; [`Error::FileBytes`] for columns that do not increase or lie outside, and for values that are not finite.
+    /// [`Error::File`]; [`Error::FileBytes`] for columns that do not increase or lie outside, and for values that are
+    /// not finite.
     pub fn read(&mut self, into: &mut Row) -> Result<bool, Error> {
         let Some(&length) = self.lengths.get(self.next) else { return Ok(false) };
         let row = self.next;

@@ -101,7 +101,8 @@ fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &La
     write_rows(out, stiffness, layout, |_| mean.to_be_bytes(), |_, value| value.to_be_bytes())
 }
 
-/// The `bytes` of each entry of the stiffness, row by row at their places, and those of `own` if a component is supported.
+/// The `bytes` of each entry of the stiffness, row by row at their places, and those of `own` if a component is
+/// supported.
 fn write_rows<const COUNT: usize>(
     out: &mut dyn Write,
     stiffness: &SymmetricMatrix,

@@ -160,15 +160,16 @@ pub(super) const OF_EXISTENCE: &[Rung] = &[
 pub(crate) enum From {
     /// The start that the caller gave, or none.
     Given,
-    /// The start that the caller gave, or the set that a few cycles of multigrid find: contact is everywhere, and a front of closed
-    /// rows moves by one row of nodes with every set.
+    /// The start that the caller gave, or the set that a few cycles of multigrid find: contact is everywhere, and a
+    /// front of closed rows moves by one row of nodes with every set.
     Cycles,
     /// The best answer of the attempts so far.
     Best,
     Nothing,
 }
 
-/// One attempt: its means, its start, its limits, its condition, its reason, and the steps that may follow with the same means.
+/// One attempt: its means, its start, its limits, its condition, its reason, and the steps that may follow with the
+/// same means.
 #[derive(Clone, Debug)]
 pub(crate) struct Attempt {
     pub means: Means,

@@ -8,14 +8,15 @@ use crate::settings::Method;
 use crate::settings::Settings;
 use crate::solution::{Expected, Why};
 
-/// The direct path is exact and its bound proven: multigrid replaces it only if the direct path takes this many times as long.
+/// The direct path is exact and its bound proven: multigrid replaces it only if the direct path takes this many times
+/// as long.
 const CLEARLY: f64 = 1.15;
 
 /// The name of the methods with a factor in the comparison with multigrid.
 const WITH_FACTOR: &str = "factor";
 
-/// Digits of an answer to rounding, and those whose cycles a start takes: a face is found first. Measured: 18 to 21 cycles for 2.3 digits of
-/// answers that take 45, 7 of answers that take 16.
+/// Digits of an answer to rounding, and those whose cycles a start takes: a face is found first. Measured: 18 to 21
+/// cycles for 2.3 digits of answers that take 45, 7 of answers that take 16.
 const ALL_DIGITS: f64 = 9.0;
 const FIRST_DIGITS: f64 = 1.5;
 
@@ -42,7 +43,8 @@ impl Estimate {
         !matches!(self.choose(most_bytes), Ok(Choice::Factor { .. }) | Err(_))
     }
 
-    /// The path to take within `most_bytes`. If a factor is not clearly too large, only its analysis decides whether it fits.
+    /// The path to take within `most_bytes`. If a factor is not clearly too large, only its analysis decides whether it
+    /// fits.
     ///
     /// # Errors
     /// [`Error::NoRoom`] if neither fits.
@@ -128,8 +130,9 @@ impl Estimate {
     }
 }
 
-/// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from multigrid. A
-/// factor gives a proven bound; it is taken if it fits into the memory and is estimated to take at most this number of seconds.
+/// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from
+/// multigrid. A factor gives a proven bound; it is taken if it fits into the memory and is estimated to take at most
+/// this number of seconds.
 ///
 /// # Errors
 /// [`Error::NoRoom`] if neither fits into the memory.

@@ -167,7 +167,8 @@ impl Ladder {
         Attempt { means, start, limits, when, because: because.into(), steps }
     }
 
-    /// Adds the attempts with a factor: the `first`; after a shortcut in double precision; after a condensation on all dofs.
+    /// Adds the attempts with a factor: the `first`; after a shortcut in double precision; after a condensation on all
+    /// dofs.
     fn with_factor(&mut self, first: Attempt) {
         let means = first.means;
         self.add(first);

@@ -22,8 +22,8 @@ pub(crate) struct Layout {
     pub method: ByFactor,
     /// The precision of the factor.
     pub width: Width,
-    /// `true` if the factor of the stiffness is kept beside those of the contact sets; if not, it is computed again for the
-    /// certificate.
+    /// `true` if the factor of the stiffness is kept beside those of the contact sets; if not, it is computed again for
+    /// the certificate.
     pub keeps_norm: bool,
 }
 

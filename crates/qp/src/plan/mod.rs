@@ -1,5 +1,5 @@
-//! All decisions of a solve. [`Ladder::of`] says what will be tried, in order, and why, before anything is solved; [`Ladder::next`]
-//! says what follows after what was found. `run` carries it out and decides nothing.
+//! All decisions of a solve. [`Ladder::of`] says what will be tried, in order, and why, before anything is solved;
+//! [`Ladder::next`] says what follows after what was found. `run` carries it out and decides nothing.
 //!
 //! ```text
 //! elimination   pairs of rows that are equalities eliminated, the rest by a ladder of its own
@@ -11,8 +11,9 @@
 //! at the end    existence, if that is in doubt -> proximal steps, if there is an answer -> uniqueness
 //! ```
 //!
-//! [`Method::Auto`] chooses between factor and multigrid by the estimates of `cost` (`choice`); the other one follows if the first is
-//! refused or falls short. The layout of a factor (`layout`) and the method on it (`rules`) are chosen once its pattern is analysed.
+//! [`Method::Auto`] chooses between factor and multigrid by the estimates of `cost` (`choice`); the other one follows
+//! if the first is refused or falls short. The layout of a factor (`layout`) and the method on it (`rules`) are chosen
+//! once its pattern is analysed.
 
 mod attempt;
 mod choice;

@@ -36,8 +36,8 @@ pub(super) fn check(problem: &ContactProblem) -> Result<(), Error> {
 /// The rank of the stiffness, by a Cholesky factor with the largest pivots; `None` if it is above `most`.
 ///
 /// # Source
-/// N. J. Higham, *Analysis of the Cholesky decomposition of a semi-definite matrix*, in *Reliable Numerical Computation*, Oxford University
-/// Press (1990) 161-185.
+/// N. J. Higham, *Analysis of the Cholesky decomposition of a semi-definite matrix*, in *Reliable Numerical
+/// Computation*, Oxford University Press (1990) 161-185.
 fn rank_within(problem: &ContactProblem, most: usize) -> Option<usize> {
     let (lower, diagonal) = (problem.stiffness().lower(), &problem.diagonal().values);
     let upper = lower.transposed();

@@ -33,8 +33,8 @@ impl Ladder {
         self.settings.goal().tolerance.min(SURE_CONDITIONS)
     }
 
-    /// The next step; `None` if the goal is met and nothing more is to be gained, if nothing is left, if an error is decided, or if the
-    /// watch is over.
+    /// The next step; `None` if the goal is met and nothing more is to be gained, if nothing is left, if an error is
+    /// decided, or if the watch is over.
     pub fn next(&self, history: &History, watch: &Watch) -> Option<Next> {
         let Some(last) = history.records.last() else { return Some(self.start_of(history.first)) };
         if matches!(last.ended, Ended::Decided(_)) || watch.is_over() {
@@ -176,8 +176,9 @@ impl Ladder {
         }
     }
 
-    /// Returns `true` if it is open whether an answer exists, or whether it is the only one. An answer without a bound leaves it open if
-    /// its conditions hold, or if the stiffness is known to be singular; the bound itself does not see dofs without stiffness.
+    /// Returns `true` if it is open whether an answer exists, or whether it is the only one. An answer without a bound
+    /// leaves it open if its conditions hold, or if the stiffness is known to be singular; the bound itself does not
+    /// see dofs without stiffness.
     fn is_doubtful(&self, history: &History) -> bool {
         let failed = |record: &Record| matches!(record.ended, Ended::Failed(Error::NotConvex { .. }));
         let is_unheld = history.last_answer().is_some_and(|answer| answer.is_unheld);
@@ -192,8 +193,8 @@ impl Ladder {
         }
     }
 
-    /// Returns `true` if the conditions hold and no error bound exceeds the effect of rounding the displacement: the answer can only
-    /// miss an accuracy beyond that.
+    /// Returns `true` if the conditions hold and no error bound exceeds the effect of rounding the displacement: the
+    /// answer can only miss an accuracy beyond that.
     fn is_exact(&self, certificate: &Certificate) -> bool {
         certificate.conditions_hold(self.settings.goal().tolerance) && certificate.energy_error_excess == 0.0
     }

@@ -4,7 +4,8 @@ use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
 use crate::transform::Pieces;
 
-/// A piece has at least this number of unknowns, if all parts together have twice as many: smaller parts are solved faster together.
+/// A piece has at least this number of unknowns, if all parts together have twice as many: smaller parts are solved
+/// faster together.
 const PIECE: usize = 2000;
 
 /// The pieces to solve separately; `None` if the problem is solved as one.

@@ -11,8 +11,8 @@ use crate::settings::{ByFactor, Precision};
 /// The interior point aims at this share of the requested accuracy.
 const INTERIOR_POINT_SHARE: f64 = 0.1;
 
-/// A factor with fewer multiplications for each row belongs to a chain. Along a chain of more than [`LONG`] rows a front of closed
-/// rows takes hundreds of sets; the interior point takes some twenty steps.
+/// A factor with fewer multiplications for each row belongs to a chain. Along a chain of more than [`LONG`] rows a
+/// front of closed rows takes hundreds of sets; the interior point takes some twenty steps.
 const CHAIN: f64 = 200.0;
 
 /// Rows of a long chain.
@@ -36,8 +36,8 @@ pub(crate) struct Size {
     pub is_crowded: bool,
 }
 
-/// Returns `true` if a problem has more long rows than dofs in them, or if most of its dofs have no stiffness, as in a linear program.
-/// Equalities are closed in every answer, and do not count.
+/// Returns `true` if a problem has more long rows than dofs in them, or if most of its dofs have no stiffness, as in a
+/// linear program. Equalities are closed in every answer, and do not count.
 pub(super) fn is_crowded(problem: &ContactProblem) -> bool {
     let mut bounded: Vec<bool> = problem.gap().iter().map(|gap| gap.is_finite()).collect();
     problem.equalities().iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| bounded[row] = false);

@@ -66,7 +66,8 @@ impl Ladder {
         refused.or_else(|| self.refusal.clone())
     }
 
-    /// The error that neither a factor nor multigrid has room, if the program chose between them and a factor was refused last.
+    /// The error that neither a factor nor multigrid has room, if the program chose between them and a factor was
+    /// refused last.
     pub fn no_room(&self, history: &History) -> Option<Error> {
         let (estimate, _) = self.choice.as_ref()?;
         let last = history.records.iter().rev().find(|record| record.step == Step::Method)?;
@@ -182,7 +183,8 @@ impl Ladder {
     }
 }
 
-/// Two lines for each attempt, with its condition and its reason; its steps are listed once for all attempts that have the same.
+/// Two lines for each attempt, with its condition and its reason; its steps are listed once for all attempts that have
+/// the same.
 impl fmt::Display for Ladder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut listed: Vec<(&[Rung], usize)> = Vec::new();

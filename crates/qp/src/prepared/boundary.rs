@@ -9,18 +9,19 @@ use crate::solution::{Certificate, ContactSet, Solution};
 
 /// The answer of a prepared problem on its contact boundary at some gap and load.
 ///
-/// The multipliers are those of the whole answer. Nothing here costs a sweep through the factor of the body, unless it is asked
-/// for: [`displacement`](Self::displacement) takes one, [`solution`](Self::solution) two.
+/// The multipliers are those of the whole answer. Nothing here costs a sweep through the factor of the body, unless it
+/// is asked for: [`displacement`](Self::displacement) takes one, [`solution`](Self::solution) two.
 #[derive(Clone, Debug)]
 pub struct BoundarySolution {
-    /// Contact multiplier lambda of the whole answer, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
+    /// Contact multiplier lambda of the whole answer, one entry per contact row, in the problem's unit of force, `<= 0`
+    /// in compression.
     pub multiplier: Vec<f64>,
     /// The contact rows that are closed at this gap and load.
     pub contact_set: ContactSet,
     /// Linear solves of the method, or its interior-point steps, as in [`Solution::iterations`].
     pub iterations: usize,
-    /// The certificate of the *condensed* problem, in its dimensionless units: its conditions are recomputed from the condensed
-    /// stiffness, load and rows, not from the problem itself, which would need the displacement of the body.
+    /// The certificate of the *condensed* problem, in its dimensionless units: its conditions are recomputed from the
+    /// condensed stiffness, load and rows, not from the problem itself, which would need the displacement of the body.
     pub condensed_certificate: Certificate,
     inside: Inside,
 }
@@ -102,8 +103,8 @@ impl Prepared {
 
 /// The functions that a motion calls in every step.
 impl Prepared {
-    /// As [`Prepared::boundary`] at these gaps (one entry per row, in length), for one of many steps: only its conditions must meet the tolerance, which costs no triangular
-    /// solve, unless the settings name an accuracy.
+    /// As [`Prepared::boundary`] at these gaps (one entry per row, in length), for one of many steps: only its
+    /// conditions must meet the tolerance, which costs no triangular solve, unless the settings name an accuracy.
     ///
     /// # Errors
     /// As [`Prepared::boundary`].
@@ -111,8 +112,8 @@ impl Prepared {
         self.on_boundary(gap, self.settings.accuracy.is_some())
     }
 
-    /// The displacement (one entry per dof, in length) at these gaps (one per row, in length), without a certificate; `None` if the method did not settle on a set, or if its answer is
-    /// only valid with a certificate.
+    /// The displacement (one entry per dof, in length) at these gaps (one per row, in length), without a certificate;
+    /// `None` if the method did not settle on a set, or if its answer is only valid with a certificate.
     ///
     /// # Errors
     /// As [`Prepared::boundary`].
@@ -120,7 +121,8 @@ impl Prepared {
         self.ask(gap, &self.start, |engine, task| engine.settled(task))
     }
 
-    /// The displacement, one entry per dof, in length, that the load causes if no row is closed, in the precision of the factor; `None` without one.
+    /// The displacement, one entry per dof, in length, that the load causes if no row is closed, in the precision of
+    /// the factor; `None` without one.
     pub fn response(&self) -> Option<Vec<f64>> {
         self.bench.as_ref().and_then(|bench| bench.engine.response(&bench.load))
     }

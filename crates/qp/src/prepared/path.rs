@@ -59,7 +59,8 @@ impl Path {
         &self.walk.pieces
     }
 
-    /// The multipliers, one per row, in force, at `t` on `piece`: at a corner the pieces on both sides agree except for rounding.
+    /// The multipliers, one per row, in force, at `t` on `piece`: at a corner the pieces on both sides agree except for
+    /// rounding.
     pub fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
         let [multiplier, _] = self.prepared.problem.split(self.walk.to_rows.multiplier(&piece.multiplier(t)));
         multiplier

@@ -12,8 +12,8 @@ use crate::run::{Run, Workbench, engine_by, solved};
 use crate::settings::Settings;
 use crate::solution::{Seconds, Solution};
 
-/// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid hierarchy is
-/// built for it, depending on the method.
+/// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid
+/// hierarchy is built for it, depending on the method.
 ///
 /// Clones are cheap and share the prepared data, and so do [`with_load`](Self::with_load),
 /// [`with_settings`](Self::with_settings) and [`starting_from`](Self::starting_from).
@@ -49,14 +49,15 @@ pub struct Prepared {
 const MANY_GAPS: usize = 10;
 
 impl Prepared {
-    /// Prepares `problem` for the method of `settings`: a hierarchy for [`Method::Mprgp`](crate::Method::Mprgp), a factor for every other;
-    /// [`Method::Auto`](crate::Method::Auto) takes the one that serves ten gaps in less time, as [`Prepared::for_gaps`].
+    /// Prepares `problem` for the method of `settings`: a hierarchy for [`Method::Mprgp`](crate::Method::Mprgp), a
+    /// factor for every other; [`Method::Auto`](crate::Method::Auto) takes the one that serves ten gaps in less time,
+    /// as [`Prepared::for_gaps`].
     ///
     /// # Errors
     /// * [`Error::Setting`] for a setting outside its range,
     /// * [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`,
-    /// * [`Error::OutOfTime`], [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::NoRoom`] if there is not enough time or memory
-    ///   left.
+    /// * [`Error::OutOfTime`], [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::NoRoom`] if there is not enough
+    ///   time or memory left.
     ///
     /// A stiffness that cannot be prepared, for example because it is not convex, is judged by [`Prepared::solve`].
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
@@ -101,8 +102,8 @@ impl Prepared {
         Err(ladder.no_room(&history).or_else(|| history.into_refusal()).unwrap_or(Error::Interrupted))
     }
 
-    /// The same problem under other settings. The prepared data are kept if their method works on them, with its condensation,
-    /// precision and threads; otherwise the problem is prepared again.
+    /// The same problem under other settings. The prepared data are kept if their method works on them, with its
+    /// condensation, precision and threads; otherwise the problem is prepared again.
     ///
     /// # Errors
     /// As [`Prepared::new`].
@@ -134,8 +135,8 @@ impl Prepared {
         Ok(Prepared { problem, bench, ..self.clone() })
     }
 
-    /// The same problem at other gaps, one per contact row, in m; negative if the obstacle starts inside the body. A solve is given its
-    /// gaps: these are for [`derivatives`](Self::derivatives).
+    /// The same problem at other gaps, one per contact row, in m; negative if the obstacle starts inside the body. A
+    /// solve is given its gaps: these are for [`derivatives`](Self::derivatives).
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit.
@@ -151,8 +152,8 @@ impl Prepared {
     /// Solves with these gaps, one per contact row, in m; negative if the obstacle starts inside the body.
     ///
     /// # Errors
-    /// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit or, with a factor,
-    /// gaps that are infinite in other rows than those of the problem that was prepared.
+    /// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit or,
+    /// with a factor, gaps that are infinite in other rows than those of the problem that was prepared.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let (problem, settings) = (self.problem_at(gap)?, self.settings.started()?);
         // Equalities are eliminated for each set of gaps anew.
@@ -178,8 +179,8 @@ impl Prepared {
     /// The problem at these gaps, under the current load.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit, [`Error::Infeasible`] for rows that contradict each
-    /// other at sight.
+    /// [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit, [`Error::Infeasible`] for rows
+    /// that contradict each other at sight.
     fn problem_at(&self, gap: &[f64]) -> Result<ContactProblem, Error> {
         self.start.of_all_rows(&self.problem).check(self.problem.dofs(), self.problem.rows())?;
         let problem = self.problem.with_gap(gap.to_vec())?;

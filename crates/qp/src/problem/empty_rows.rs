@@ -12,7 +12,8 @@ pub(super) fn without_entries(contact: &SparseMatrix) -> Vec<usize> {
     (0..contact.rows()).filter(|&row| !has_entry[row]).collect()
 }
 
-/// Sets the gaps of these rows to zero where they are rounding beside the largest; returns the rows with their former gaps.
+/// Sets the gaps of these rows to zero where they are rounding beside the largest; returns the rows with their former
+/// gaps.
 pub(super) fn settle(without_entries: &[usize], gap: &mut [f64]) -> Vec<(usize, f64)> {
     let size = OF_LARGEST * largest_finite(gap);
     let is_rounding = |row: &usize| gap[*row] != 0.0 && gap[*row].abs() <= size;

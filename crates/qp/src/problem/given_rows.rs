@@ -9,8 +9,8 @@ use crate::linear::{SparseMatrix, check_vector};
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
 
 impl ContactProblem {
-    /// The same problem with the equality rows `E u = e`: E is p x n, dimensionless, and e has length p, in m. They may follow from each
-    /// other. Then
+    /// The same problem with the equality rows `E u = e`: E is p x n, dimensionless, and e has length p, in m. They may
+    /// follow from each other. Then
     ///
     /// ```text
     /// K u - f - B' lambda - E' mu = 0,   E u = e,   mu of either sign
@@ -78,7 +78,8 @@ impl ContactProblem {
         (self.contact.select_rows(&rows), &self.gap[self.inequalities()..][..self.equality_rows])
     }
 
-    /// The matrix B (m x n, dimensionless) and the gaps g (length m, in m, negative inside the body), without the equality rows.
+    /// The matrix B (m x n, dimensionless) and the gaps g (length m, in m, negative inside the body), without the
+    /// equality rows.
     pub fn inequalities_given(&self) -> (Cow<'_, SparseMatrix>, &[f64]) {
         let count = self.inequalities();
         let rows = || self.contact.select_rows(&(0..count).collect::<Vec<usize>>());
@@ -103,7 +104,8 @@ impl ContactProblem {
         first_of_pair.map(in_words).collect()
     }
 
-    /// Multipliers of all rows, from those of the rows of B (m), followed by those of the equality rows (p); others stay as they are.
+    /// Multipliers of all rows, from those of the rows of B (m), followed by those of the equality rows (p); others
+    /// stay as they are.
     pub(crate) fn of_all_rows<'a>(&self, multiplier: &'a [f64]) -> Cow<'a, [f64]> {
         let inequalities = self.inequalities();
         if self.equality_rows == 0 || multiplier.len() != inequalities + self.equality_rows {

@@ -63,12 +63,13 @@ pub struct ContactProblem {
     /// The rows without an entry, and those of them whose gaps were rounding, with these gaps.
     without_entries: Arc<[usize]>,
     rounded: Vec<(usize, f64)>,
-    /// The rows that count as equalities by themselves, with a multiplier of either sign: only in a certificate, see `two_sided`.
+    /// The rows that count as equalities by themselves, with a multiplier of either sign: only in a certificate, see
+    /// `two_sided`.
     two_sided: Vec<bool>,
 }
 
-/// Data that follow from the matrices of a problem, and some also from which rows have an obstacle: computed at the first use
-/// and shared by the same problem under other loads and gaps.
+/// Data that follow from the matrices of a problem, and some also from which rows have an obstacle: computed at the
+/// first use and shared by the same problem under other loads and gaps.
 type FoundOnce<T> = Arc<OnceLock<T>>;
 
 impl PartialEq for ContactProblem {
@@ -94,10 +95,11 @@ fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
 }
 
 impl ContactProblem {
-    /// The problem of stiffness K (n x n, in N/m), load f (length n, in N, along the positive axes), contact rows B (m x n,
-    /// dimensionless) and initial gaps g (length m, in m). A row of B is positive towards the obstacle. A gap is negative if
-    /// the obstacle starts inside the body and `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle. The gap of a row without
-    /// entries counts as zero if it is rounding beside the largest, see [`warnings`](Self::warnings).
+    /// The problem of stiffness K (n x n, in N/m), load f (length n, in N, along the positive axes), contact rows B (m
+    /// x n, dimensionless) and initial gaps g (length m, in m). A row of B is positive towards the obstacle. A gap is
+    /// negative if the obstacle starts inside the body and `f64::INFINITY`, or exactly 1e20 or 1e30, without an
+    /// obstacle. The gap of a row without entries counts as zero if it is rounding beside the largest, see
+    /// [`warnings`](Self::warnings).
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
@@ -144,8 +146,8 @@ impl ContactProblem {
         })
     }
 
-    /// The same problem with the near-null space of its body for multigrid: displacements of almost no energy, such as the
-    /// rigid-body modes.
+    /// The same problem with the near-null space of its body for multigrid: displacements of almost no energy, such as
+    /// the rigid-body modes.
     ///
     /// # Errors
     /// [`Error::Length`] if they are for another number of dofs.
@@ -249,8 +251,8 @@ impl ContactProblem {
         (0..self.dofs()).filter(|&dof| self.diagonal().values[dof] == 0.0).collect()
     }
 
-    /// Returns `true` if one of the vectors of the near-null space has no energy: supports do not hold the body. Computed at its first
-    /// use.
+    /// Returns `true` if one of the vectors of the near-null space has no energy: supports do not hold the body.
+    /// Computed at its first use.
     pub(crate) fn has_free_mode(&self) -> bool {
         let is_free =
             |mode: &Vec<f64>| largest(&self.stiffness.mul(mode)) <= FREE * largest(&self.stiffness.mul_abs(mode));
@@ -271,7 +273,8 @@ impl ContactProblem {
     /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping gaps.
+    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping
+    /// gaps.
     pub(crate) fn check_rows(&self) -> Result<(), Error> {
         match self.opposed_rows().check(&self.gap) {
             Err(Error::Infeasible { rows, weights, .. }) if self.equality_rows > 0 => {
@@ -290,8 +293,8 @@ impl ContactProblem {
         self.equalities.get_or_init(|| self.opposed_rows().equalities(&self.gap))
     }
 
-    /// The same problem with one row of either sign in place of each pair that is an equality, and the multiplier (length m, in force)
-    /// that belongs to it.
+    /// The same problem with one row of either sign in place of each pair that is an equality, and the multiplier
+    /// (length m, in force) that belongs to it.
     pub(crate) fn two_sided<'a>(&'a self, multiplier: &'a [f64]) -> (Cow<'a, Self>, Cow<'a, [f64]>) {
         if self.equalities().is_empty() {
             return (Cow::Borrowed(self), Cow::Borrowed(multiplier));

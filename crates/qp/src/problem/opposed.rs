@@ -14,7 +14,8 @@ type Direction = Vec<(usize, u64)>;
 /// Rows with the size of their first entry, on each of the two sides of a direction.
 type Sides = [Vec<(usize, f64)>; 2];
 
-/// Two opposed rows that meet exactly, which makes them an equality: `opposed` is `-ratio` times `row`, in coefficients and gap.
+/// Two opposed rows that meet exactly, which makes them an equality: `opposed` is `-ratio` times `row`, in coefficients
+/// and gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Equality {
     pub row: usize,
@@ -77,7 +78,8 @@ impl OpposedRows {
     /// Checks that no rows contradict each other at sight under `gap` (length m).
     ///
     /// # Errors
-    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping gaps.
+    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping
+    /// gaps.
     pub fn check(&self, gap: &[f64]) -> Result<(), Error> {
         if let Some(&row) = self.unmoved.iter().find(|&&row| gap[row] < 0.0) {
             let reason =
@@ -113,7 +115,8 @@ impl OpposedRows {
         equalities
     }
 
-    /// The nearest row on each side of a direction under `gap`, the one of the smaller number first: row, first entry, distance.
+    /// The nearest row on each side of a direction under `gap`, the one of the smaller number first: row, first entry,
+    /// distance.
     fn nearest(&self, gap: &[f64]) -> impl Iterator<Item = [(usize, f64, f64); 2]> {
         let nearest = |side: &[(usize, f64)]| {
             let distances = side
@@ -133,8 +136,8 @@ impl OpposedRows {
     }
 }
 
-/// Returns `true` if two rows with entries in the same places are multiples of each other, to the last bit. Quotients that are
-/// equal only by rounding do not count: then some displacement meets both rows.
+/// Returns `true` if two rows with entries in the same places are multiples of each other, to the last bit. Quotients
+/// that are equal only by rounding do not count: then some displacement meets both rows.
 fn are_parallel(by_row: &SparseMatrix, a: usize, b: usize) -> bool {
     let entries = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0).map(|entry| entry.1);
     let (Some(first_a), Some(first_b)) = (entries(a).next(), entries(b).next()) else { return false };

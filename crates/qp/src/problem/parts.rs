@@ -1,7 +1,7 @@
 //! The parts of a problem: bodies, or pieces of one, that share almost no energy.
 //!
-//! An answer may be right for a stiff part and wrong for a soft one beside it, because the energy of the soft part is too small
-//! to show in that of the whole. Therefore a certificate measures every part in its own scale.
+//! An answer may be right for a stiff part and wrong for a soft one beside it, because the energy of the soft part is
+//! too small to show in that of the whole. Therefore a certificate measures every part in its own scale.
 
 use super::diagonal::Diagonal;
 use crate::linear::{Forest, SparseMatrix, SymmetricMatrix};
@@ -20,7 +20,8 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    /// The parts of a stiffness with this `diagonal`, under contact rows with these gaps; rows with an infinite gap join nothing.
+    /// The parts of a stiffness with this `diagonal`, under contact rows with these gaps; rows with an infinite gap
+    /// join nothing.
     pub fn of(stiffness: &SymmetricMatrix, diagonal: &Diagonal, contact: &SparseMatrix, gap: &[f64]) -> Self {
         let roots = &diagonal.roots;
         let mut forest = Forest::new(roots.len());

@@ -216,7 +216,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Judges an answer, and the same with those parts at rest that may rest; the better one is kept if it is the best so far.
+    /// Judges an answer, and the same with those parts at rest that may rest; the better one is kept if it is the best
+    /// so far.
     fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
         let clock = Instant::now();
         let Solution { displacement, multiplier, .. } = &answer.solution;

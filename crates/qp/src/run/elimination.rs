@@ -7,8 +7,9 @@ use crate::settings::Settings;
 use crate::solution::{Seconds, Solution};
 use crate::transform::Elimination;
 
-/// The answer, found by `solve` without the equalities, with the equalities put back and without a certificate; `None` if they are not
-/// eliminated, or if the rest has no answer of its own, or more than one: that is decided for the whole.
+/// The answer, found by `solve` without the equalities, with the equalities put back and without a certificate; `None`
+/// if they are not eliminated, or if the rest has no answer of its own, or more than one: that is decided for the
+/// whole.
 ///
 /// # Errors
 /// [`Error::Infeasible`] with rows of the whole; [`Error::Interrupted`].

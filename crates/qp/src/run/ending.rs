@@ -65,8 +65,9 @@ impl Run<'_> {
         Err(fallen_short(Solution { cut_short, ..solution }, goal))
     }
 
-    /// The error if it is open whether there is an answer, after a method met a motion without energy, or failed for a stiffness that
-    /// is not definite. An answer with a bound leaves nothing open, and one of a settled method whose conditions hold stays an answer.
+    /// The error if it is open whether there is an answer, after a method met a motion without energy, or failed for a
+    /// stiffness that is not definite. An answer with a bound leaves nothing open, and one of a settled method whose
+    /// conditions hold stays an answer.
     fn doubt(&mut self) -> Option<Error> {
         let is_unheld = |record: &Record| match &record.ended {
             Ended::Answered(answered) => answered.is_unheld,

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::linear::{in_order, threads_of_machine};
 use crate::settings::Settings;
 
-/// The results of `solved` for each number below `count`, in their order, on the threads of `settings`; each solve has one of them. A
-/// thread takes the next number when it is free.
+/// The results of `solved` for each number below `count`, in their order, on the threads of `settings`; each solve has
+/// one of them. A thread takes the next number when it is free.
 pub fn each<T: Send>(count: usize, settings: &Settings, solved: impl Fn(usize, &Settings) -> T + Sync) -> Vec<T> {
     let of_one = Settings { threads: Some(1), ..settings.clone() };
     let threads = settings.threads.unwrap_or_else(threads_of_machine).clamp(1, count.max(1));

@@ -1,5 +1,5 @@
-//! Carries out a ladder: one loop makes the steps that the plan names, judges the answer of each once, keeps the best, and records them
-//! all.
+//! Carries out a ladder: one loop makes the steps that the plan names, judges the answer of each once, keeps the best,
+//! and records them all.
 
 mod carried_out;
 mod elimination;

@@ -11,8 +11,8 @@ const DIGITS_OF_DOUBLES: f64 = 16.0;
 /// The conditions of an answer (u, lambda) and a bound on its error, recomputed from the original problem by
 /// [`ContactProblem::certify`](crate::ContactProblem::certify), independently of the method.
 ///
-/// Every measure is taken in its own scale, and no force is in the scale of the error. A *part* is a connected component of K
-/// and B, without couplings below 1e-6 of `sqrt(K_ii K_jj)`; with `p` the part of a dof or row,
+/// Every measure is taken in its own scale, and no force is in the scale of the error. A *part* is a connected
+/// component of K and B, without couplings below 1e-6 of `sqrt(K_ii K_jj)`; with `p` the part of a dof or row,
 ///
 /// * `N_p = sqrt(u_p' K_pp u_p)` is its energy norm, N that of the whole;
 /// * `E_p` is an upper bound on `norm_K(u_p - u_p*)`, E that of the whole;
@@ -21,9 +21,10 @@ const DIGITS_OF_DOUBLES: f64 = 16.0;
 ///
 /// Residuals `r = f + B' lambda - K u` and distances `B u - g` are summed with twice the working precision.
 ///
-/// An answer is certified to a tolerance T if no row pulls, its other conditions hold to T, and for the whole and every part
-/// that moves `E_p <= T N_p`, or E_p is no more than rounding u to doubles does: `eps sqrt(|u_p|'|K||u_p|)`. A part *rests* if
-/// its displacement is zero: no relative error exists then, and E_p must be rounding of the forces that are in balance on it.
+/// An answer is certified to a tolerance T if no row pulls, its other conditions hold to T, and for the whole and every
+/// part that moves `E_p <= T N_p`, or E_p is no more than rounding u to doubles does: `eps sqrt(|u_p|'|K||u_p|)`. A
+/// part *rests* if its displacement is zero: no relative error exists then, and E_p must be rounding of the forces that
+/// are in balance on it.
 ///
 /// | field | formula, the largest over all dofs, rows or parts | decides |
 /// |---|---|---|
@@ -49,21 +50,23 @@ pub struct Certificate {
     pub complementarity: f64,
     /// Difference of the primal and the dual energy, relative to twice the strain energy; infinite for a body at rest.
     pub duality_gap: f64,
-    /// Imbalance of forces, relative to the largest force on the part: the error of the multipliers, which E does not bound.
+    /// Imbalance of forces, relative to the largest force on the part: the error of the multipliers, which E does not
+    /// bound.
     pub imbalance: f64,
     /// Relative force over a relative open distance, the smaller of the two: a row that presses without touching.
     pub open_force: f64,
-    /// Upper bound E on the error of the displacement in the energy norm, in the square root of the problem's unit of energy;
-    /// infinite if none is known.
+    /// Upper bound E on the error of the displacement in the energy norm, in the square root of the problem's unit of
+    /// energy; infinite if none is known.
     pub energy_error: f64,
-    /// Upper bound on the relative error of the displacement in the energy norm; infinite if none is known, or if a body rests
-    /// and the bound is not zero.
+    /// Upper bound on the relative error of the displacement in the energy norm; infinite if none is known, or if a
+    /// body rests and the bound is not zero.
     pub energy_error_bound: f64,
     /// The largest such bound over the whole and each part that moves.
     pub part_error_bound: f64,
     /// The same over the bounds that exceed the possible effect of rounding the displacement to double precision.
     pub energy_error_excess: f64,
-    /// The tolerance that the answer meets without the excuse of rounding or, if none is, with it; infinite if it meets none.
+    /// The tolerance that the answer meets without the excuse of rounding or, if none is, with it; infinite if it meets
+    /// none.
     pub met_tolerance: f64,
     /// The way in which it meets the goal that it was judged by; `None` if it does not, or was not judged yet.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -74,23 +77,24 @@ pub struct Certificate {
     pub parts: usize,
     /// Parts, of all these, without any displacement.
     pub parts_at_rest: usize,
-    /// Number of dofs without stiffness, load and contact force: the energy does not see where they are. Only without a factor of
-    /// K itself.
+    /// Number of dofs without stiffness, load and contact force: the energy does not see where they are. Only without a
+    /// factor of K itself.
     #[serde(skip_serializing_if = "is_zero")]
     pub loose_dofs: usize,
-    /// The largest `E_p / F_p` over the parts that rest; F_p is the largest `|F_i| / sqrt(K_ii)` over the loads, contact forces
-    /// and couplings on the part: the energy norm that they could give a single dof.
+    /// The largest `E_p / F_p` over the parts that rest; F_p is the largest `|F_i| / sqrt(K_ii)` over the loads,
+    /// contact forces and couplings on the part: the energy norm that they could give a single dof.
     pub rest_error: f64,
     /// The place at which most digits cancel in the balance of forces.
     #[serde(flatten)]
     pub(crate) cancellation: Cancellation,
-    /// `true` if the bound uses a measured eigenvalue, because K was not factorised: half the least Ritz value of K with its
-    /// multigrid cycle.
+    /// `true` if the bound uses a measured eigenvalue, because K was not factorised: half the least Ritz value of K
+    /// with its multigrid cycle.
     #[serde(skip_serializing_if = "Not::not")]
     pub bound_is_measured: bool,
 }
 
-/// The reason for which an answer counts as certified: by its tolerance, by its accuracy, or because only rounding is left.
+/// The reason for which an answer counts as certified: by its tolerance, by its accuracy, or because only rounding is
+/// left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Met {
@@ -171,8 +175,8 @@ impl Certificate {
         self.cancellation.digits_left()
     }
 
-    /// `tolerance` if the answer meets the goal that it was judged by with its error, `rounding` if its error is more than that, but
-    /// no more than rounding the displacement to doubles does; `None` if it does not meet the goal.
+    /// `tolerance` if the answer meets the goal that it was judged by with its error, `rounding` if its error is more
+    /// than that, but no more than rounding the displacement to doubles does; `None` if it does not meet the goal.
     pub fn met(&self) -> Option<&'static str> {
         self.met.map(|met| match met {
             Met::Tolerance => "tolerance",
@@ -206,8 +210,8 @@ impl Certificate {
         ]
     }
 
-    /// Returns the worst of the numbers that decide, with its name; NaN is the worst of all. The bound on the error counts if
-    /// there is one and it is more than rounding.
+    /// Returns the worst of the numbers that decide, with its name; NaN is the worst of all. The bound on the error
+    /// counts if there is one and it is more than rounding.
     pub fn worst(&self) -> (&'static str, f64) {
         let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
         let is_of_part = self.part_error_bound > self.energy_error_bound || self.parts_at_rest > 0;
@@ -222,9 +226,9 @@ impl Certificate {
         self.deciding().iter().all(|&(_, value)| value <= tolerance)
     }
 
-    /// Returns `true` if the answer is certified to `tolerance`: no row pulls, all conditions hold to `tolerance`, and the error
-    /// of the whole and of every part that moves is at most `tolerance`, or explained by rounding the displacement to double
-    /// precision.
+    /// Returns `true` if the answer is certified to `tolerance`: no row pulls, all conditions hold to `tolerance`, and
+    /// the error of the whole and of every part that moves is at most `tolerance`, or explained by rounding the
+    /// displacement to double precision.
     pub fn meets(&self, tolerance: f64) -> bool {
         self.adhesion == 0.0
             && self.conditions_hold(tolerance)
@@ -249,8 +253,8 @@ impl Certificate {
         if self.meets(reached) { reached } else { f64::INFINITY }
     }
 
-    /// Returns `true` if this certificate falls short by less than `share` of what `before` falls short by. One with a bound is
-    /// better than one without.
+    /// Returns `true` if this certificate falls short by less than `share` of what `before` falls short by. One with a
+    /// bound is better than one without.
     pub(crate) fn improves_on(&self, before: &Certificate, share: f64) -> bool {
         match self.has_bound() == before.has_bound() {
             true => self.worst().1 < share * before.worst().1,
@@ -258,8 +262,8 @@ impl Certificate {
         }
     }
 
-    /// Returns `true` if another step may still help: the goal is not met, or forces work over open distances. No goal judges that work,
-    /// and the bound does not see it where a row moves far with little energy.
+    /// Returns `true` if another step may still help: the goal is not met, or forces work over open distances. No goal
+    /// judges that work, and the bound does not see it where a row moves far with little energy.
     pub(crate) fn asks_for_more(&self, goal: Goal) -> bool {
         !goal.is_met_by(self) || (self.complementarity.is_finite() && self.complementarity > goal.required())
     }

@@ -54,7 +54,8 @@ pub struct Seconds {
     pub certificate: f64,
     /// Proof of the rows that are open and closed.
     pub proof: f64,
-    /// Everything from the checked problem to the certified answer, factorisations, certificate, proof and earlier attempts included.
+    /// Everything from the checked problem to the certified answer, factorisations, certificate, proof and earlier
+    /// attempts included.
     pub solve: f64,
 }
 
@@ -133,7 +134,8 @@ pub struct Solution {
     /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
     #[serde(skip)]
     pub multiplier: Vec<f64>,
-    /// Multiplier mu of the equality rows, one entry each, in the problem's unit of force, of either sign; empty without such rows.
+    /// Multiplier mu of the equality rows, one entry each, in the problem's unit of force, of either sign; empty
+    /// without such rows.
     #[serde(skip)]
     pub equality_multiplier: Vec<f64>,
     /// The contact rows that are closed in the answer.
@@ -147,8 +149,8 @@ pub struct Solution {
     pub history: Vec<Iteration>,
     /// The certificate, which measures how far the answer can be trusted.
     pub certificate: Certificate,
-    /// The rows with proven contact or gap, if [`Settings::prove`](crate::Settings::prove) asks for them and an energy bound is
-    /// known.
+    /// The rows with proven contact or gap, if [`Settings::prove`](crate::Settings::prove) asks for them and an energy
+    /// bound is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<ProvenSet>,
     /// The limit that ended the search before its end, in words; `None` if it ended by itself.
@@ -160,7 +162,8 @@ pub struct Solution {
     /// Steps of refinement, each the answer for the residual of the answer before.
     #[serde(skip_serializing_if = "is_none")]
     pub refinements: usize,
-    /// Reason why no factor was taken, in words, if [`Method::Auto`](crate::Method::Auto) decided that; otherwise empty.
+    /// Reason why no factor was taken, in words, if [`Method::Auto`](crate::Method::Auto) decided that; otherwise
+    /// empty.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub reason: String,
     /// The ways that were compared before, and the decision; empty if no method was chosen for this answer.
@@ -181,15 +184,15 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// The smallest pivot of the stiffness, for a diagonal of order one, if it is so close to rounding that digits are lost; 0
-    /// if a pivot was not positive.
+    /// The smallest pivot of the stiffness, for a diagonal of order one, if it is so close to rounding that digits are
+    /// lost; 0 if a pivot was not positive.
     pub fn lost_pivot(&self) -> Option<f64> {
         self.lost_pivot
     }
 
-    /// Digits of the displacement that the entries of the stiffness determine, approximately, if they are few: each entry is
-    /// rounded to double precision, and the softest motion amplifies that by one over the smallest pivot. The certificate takes
-    /// the entries as exact. A dof without stiffness has no digits to lose.
+    /// Digits of the displacement that the entries of the stiffness determine, approximately, if they are few: each
+    /// entry is rounded to double precision, and the softest motion amplifies that by one over the smallest pivot. The
+    /// certificate takes the entries as exact. A dof without stiffness has no digits to lose.
     pub fn digits_of_stiffness(&self) -> Option<u32> {
         let pivot = self.lost_pivot.filter(|&pivot| pivot > 0.0 || self.certificate.loose_dofs == 0);
         pivot.map(|pivot| (pivot / ROUNDED_ENTRIES).log10().round().max(0.0) as u32)

@@ -8,8 +8,8 @@
 //! L' u = (y_i, L_tt' u_t)                         the way back to the whole body
 //! ```
 //!
-//! A body that only its contact rows hold has a singular K. In that case `K + B'B` is factorised; its Schur complement is `S +
-//! B_t'B_t`: the interior blocks, and so both sweeps, are the same.
+//! A body that only its contact rows hold has a singular K. In that case `K + B'B` is factorised; its Schur complement
+//! is `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
 
 use crate::error::Error;
 use crate::linear::{Analysis, Cholesky, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
@@ -45,7 +45,8 @@ impl Condensation {
         (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect()
     }
 
-    /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does not pay.
+    /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does
+    /// not pay.
     ///
     /// # Errors
     /// As [`Analysis::sparse_with_last`].
@@ -68,8 +69,8 @@ impl Condensation {
         DENSE_MATRICES * (contact_dofs as f64).powi(2) <= FEW_VALUES.max(factor_entries)
     }
 
-    /// Condenses with a factorisation of K, or if it `holds_rows` of K + B'B, that put `contact_dofs` last; the rows are subtracted
-    /// from the Schur complement.
+    /// Condenses with a factorisation of K, or if it `holds_rows` of K + B'B, that put `contact_dofs` last; the rows
+    /// are subtracted from the Schur complement.
     ///
     /// # Errors
     /// Those of the sparse matrices, if the data leave the range of double precision.
@@ -126,7 +127,8 @@ impl Condensation {
         self.trailing.mul(&sweep[sweep.len() - size..])
     }
 
-    /// The square of the energy norm that the load alone adds inside the body, for any displacement of the contact dofs.
+    /// The square of the energy norm that the load alone adds inside the body, for any displacement of the contact
+    /// dofs.
     pub fn interior_energy(&self, sweep: &[f64]) -> f64 {
         let interior = &sweep[..sweep.len() - self.contact_dofs.len()];
         dot(interior, interior)

@@ -1,16 +1,16 @@
 //! The equalities of a problem eliminated, sparse, with the way back.
 //!
-//! Equalities `E u = e` of rank r are solved for r dofs, the pivots: `u = u_0 + Z y`, y the other dofs. The rest of the problem is one in y,
+//! Equalities `E u = e` of rank r are solved for r dofs, the pivots: `u = u_0 + Z y`. The rest is a problem in y,
 //!
 //! ```text
 //! minimise 1/2 y' Z'K Z y - (f - K u_0)' Z y   subject to   B Z y <= g - B u_0
 //! ```
 //!
-//! which is definite wherever the equalities hold a motion without energy. The way back gives the multipliers of the equalities from the
-//! forces on the pivots. All of it has twice the working precision, so that rows that cancel are seen to cancel.
+//! which is definite wherever the equalities hold a motion without energy. The way back gives the multipliers of the
+//! equalities from the forces on the pivots. All sums have twice the working precision.
 //!
 //! # Source
-//! The choice of pivots: I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, Oxford University Press (1986), ch. 7.
+//! The choice of pivots: Duff, Erisman, Reid, *Direct Methods for Sparse Matrices*, Oxford (1986), ch. 7.
 
 use std::collections::HashMap;
 
@@ -29,7 +29,7 @@ const CANCELLED: f64 = 1e-26;
 /// A row follows from others, except for the rounding of its entries, if less than this share of them is left.
 const FOLLOWS: f64 = 4.0 * f64::EPSILON;
 
-/// The elimination may add this many entries to K for each one that it has, and `FEW` to any: more, and the equalities stay pairs of rows.
+/// The elimination may add this many entries to K for each one that it has, and `FEW` to any.
 const FILL: usize = 4;
 
 /// Entries that are not worth counting.
@@ -128,8 +128,9 @@ impl Pivot {
 }
 
 impl SparseMatrix {
-    /// The rows of the equations `A u = values` that do not follow from the others within `accuracy`, relative to their entries and values;
-    /// in increasing order. `values` has an entry for each row, in any unit. A row that contradicts the others stays.
+    /// The rows of the equations `A u = values` that do not follow from the others within `accuracy`, relative to their
+    /// entries and values; in increasing order. `values` has an entry for each row, in any unit. A row that contradicts
+    /// the others stays.
     pub fn independent_rows(&self, values: &[f64], accuracy: f64) -> Vec<usize> {
         let by_row = self.transposed();
         let of_row = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0);
@@ -165,8 +166,8 @@ pub struct Elimination {
 }
 
 impl Elimination {
-    /// The elimination of all equalities of `problem`; `None` if it would fill the stiffness, or if it is open within rounding whether some
-    /// of them follow from others or contradict them.
+    /// The elimination of all equalities of `problem`; `None` if it would fill the stiffness, or if it is open within
+    /// rounding whether some of them follow from others or contradict them.
     ///
     /// # Errors
     /// [`Error::Infeasible`] for equalities that contradict each other.
@@ -376,7 +377,8 @@ impl Elimination {
         Solution { contact_set, history, method, displacement, multiplier, proven: None, ..answer }
     }
 
-    /// Rows that contradict each other, with their weights, from those of the rows that stay: the equalities take what is left on the pivots.
+    /// Rows that contradict each other, with their weights, from those of the rows that stay: the equalities take what
+    /// is left on the pivots.
     pub fn contradiction(&self, problem: &ContactProblem, rows: &[usize], weights: &[f64]) -> (Vec<usize>, Vec<f64>) {
         let mut pressed = vec![0.0; problem.rows()];
         rows.iter().zip(weights).for_each(|(&row, weight)| pressed[self.rows[row]] += weight);
@@ -421,7 +423,8 @@ struct Found {
 }
 
 impl Found {
-    /// The equality `entries u = right` of a number with the pivots put in; it follows from them if less than this share of it is left.
+    /// The equality `entries u = right` of a number with the pivots put in; it follows from them if less than this
+    /// share of it is left.
     fn reduced(&mut self, entries: &Sparse, right: Twice, (number, follows): (usize, f64)) -> Reduced {
         let Found { pivots, by_dof, sums, .. } = self;
         let in_pivots: Vec<(&Pivot, Twice)> =
@@ -501,8 +504,8 @@ mod tests {
     /// Rounding of sums of a handful of numbers of order ten.
     const ROUNDING: f64 = 1e-13;
 
-    /// A ring of four dofs under loads, with the equality `u_0 - 2 u_1 + u_3 = 3` as two rows, the second three times as large, and one
-    /// inequality before them.
+    /// A ring of four dofs under loads, with the equality `u_0 - 2 u_1 + u_3 = 3` as two rows, the second three times
+    /// as large, and one inequality before them.
     fn tied(load: [f64; 4]) -> ContactProblem {
         let diagonal = [4.0, 3.0, 2.0, 5.0].into_iter().enumerate().map(|(dof, value)| (dof, dof, value));
         let stiffness: Vec<_> = diagonal.chain([(1, 0, -1.0), (2, 1, -1.0), (3, 2, -1.0), (3, 0, -0.5)]).collect();

@@ -20,7 +20,8 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// The pieces of `problem`, given by the piece of each dof, from 0 to `count - 1`. A row without dofs belongs to the first.
+    /// The pieces of `problem`, given by the piece of each dof, from 0 to `count - 1`. A row without dofs belongs to
+    /// the first.
     pub fn of(problem: &ContactProblem, of_dof: Vec<usize>, count: usize) -> Self {
         let mut of_row = vec![0; problem.rows()];
         for (dof, &piece) in of_dof.iter().enumerate() {

@@ -6,9 +6,9 @@
 //! u = u0 D v,   K~ = c D K D,   f~ = c D f / u0,   B~ = R B D,   g~ = R g / u0,   lambda = (u0 / c) R mu
 //! ```
 //!
-//! D reduces a stiffness contrast inside the body, R gives every contact row a largest entry near one. All factors are powers
-//! of two: the scaled problem is the same problem in other units, bit by bit. u0 belongs to a load and a gap; the rest belongs
-//! to the body and is computed once.
+//! D reduces a stiffness contrast inside the body, R gives every contact row a largest entry near one. All factors are
+//! powers of two: the scaled problem is the same problem in other units, bit by bit. u0 belongs to a load and a gap;
+//! the rest belongs to the body and is computed once.
 
 use std::sync::OnceLock;
 

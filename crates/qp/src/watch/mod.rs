@@ -16,8 +16,8 @@ use pace::Pace;
 
 /// A handle on running work: any thread can ask it to stop and read its current step.
 ///
-/// Clones share the request, the activity and the observer; each clone has its own deadline. A solve checks the watch between
-/// factorisations, iterations and steps, and ends with the best answer so far.
+/// Clones share the request, the activity and the observer; each clone has its own deadline. A solve checks the watch
+/// between factorisations, iterations and steps, and ends with the best answer so far.
 ///
 /// ```
 /// use signorini_qp::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, Watch, solve};
@@ -66,8 +66,8 @@ pub(crate) fn locked<T>(data: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Watch {
-    /// A watch that calls `observer` whenever a part, a step or an iteration begins: on the thread that does the work, and
-    /// before the work is done. [`Watch::activity`] is then the one that begins.
+    /// A watch that calls `observer` whenever a part, a step or an iteration begins: on the thread that does the work,
+    /// and before the work is done. [`Watch::activity`] is then the one that begins.
     ///
     /// ```
     /// use signorini_qp::{Error, Settings, Watch, solve};
@@ -100,8 +100,8 @@ impl Watch {
         self.shared.cancellation.is_requested()
     }
 
-    /// Returns `true` if the work was asked to stop, and takes down that the work has [noticed](Self::is_noticed) it: work asks this
-    /// where it can end, and then ends.
+    /// Returns `true` if the work was asked to stop, and takes down that the work has [noticed](Self::is_noticed) it:
+    /// work asks this where it can end, and then ends.
     pub fn acknowledge(&self) -> bool {
         let stopped = self.is_stopped();
         if stopped {
@@ -115,8 +115,9 @@ impl Watch {
         self.shared.cancellation.is_acknowledged()
     }
 
-    /// Returns `true` if the work must end: it was asked to stop, or its deadline has passed. Work asks this where it can end, and then
-    /// ends: the watch takes down that the work has [noticed](Self::is_noticed) the request, or what the deadline cut short.
+    /// Returns `true` if the work must end: it was asked to stop, or its deadline has passed. Work asks this where it
+    /// can end, and then ends: the watch takes down that the work has [noticed](Self::is_noticed) the request, or what
+    /// the deadline cut short.
     pub fn is_over(&self) -> bool {
         let passed = self.deadline.as_ref().filter(|deadline| deadline.left() == 0.0);
         if let Some(deadline) = passed {
@@ -144,14 +145,15 @@ impl Watch {
         Watch { deadline: None, ..self.clone() }
     }
 
-    /// The same watch with the deadline sooner by the time that work of `estimate` seconds needs. A loop with steps of that
-    /// length then ends before a step that would not finish in time.
+    /// The same watch with the deadline sooner by the time that work of `estimate` seconds needs. A loop with steps of
+    /// that length then ends before a step that would not finish in time.
     pub fn keeping(&self, estimate: f64) -> Watch {
         let deadline = self.deadline.as_ref().map(|deadline| deadline.sooner(self.needed(estimate)));
         Watch { deadline, ..self.clone() }
     }
 
-    /// The same watch for finishing an answer, for example its certificate: its deadline is later by a share of the time.
+    /// The same watch for finishing an answer, for example its certificate: its deadline is later by a share of the
+    /// time.
     pub fn finishing(&self) -> Watch {
         Watch { deadline: self.deadline.as_ref().and_then(Deadline::finishing), ..self.clone() }
     }
@@ -161,8 +163,8 @@ impl Watch {
         self.deadline.as_ref().map(Deadline::left)
     }
 
-    /// Returns `true` if there is time left for work that is estimated to take `estimate` seconds. If not, the watch takes down that
-    /// the deadline left out this work.
+    /// Returns `true` if there is time left for work that is estimated to take `estimate` seconds. If not, the watch
+    /// takes down that the deadline left out this work.
     pub fn allows(&self, estimate: f64) -> bool {
         let Some(deadline) = &self.deadline else { return true };
         let (left, needed) = (deadline.left(), self.needed(estimate));
@@ -177,7 +179,8 @@ impl Watch {
         self.deadline.as_ref().and_then(Deadline::cut)
     }
 
-    /// Seconds that work needs on this machine: `estimate` times the pace of the work that was [timed](Self::timed) last.
+    /// Seconds that work needs on this machine: `estimate` times the pace of the work that was [timed](Self::timed)
+    /// last.
     pub fn needed(&self, estimate: f64) -> f64 {
         locked(&self.shared.pace).seconds(estimate)
     }

@@ -1,7 +1,8 @@
 //! Random problems at, near and away from kinks, with exact one-sided derivatives.
 //!
-//! An exact answer u*, lambda* is drawn first; the load and the gaps follow from it without rounding. The one-sided derivative is the exact
-//! answer of the contact problem of the derivatives: pressing rows as equalities, rows without gap and force as rows.
+//! An exact answer u*, lambda* is drawn first; the load and the gaps follow from it without rounding. The one-sided
+//! derivative is the exact answer of the contact problem of the derivatives: pressing rows as equalities, rows without
+//! gap and force as rows.
 
 use signorini::qp::{Change, Derivative, Tangent};
 use signorini::{Prepared, Settings};
@@ -144,8 +145,8 @@ impl Kink {
         Judged { verdict: tangent.verdict().to_string(), wrong }
     }
 
-    /// The exact derivative for a parameter that grows (1) or falls (-1), and `true` at a kink; no derivative if rows that follow from each
-    /// other contradict each other after any change.
+    /// The exact derivative for a parameter that grows (1) or falls (-1), and `true` at a kink; no derivative if rows
+    /// that follow from each other contradict each other after any change.
     fn one_sided(&self, sign: f64) -> (Option<OneSided>, bool) {
         let exact = Exact::new(&self.case);
         let Outcome::Solved(answer) = exact.outcome() else { panic!("a definite problem has an answer") };

@@ -8,8 +8,8 @@ use super::solve::Answer;
 /// Couplings below this share of `sqrt(K_ii K_jj)` do not join two dofs into one part.
 const COUPLED: f64 = 1e-6;
 
-/// Rounding may change every displacement by this share: half a unit in the last place, twice, and a little for the difference
-/// between the two answers.
+/// Rounding may change every displacement by this share: half a unit in the last place, twice, and a little for the
+/// difference between the two answers.
 const ROUNDING: f64 = 1.001 * f64::EPSILON;
 
 /// A problem and its exact answer.
@@ -58,8 +58,8 @@ impl Errors<'_> {
         self.whole(displacement).error <= &bound * &bound
     }
 
-    /// Returns `true` if `|u - u*|_K` is at most `T / (1 - T) |u*|_K + eps sqrt(|u|'|K||u|)`, compared exactly: right to T
-    /// of the own norm of u, or as close as doubles can be.
+    /// Returns `true` if `|u - u*|_K` is at most `T / (1 - T) |u*|_K + eps sqrt(|u|'|K||u|)`, compared exactly: right
+    /// to T of the own norm of u, or as close as doubles can be.
     pub fn is_right(&self, displacement: &[f64], tolerance: f64) -> bool {
         let all: Vec<usize> = (0..self.case.dofs()).collect();
         let rest = &Dyadic::integer(1) - &Dyadic::from(tolerance);

@@ -14,8 +14,8 @@ pub struct Exact {
     pub rows: Vec<usize>,
 }
 
-/// The gap of a row as the problem states it: that of a row without entries counts as zero if it is at most 16 units in the last place of
-/// the largest gap.
+/// The gap of a row as the problem states it: that of a row without entries counts as zero if it is at most 16 units in
+/// the last place of the largest gap.
 fn counted_gap(case: &Case, row: usize) -> f64 {
     let lengths = (0..case.gap.len()).filter(|&row| case.is_bounded(row)).map(|row| case.gap[row].abs());
     let largest = lengths.fold(0.0, f64::max);

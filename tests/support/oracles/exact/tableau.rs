@@ -1,7 +1,8 @@
 //! Integer-preserving pivoting (Edmonds, Bareiss): every entry is a minor of the initial integers.
 //!
 //! # Source
-//! E. H. Bareiss, *Sylvester's identity and multistep integer-preserving Gaussian elimination*, Math. Comp. 22 (1968), 565-578.
+//! E. H. Bareiss, *Sylvester's identity and multistep integer-preserving Gaussian elimination*, Math. Comp. 22 (1968),
+//! 565-578.
 
 use num_bigint::BigInt;
 

@@ -20,8 +20,8 @@ const CONDITIONED: f64 = 1e8;
 /// Largest forces of the classes benign, wall and hard, relative to `|u*|_K`.
 const FORCES: [f64; 3] = [1e6, 1e10, 1e16];
 
-/// What is difficult about a problem, by its data and its exact answer alone. F is the largest `|F_i| / sqrt(K_ii)` over
-/// loads and contact forces.
+/// What is difficult about a problem, by its data and its exact answer alone. F is the largest `|F_i| / sqrt(K_ii)`
+/// over loads and contact forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Class {
     /// F is below 1e6 |u*|_K.

@@ -11,8 +11,8 @@ pub(super) struct Congruent {
 }
 
 impl Congruent {
-    /// Compares each element with the representative of the element before it. Elements of a body of revolution, or with axes that turn,
-    /// have their own stiffness each.
+    /// Compares each element with the representative of the element before it. Elements of a body of revolution, or
+    /// with axes that turn, have their own stiffness each.
     pub fn of(body: &ElasticBody) -> Self {
         let has_turning_axes = body.phases().iter().any(|phase| phase.law.turns());
         let is_alone = body.formulation().is_axisymmetric() || has_turning_axes;

@@ -18,11 +18,11 @@ const NO_COMPONENT: f64 = 1e-14;
 
 /// The free dofs, their numbers in the problem, and the displacement of the supported dofs.
 ///
-/// The dofs of a node run along the coordinate axes; those of a node with a [`Frame`] run along the axes of the frame and are called
-/// local dofs. Nodal vectors always run along the coordinate axes.
+/// The dofs of a node run along the coordinate axes; those of a node with a [`Frame`] run along the axes of the frame
+/// and are called local dofs. Nodal vectors always run along the coordinate axes.
 ///
-/// On quadratic faces in space that may touch an obstacle, the dofs of a mid-side node are coefficients of shape functions with positive
-/// integrals; those of all other nodes are their displacements.
+/// On quadratic faces in space that may touch an obstacle, the dofs of a mid-side node are coefficients of shape
+/// functions with positive integrals; those of all other nodes are their displacements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DofMap {
     /// Zero at free dofs.
@@ -37,8 +37,8 @@ pub struct DofMap {
     pub(crate) basis: PositiveBasis,
 }
 
-/// The displacement of a node, or its coefficient, along a vector: the sum of `coefficient * free dof` and of the part of the supported
-/// dofs.
+/// The displacement of a node, or its coefficient, along a vector: the sum of `coefficient * free dof` and of the part
+/// of the supported dofs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Along {
     /// Numbers of free dofs with their coefficients.
@@ -91,15 +91,16 @@ impl DofMap {
         }
     }
 
-    /// The same with coefficients at the mid-side nodes of `boundaries`, which obstacles may touch, if `body` has quadratic faces in
-    /// space. The coefficients belong to shape functions with positive integrals, so that a uniform pressure pushes at every node.
+    /// The same with coefficients at the mid-side nodes of `boundaries`, which obstacles may touch, if `body` has
+    /// quadratic faces in space. The coefficients belong to shape functions with positive integrals, so that a uniform
+    /// pressure pushes at every node.
     ///
-    /// A mid-side node keeps its displacement if a support holds it but does not hold both ends of its edge in the same way. Boundaries
-    /// that the mesh does not have are ignored.
+    /// A mid-side node keeps its displacement if a support holds it but does not hold both ends of its edge in the same
+    /// way. Boundaries that the mesh does not have are ignored.
     ///
     /// # Source
-    /// A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, *Dual quadratic mortar finite element methods for 3D finite deformation
-    /// contact*, SIAM J. Sci. Comput. 34 (2012) B421-B446.
+    /// A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, *Dual quadratic mortar finite element methods for 3D finite
+    /// deformation contact*, SIAM J. Sci. Comput. 34 (2012) B421-B446.
     pub fn with_contact_faces<'a>(mut self, body: &ElasticBody, boundaries: impl IntoIterator<Item = &'a str>) -> Self {
         let dimension = body.dimension();
         let boundaries = boundaries.into_iter().filter_map(|name| body.mesh().boundary(name));

@@ -18,8 +18,8 @@ pub fn element_stiffness(body: &ElasticBody, element: &BodyElement, table: &Tabu
 
 /// The stiffness of an isotropic element.
 ///
-/// In a body of revolution d_a has the hoop part N_a/r along r, which adds the term `2 mu h_a h_b`, h = N/r. With mean dilatation d is
-/// replaced by its mean over the element.
+/// In a body of revolution d_a has the hoop part N_a/r along r, which adds the term `2 mu h_a h_b`, h = N/r. With mean
+/// dilatation d is replaced by its mean over the element.
 fn isotropic_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, element: &BodyElement) -> Vec<Block> {
     let cell = &element.cell;
     let nodes = table.reference.nodes.len();
@@ -63,7 +63,8 @@ fn isotropic_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, elemen
     products
 }
 
-/// Computes the stiffness of a pair of nodes from the integral of grad N_a grad N_b, that of the dilatations, and that of h_a h_b.
+/// Computes the stiffness of a pair of nodes from the integral of grad N_a grad N_b, that of the dilatations, and that
+/// of h_a h_b.
 #[inline]
 fn finish(block: &mut Block, Lame { lambda, mu }: Lame, dilatation: &Block, squares: f64) {
     let g = *block;

@@ -50,12 +50,13 @@ pub(crate) fn area_and_integral(
     sums
 }
 
-/// Adds to `gradient` (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`) the change of the integral of a density over a boundary with
-/// each coordinate of the nodes, in length.
+/// Adds to `gradient` (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`) the change of the integral of a density
+/// over a boundary with each coordinate of the nodes, in length.
 ///
-/// It is the derivative of the sum over the points. A density with kinks must be continuous there: a facet is then cut at other reference
-/// coordinates when its nodes move, which changes the integral by nothing as long as the pieces are integrated exactly, as those of
-/// straight edges, plane triangles and parallelograms are; on other facets it changes it by less than the error of the integral.
+/// It is the derivative of the sum over the points. A density with kinks must be continuous there: a facet is then cut
+/// at other reference coordinates when its nodes move, which changes the integral by nothing as long as the pieces are
+/// integrated exactly, as those of straight edges, plane triangles and parallelograms are; on other facets it changes
+/// it by less than the error of the integral.
 pub(crate) fn integral_by_places(
     body: &ElasticBody,
     boundary: &Boundary,

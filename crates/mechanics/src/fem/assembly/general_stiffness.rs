@@ -1,5 +1,5 @@
-//! The stiffness of one element of any material: `K_ab = sum_q w B_a' C B_b`, B_a the engineering strains of a unit displacement of
-//! node a along each axis.
+//! The stiffness of one element of any material: `K_ab = sum_q w B_a' C B_b`, B_a the engineering strains of a unit
+//! displacement of node a along each axis.
 
 use super::element_blocks::{Block, pair};
 use crate::fem::body::{ElasticBody, LocalPoint};

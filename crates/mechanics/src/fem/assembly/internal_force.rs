@@ -10,8 +10,9 @@ use crate::fem::threads::in_order;
 /// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`
 /// (length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length).
 ///
-/// Computed from the strains, element by element: a rigid translation gives exactly zero. Exceptions: a radial translation of a body of
-/// revolution is not rigid, and temperatures and initial stresses give a stress without strain.
+/// Computed from the strains, element by element: a rigid translation gives exactly zero. Exceptions: a radial
+/// translation of a body of revolution is not rigid, and temperatures and initial stresses give a stress without
+/// strain.
 ///
 /// # Errors
 /// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.

@@ -10,7 +10,8 @@ use crate::fem::element::{PerKind, Tabulated, between_levels};
 use crate::fem::geometry::{cross, dot, inertia, length, minus, principal};
 use crate::fem::mesh::Boundary;
 
-/// A moment of inertia of a boundary below this times the largest is rounding: the boundary is a straight line about that axis.
+/// A moment of inertia of a boundary below this times the largest is rounding: the boundary is a straight line about
+/// that axis.
 const NO_INERTIA: f64 = 1e-12;
 
 /// Adds to the nodal load (length `dim * n_nodes`) a constant traction (x, y, z; force per area) on a boundary.
@@ -18,8 +19,8 @@ pub fn add_traction(body: &ElasticBody, boundary: &Boundary, traction: [f64; 3],
     for_each_point(body, boundary, &mut |point| add_share(body, point, traction, load));
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: a positive pressure acts against the
-/// outward normal.
+/// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: a positive pressure acts
+/// against the outward normal.
 pub fn add_pressure(body: &ElasticBody, boundary: &Boundary, pressure: f64, load: &mut [f64]) {
     let visit = &mut |point: &FacetPoint| {
         add_share(body, point, point.normal.map(|component| -pressure * component), load);
@@ -50,7 +51,8 @@ impl Kinks<'_> {
     pub const NONE: Kinks<'static> = Kinks { along: [0.0; 3], at: &[] };
 }
 
-/// The same for a field with kinks: facets are cut at the kinks, and every piece has five quadrature points in each direction.
+/// The same for a field with kinks: facets are cut at the kinks, and every piece has five quadrature points in each
+/// direction.
 pub(crate) fn add_traction_with_kinks(
     body: &ElasticBody,
     boundary: &Boundary,
@@ -85,8 +87,8 @@ pub(super) fn for_each_fine_point(
     for_each_point_of(body, boundary, &table_of, visit);
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) the traction `omega x (x - c)` on a boundary, c its centre of area, which has the
-/// given moment (force times length) and zero force. `None` for a moment that no such traction has.
+/// Adds to the nodal load (length `dim * n_nodes`) the traction `omega x (x - c)` on a boundary, c its centre of area,
+/// which has the given moment (force times length) and zero force. `None` for a moment that no such traction has.
 pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 3], load: &mut [f64]) -> Option<()> {
     let (omega, centre) = turning_traction(body, boundary, moment)?;
     let table = Tabulated::fine(boundary.kind.reference());
@@ -96,8 +98,8 @@ pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 
     Some(())
 }
 
-/// The vector omega and the centre c of the traction `omega x (x - c)` on a boundary that has this moment (force times length) and no force;
-/// `None` if there is no such traction.
+/// The vector omega and the centre c of the traction `omega x (x - c)` on a boundary that has this moment (force times
+/// length) and no force; `None` if there is no such traction.
 pub(crate) fn turning_traction(
     body: &ElasticBody,
     boundary: &Boundary,
@@ -152,8 +154,8 @@ pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64
     add_force_at(body, &body.finely_tabulated(), |_, at| field(at), load);
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) the densities of the materials times a constant acceleration (length per time
-/// squared).
+/// Adds to the nodal load (length `dim * n_nodes`) the densities of the materials times a constant acceleration (length
+/// per time squared).
 ///
 /// # Errors
 /// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
@@ -164,8 +166,9 @@ pub(crate) fn add_gravity(body: &ElasticBody, acceleration: [f64; 3], load: &mut
     Ok(())
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) the force of a rotation by `omega` (radians per time) about the axis through `point`
-/// along the unit vector `axis`: the density times omega squared times the vector from the axis to the point.
+/// Adds to the nodal load (length `dim * n_nodes`) the force of a rotation by `omega` (radians per time) about the axis
+/// through `point` along the unit vector `axis`: the density times omega squared times the vector from the axis to the
+/// point.
 ///
 /// # Errors
 /// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.

@@ -1,4 +1,5 @@
-//! M = integral of rho N_a N_b, in the free dofs: consistent, lumped, or redistributed so that contact nodes have no mass.
+//! M = integral of rho N_a N_b, in the free dofs: consistent, lumped, or redistributed so that contact nodes have no
+//! mass.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,18 +21,19 @@ pub enum MassForm {
     #[default]
     #[schemars(description = "From the shape functions.")]
     Consistent,
-    /// Diagonal: the sum of each row. On quadratic elements this sum is zero or negative at corners; they take the diagonal of the
-    /// consistent mass, scaled to the mass of the element.
+    /// Diagonal: the sum of each row. On quadratic elements this sum is zero or negative at corners; they take the
+    /// diagonal of the consistent mass, scaled to the mass of the element.
     #[schemars(description = "Diagonal.")]
     Lumped,
-    /// The mean of the consistent and the lumped mass: along a uniform mesh of linear elements waves are then of fourth order.
+    /// The mean of the consistent and the lumped mass: along a uniform mesh of linear elements waves are then of fourth
+    /// order.
     #[schemars(description = "The mean of the consistent and the lumped mass.")]
     Averaged,
-    /// Consistent, except for the contact nodes: they have no mass, and their neighbours take it over. Total mass and centre of mass of
-    /// each body are preserved.
+    /// Consistent, except for the contact nodes: they have no mass, and their neighbours take it over. Total mass and
+    /// centre of mass of each body are preserved.
     ///
-    /// A contact node without inertia does not bounce: it follows the body and the obstacle, so that the contact pressure is that of the
-    /// body and not a sequence of impacts.
+    /// A contact node without inertia does not bounce: it follows the body and the obstacle, so that the contact
+    /// pressure is that of the body and not a sequence of impacts.
     #[schemars(description = "From the shape functions, without mass at contact nodes; total \
         mass and centre of mass are preserved.")]
     Redistributed,
@@ -52,15 +54,18 @@ impl MassForm {
 /// The mass matrix of the free dofs (n x n), in mass, from the densities of the materials; `contact_nodes`, node
 /// indices from 0 in any order, lose their mass if it is redistributed.
 ///
-/// The quadrature has five points in each direction: exact on straight elements of both orders, also in bodies of revolution.
+/// The quadrature has five points in each direction: exact on straight elements of both orders, also in bodies of
+/// revolution.
 ///
 /// # Errors
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density, [`qp::Error::Length`](signorini_qp::Error::Length) if `dofs` does not belong to the mesh,
-/// [`Error::Mesh`] for a mesh too coarse to redistribute its mass, [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the mass overflows.
+/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density,
+/// [`qp::Error::Length`](signorini_qp::Error::Length) if `dofs` does not belong to the mesh, [`Error::Mesh`] for a mesh
+/// too coarse to redistribute its mass, [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the mass overflows.
 ///
 /// # Source
-/// H. B. Khenous, P. Laborde, Y. Renard, *Mass redistribution method for finite element contact problems in elastodynamics*, Eur. J.
-/// Mech. A 27 (2008) 918-932: the mass matrix without mass at contact nodes that preserves mass and centre of mass.
+/// H. B. Khenous, P. Laborde, Y. Renard, *Mass redistribution method for finite element contact problems in
+/// elastodynamics*, Eur. J. Mech. A 27 (2008) 918-932: the mass matrix without mass at contact nodes that preserves
+/// mass and centre of mass.
 pub fn mass(
     body: &ElasticBody,
     dofs: &DofMap,
@@ -70,8 +75,8 @@ pub fn mass(
     free_mass(body, dofs, &nodal_mass(body, form, contact_nodes)?)
 }
 
-/// The mass of the nodes (`n_nodes x n_nodes`, the lower triangle), the same for each axis; `contact_nodes` lose their mass if it is
-/// redistributed.
+/// The mass of the nodes (`n_nodes x n_nodes`, the lower triangle), the same for each axis; `contact_nodes` lose their
+/// mass if it is redistributed.
 ///
 /// # Errors
 /// As [`mass`].
@@ -105,7 +110,8 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
     Ok(SparseMatrix::from_triplets(nodes, nodes, &nodal)?)
 }
 
-/// A bound from below on `v'M v` over that of the lumped mass, for every velocity v; zero or positive, dimensionless. It is sharp for bars.
+/// A bound from below on `v'M v` over that of the lumped mass, for every velocity v; zero or positive, dimensionless.
+/// It is sharp for bars.
 ///
 /// # Errors
 /// As [`mass`].
@@ -161,7 +167,8 @@ fn lumped(element: &ElementMass) -> Vec<f64> {
 /// The mass of the free dofs from that of the nodes, as [`nodal_mass`].
 ///
 /// # Errors
-/// [`qp::Error::Length`](signorini_qp::Error::Length) if `dofs` does not belong to the mesh, [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the mass overflows.
+/// [`qp::Error::Length`](signorini_qp::Error::Length) if `dofs` does not belong to the mesh,
+/// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the mass overflows.
 pub(crate) fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let dimension = body.dimension();

@@ -1,8 +1,9 @@
 //! Assembly in the free dofs: stiffness, mass, loads, internal forces.
 //!
-//! Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]` (in space `[x_0, y_0, z_0, ...]`, in a bar
-//! `[x_0, x_1, ...]`); vectors of the problem have one entry per free dof, in the same order with the supported dofs left out. At a node
-//! with a [`Frame`], which an inclined support makes, the dofs of the problem run along the axes of the frame.
+//! Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]` (in space
+//! `[x_0, y_0, z_0, ...]`, in a bar `[x_0, x_1, ...]`); vectors of the problem have one entry per free dof, in the same
+//! order with the supported dofs left out. At a node with a [`Frame`], which an inclined support makes, the dofs of the
+//! problem run along the axes of the frame.
 
 mod congruent;
 mod dofs;

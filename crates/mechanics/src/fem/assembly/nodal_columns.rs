@@ -1,4 +1,5 @@
-//! Columns of stiffness and mass at some nodes: their transpose maps a motion of all nodes to the forces on these nodes.
+//! Columns of stiffness and mass at some nodes: their transpose maps a motion of all nodes to the forces on these
+//! nodes.
 
 use super::element_stiffness;
 use crate::error::Error;
@@ -8,8 +9,8 @@ use signorini_qp::SparseMatrix;
 /// Marks a node that is not among the requested ones.
 const OTHER: usize = usize::MAX;
 
-/// The columns of the stiffness at `nodes`, in force per length: `nodal dofs x (dim * nodes.len())`, free and supported dofs, along the
-/// coordinate axes. Only elements around these nodes are computed.
+/// The columns of the stiffness at `nodes`, in force per length: `nodal dofs x (dim * nodes.len())`, free and supported
+/// dofs, along the coordinate axes. Only elements around these nodes are computed.
 ///
 /// # Errors
 /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the stiffness overflows.
@@ -39,8 +40,8 @@ pub(crate) fn stiffness_columns(body: &ElasticBody, nodes: &[usize]) -> Result<S
     Ok(SparseMatrix::from_triplets(body.nodal_dofs(), dimension * nodes.len(), &entries)?)
 }
 
-/// The columns at `nodes` of a nodal mass, given by its lower triangle (`n_nodes x n_nodes`): `n_nodes x nodes.len()`, the
-/// same for each axis.
+/// The columns at `nodes` of a nodal mass, given by its lower triangle (`n_nodes x n_nodes`): `n_nodes x nodes.len()`,
+/// the same for each axis.
 ///
 /// # Errors
 /// [`qp::Error::IndexOutOfRange`](signorini_qp::Error::IndexOutOfRange) for columns of another body.

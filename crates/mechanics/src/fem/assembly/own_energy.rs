@@ -5,14 +5,16 @@ use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::TabulatedPoint;
 use crate::fem::geometry::trace;
 
-/// The energy that a body held in its undeformed shape has by its temperatures and initial stresses, in force times length.
+/// The energy that a body held in its undeformed shape has by its temperatures and initial stresses, in force times
+/// length.
 pub(crate) fn own_energy(body: &ElasticBody) -> f64 {
     sum_over_points(body, |_, element, at| {
         element.own_strain(at).map_or(0.0, |[stress, strain]| work(&stress, &strain) / 2.0)
     })
 }
 
-/// The change of [`own_energy`] with a parameter; `derivative` is the body of the derivatives of stresses with respect to it.
+/// The change of [`own_energy`] with a parameter; `derivative` is the body of the derivatives of stresses with respect
+/// to it.
 ///
 /// With the strain `e = C^-1 sigma_0` it is the integral of `e : d sigma_0 - e : dC : e / 2`.
 pub(crate) fn own_energy_change(body: &ElasticBody, derivative: &ElasticBody) -> f64 {

@@ -1,7 +1,8 @@
-//! The unknowns of quadratic faces in space that may touch something: coefficients of shape functions with positive integrals.
+//! The unknowns of quadratic faces in space that may touch something: coefficients of shape functions with positive
+//! integrals.
 //!
-//! A contact row holds one coefficient, so that rows stay bounds. On triangles, coefficients below their gaps keep the whole face below
-//! the gap function that these gaps define.
+//! A contact row holds one coefficient, so that rows stay bounds. On triangles, coefficients below their gaps keep the
+//! whole face below the gap function that these gaps define.
 
 use std::collections::BTreeMap;
 
@@ -87,8 +88,8 @@ impl PositiveBasis {
         }
     }
 
-    /// Replaces the integrals of the nodal shape functions of some nodes by those of the positive functions; all ends must be among the
-    /// nodes.
+    /// Replaces the integrals of the nodal shape functions of some nodes by those of the positive functions; all ends
+    /// must be among the nodes.
     pub fn gather_areas(&self, areas: &mut BTreeMap<usize, f64>) {
         for (middle, ends) in &self.ends {
             let Some(own) = areas.get_mut(middle) else { continue };

@@ -125,8 +125,8 @@ impl Redistribution {
     }
 }
 
-/// The nodes that take over the mass of each massless node: its neighbours, weighted by the mass that they share with it, ring by ring if
-/// the neighbours are massless too.
+/// The nodes that take over the mass of each massless node: its neighbours, weighted by the mass that they share with
+/// it, ring by ring if the neighbours are massless too.
 fn heirs(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Result<Vec<Vec<(usize, f64)>>, Error> {
     let count = body.mesh().nodes().len();
     let mut waiting: Vec<bool> = vec![false; count];

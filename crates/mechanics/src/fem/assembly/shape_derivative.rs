@@ -1,11 +1,12 @@
 //! Derivatives with respect to the places of all nodes: of the virtual work of stresses and of body forces.
 //!
-//! Every function adds to `gradient` (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`) the change of a virtual work, in force times
-//! length, with each coordinate, in length; the nodal values of all fields stay as they are. They are derivatives of the sums over
-//! quadrature points themselves, so that nothing but rounding separates them from differences of these sums.
+//! Every function adds to `gradient` (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`) the change of a virtual
+//! work, in force times length, with each coordinate, in length; the nodal values of all fields stay as they are. They
+//! are derivatives of the sums over quadrature points themselves, so that nothing but rounding separates them from
+//! differences of these sums.
 //!
-//! A node that moves along V = N_a e_k changes the volume by div V, the gradient of a field u by `- grad u grad V`, and in a body of
-//! revolution the radius by V_r: volumes and hoop strains take part.
+//! A node that moves along V = N_a e_k changes the volume by div V, the gradient of a field u by `- grad u grad V`, and
+//! in a body of revolution the radius by V_r: volumes and hoop strains take part.
 
 use std::ops::Range;
 
@@ -22,9 +23,10 @@ type Tensor = [[f64; 3]; 3];
 /// Adds the change of the work `virtual_displacement . internal_force(displacement)`, both nodal vectors of length
 /// `dim * n_nodes`, in length.
 ///
-/// With the stress sigma of u, the stress tau of w without own stress, and the work sigma : eps(w) per volume it is the integral of
-/// `M : grad V`, M = (sigma : eps(w)) I - (grad w)' sigma - (grad u)' tau. With mean dilatation theta, the work has theta(u) and theta(w)
-/// in place of both traces. A temperature that changes along the body adds the change of its stress.
+/// With the stress sigma of u, the stress tau of w without own stress, and the work sigma : eps(w) per volume it is the
+/// integral of `M : grad V`, M = (sigma : eps(w)) I - (grad w)' sigma - (grad u)' tau. With mean dilatation theta, the
+/// work has theta(u) and theta(w) in place of both traces. A temperature that changes along the body adds the change of
+/// its stress.
 ///
 /// # Errors
 /// Why there is no derivative: a material whose axes turn around a line.
@@ -78,7 +80,8 @@ fn of_stresses(
         if let Some(own) = element.own_stress(at) {
             stress.iter_mut().zip(own).for_each(|(stress, own)| *stress += own);
         }
-        // The mean is that of the strain: the volume of each point changes it by as much as its own dilatation is off the mean.
+        // The mean is that of the strain: the volume of each point changes it by as much as its own dilatation is off
+        // the mean.
         let work = work(&stress, &w.strain) + lambda * virtual_mean * (trace(&u.strain) - mean);
         let (sigma, tau) = (rows(&stress), rows(&w.stress));
         let energy_momentum = [0, 1, 2].map(|k| {
@@ -184,7 +187,8 @@ fn force_by_places(
     work_by_places(body, tables, work, gradient);
 }
 
-/// Adds the change of [`own_energy`](super::own_energy) with the place of each node, for materials whose axes do not turn.
+/// Adds the change of [`own_energy`](super::own_energy) with the place of each node, for materials whose axes do not
+/// turn.
 pub(crate) fn own_energy_by_places(body: &ElasticBody, gradient: &mut [f64]) {
     let energy = |_, element: &BodyElement, at: &TabulatedPoint| match (element.own_strain(at), &element.phase.own) {
         (Some([stress, strain]), Some(own)) => {

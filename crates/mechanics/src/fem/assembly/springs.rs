@@ -1,5 +1,5 @@
-//! Springs between nodes and the ground: K_ab = integral over a boundary of k N_a N_b n n', or k n n' at a node; and between nodes: with the
-//! elongation e = sum of c_a . u_a, K_ab = k c_a c_b'.
+//! Springs between nodes and the ground: K_ab = integral over a boundary of k N_a N_b n n', or k n n' at a node; and
+//! between nodes: with the elongation e = sum of c_a . u_a, K_ab = k c_a c_b'.
 
 use super::DofMap;
 use super::element_blocks::Block;
@@ -67,8 +67,8 @@ impl Springs {
         forces
     }
 
-    /// The force that holds the nodes for which `place` gives a number against the displacement of all nodes: entries `(nodal dof of the
-    /// displacement, dimension * number + axis of the force, force per length)`.
+    /// The force that holds the nodes for which `place` gives a number against the displacement of all nodes: entries
+    /// `(nodal dof of the displacement, dimension * number + axis of the force, force per length)`.
     pub fn columns(&self, place: impl Fn(usize) -> Option<usize>, dimension: usize) -> Vec<(usize, usize, f64)> {
         let mut entries = Vec::new();
         for (a, b, block) in &self.pairs {
@@ -82,7 +82,8 @@ impl Springs {
         entries
     }
 
-    /// The motions that the springs resist: sums of displacements of nodes along vectors, of which the longest is a unit vector.
+    /// The motions that the springs resist: sums of displacements of nodes along vectors, of which the longest is a
+    /// unit vector.
     pub fn resisted(&self) -> Vec<Vec<(usize, [f64; 3])>> {
         if !self.elongation.is_empty() {
             let longest = self.elongation.iter().fold(0.0, |longest: f64, (_, vector)| longest.max(length(*vector)));

@@ -1,4 +1,5 @@
-//! K = sum of the element stiffnesses, in the free dofs, assembled directly into the lower triangle in compressed columns.
+//! K = sum of the element stiffnesses, in the free dofs, assembled directly into the lower triangle in compressed
+//! columns.
 
 use std::ops::Range;
 
@@ -13,7 +14,8 @@ use crate::fem::threads::{on_parts, parts};
 use signorini_qp as qp;
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
-/// The free dofs of one node: the number of the first, how many there are, and the axis of each: of the frame if the node has one.
+/// The free dofs of one node: the number of the first, how many there are, and the axis of each: of the frame if the
+/// node has one.
 #[derive(Clone, Copy, Default)]
 struct FreeAxes<'a> {
     first: usize,

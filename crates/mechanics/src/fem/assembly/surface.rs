@@ -113,8 +113,8 @@ pub fn tributary_areas(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, f
     nodes.into_iter().map(|node| (node, area.get(node).copied().unwrap_or(0.0))).collect()
 }
 
-/// Each facet of a boundary in its order as `(extent, area)`: its length or area, and its area with thickness, cross-section or
-/// circumference. The areas add up to those of [`tributary_areas`].
+/// Each facet of a boundary in its order as `(extent, area)`: its length or area, and its area with thickness,
+/// cross-section or circumference. The areas add up to those of [`tributary_areas`].
 pub(crate) fn facet_sizes(body: &ElasticBody, boundary: &Boundary) -> Vec<(f64, f64)> {
     let mut of_points = Vec::new();
     for_each_point(body, boundary, &mut |point| of_points.push((point.extent, point.area)));
@@ -123,14 +123,15 @@ pub(crate) fn facet_sizes(body: &ElasticBody, boundary: &Boundary) -> Vec<(f64, 
     of_points.chunks(points.max(1)).map(sum).collect()
 }
 
-/// The nodes of a boundary in its order, each with its outward unit normal: the mean over the facets around the node. Zero if these
-/// cancel.
+/// The nodes of a boundary in its order, each with its outward unit normal: the mean over the facets around the node.
+/// Zero if these cancel.
 pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64; 3])> {
     let sums = normal_sums(body, boundary);
     boundary.nodes().into_iter().map(|node| (node, unit(sums.get(node).copied().unwrap_or_default()))).collect()
 }
 
-/// For each node of the mesh the integral of the square of its shape function times the outward normal of a boundary, in area.
+/// For each node of the mesh the integral of the square of its shape function times the outward normal of a boundary,
+/// in area.
 pub(crate) fn normal_sums(body: &ElasticBody, boundary: &Boundary) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; body.mesh().nodes().len()];
     for_each_point(body, boundary, &mut |point| {

@@ -11,7 +11,7 @@ pub enum Integration {
     /// The full strain at all quadrature points.
     #[default]
     Standard,
-    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock if Poisson's ratio is near
-    /// 0.5.
+    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock if
+    /// Poisson's ratio is near 0.5.
     MeanDilatation,
 }

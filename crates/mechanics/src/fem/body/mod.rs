@@ -28,7 +28,8 @@ use crate::fem::threads::in_order;
 /// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
 const ON_THE_AXIS: f64 = 1e-12;
 
-/// An elastic body of one material or several, or several bodies that only contact couples; checked once, when it is built.
+/// An elastic body of one material or several, or several bodies that only contact couples; checked once, when it is
+/// built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticBody {
     mesh: Mesh,
@@ -93,8 +94,8 @@ impl ElasticBody {
     /// The same body with another integration of its stiffness.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for mean dilatation with an element that does not [allow it](ElementKind::takes_mean_dilatation), or in plane
-    /// stress.
+    /// [`Error::Mesh`] for mean dilatation with an element that does not [allow
+    /// it](ElementKind::takes_mean_dilatation), or in plane stress.
     pub fn with_integration(mut self, integration: Integration) -> Result<Self, Error> {
         if integration == Integration::MeanDilatation {
             if let Some(element) = self.mesh.kinds().find(|kind| !kind.takes_mean_dilatation()) {
@@ -146,8 +147,8 @@ impl ElasticBody {
         Ok(self)
     }
 
-    /// The same body on a mesh of parts of its elements, region by region, with [`Integration::Standard`]; the second argument gives, for
-    /// each element of that mesh, the element that it is a part of.
+    /// The same body on a mesh of parts of its elements, region by region, with [`Integration::Standard`]; the second
+    /// argument gives, for each element of that mesh, the element that it is a part of.
     ///
     /// # Errors
     /// As [`ElasticBody::new`].
@@ -321,7 +322,8 @@ impl ElasticBody {
         }
     }
 
-    /// An element under the nodal displacement of the body; `tables` are the body's [`tabulated`](Self::tabulated) elements.
+    /// An element under the nodal displacement of the body; `tables` are the body's [`tabulated`](Self::tabulated)
+    /// elements.
     pub(crate) fn strained<'a>(
         &'a self,
         tables: &PerKind<Tabulated>,
@@ -408,8 +410,8 @@ impl Strained<'_> {
         self.mean_dilatation
     }
 
-    /// The strain at a tabulated point, and the stress there: tensor components `[xx, yy, zz, xy, yz, zx]`. In plane stress the strain
-    /// across the plane is that of the stress and the temperature.
+    /// The strain at a tabulated point, and the stress there: tensor components `[xx, yy, zz, xy, yz, zx]`. In plane
+    /// stress the strain across the plane is that of the stress and the temperature.
     pub fn strain_and_stress(&self, at: &TabulatedPoint) -> [Symmetric; 2] {
         let cell = &self.element.cell;
         let (point, stress) = self.at(at);
@@ -422,7 +424,8 @@ impl Strained<'_> {
 }
 
 impl BodyElement<'_> {
-    /// The stress of a strain at a tabulated point: C (eps - alpha T) + sigma_0. A mean `dilatation` replaces the trace of the strain.
+    /// The stress of a strain at a tabulated point: C (eps - alpha T) + sigma_0. A mean `dilatation` replaces the trace
+    /// of the strain.
     #[inline]
     pub fn stress(&self, at: &TabulatedPoint, strain: &Symmetric, dilatation: Option<f64>) -> Symmetric {
         let stress =
@@ -439,7 +442,8 @@ impl BodyElement<'_> {
         self.phase.own_stress(self.cell.place(&at.shape))
     }
 
-    /// The stress at a tabulated point without any strain, and the strain that it would cause if it could, if there is one.
+    /// The stress at a tabulated point without any strain, and the strain that it would cause if it could, if there is
+    /// one.
     pub fn own_strain(&self, at: &TabulatedPoint) -> Option<[Symmetric; 2]> {
         let stress = self.own_stress(at)?;
         Some([stress, self.phase.law.strain(&stress, || self.cell.place(&at.shape))])

@@ -65,7 +65,8 @@ impl OwnStress {
         temperature: Temperature { value: 0.0, gradient: [0.0; 3] },
     };
 
-    /// The change of its work, per volume, on an engineering strain with the place along each axis, for a law along x, y and z.
+    /// The change of its work, per volume, on an engineering strain with the place along each axis, for a law along x,
+    /// y and z.
     #[inline]
     pub fn work_by_place(&self, strain: &Symmetric) -> [f64; 3] {
         let per_degree: f64 = self.per_degree.iter().zip(strain).map(|(stress, strain)| stress * strain).sum();
@@ -123,8 +124,8 @@ impl Phase {
         Ok(Phase { own: Some(OwnStress { initial, ..self.own.unwrap_or(OwnStress::NONE) }), ..self })
     }
 
-    /// The derivative of the phase: stresses of its strains are the derivatives of the stresses, at the same strain. `None` for a modulus
-    /// of an orthotropic material.
+    /// The derivative of the phase: stresses of its strains are the derivatives of the stresses, at the same strain.
+    /// `None` for a modulus of an orthotropic material.
     pub(super) fn derivative(&self, by: PhaseNumber) -> Option<Phase> {
         let law = match by {
             PhaseNumber::Young => self.material.by_young(&self.law)?,

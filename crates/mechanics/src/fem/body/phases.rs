@@ -11,8 +11,8 @@ impl ElasticBody {
     /// The same body with another material in some `elements`: their indices, from 0, in any order.
     ///
     /// # Errors
-    /// As [`ElasticBody::new`] for the material; [`Error::Mesh`] for an element that does not exist, for a body of several regions, for
-    /// an orthotropic material with mean dilatation.
+    /// As [`ElasticBody::new`] for the material; [`Error::Mesh`] for an element that does not exist, for a body of
+    /// several regions, for an orthotropic material with mean dilatation.
     pub fn with_material(self, elements: &[usize], material: Material) -> Result<Self, Error> {
         let formulation = self.formulation;
         let body = self.with_phase(elements, |phase| phase.of(material, &formulation))?;
@@ -25,8 +25,8 @@ impl ElasticBody {
     /// temperature of an element.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a material without coefficients of expansion, or numbers that are not finite; [`Error::Mesh`] as
-    /// [`with_material`](Self::with_material).
+    /// [`qp::Error::Setting`] for a material without coefficients of expansion, or numbers that are not finite;
+    /// [`Error::Mesh`] as [`with_material`](Self::with_material).
     pub fn with_temperature(self, elements: &[usize], value: f64, gradient: [f64; 3]) -> Result<Self, Error> {
         let temperature = Temperature { value, gradient };
         self.with_phase(elements, |phase| phase.clone().with_temperature(temperature))
@@ -36,8 +36,8 @@ impl ElasticBody {
     /// (indices from 0, in any order) that acts without strain. It replaces an earlier initial stress of an element.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a component that is not finite, or that the formulation does not have; [`Error::Mesh`] as
-    /// [`with_material`](Self::with_material).
+    /// [`qp::Error::Setting`] for a component that is not finite, or that the formulation does not have;
+    /// [`Error::Mesh`] as [`with_material`](Self::with_material).
     pub fn with_initial_stress(self, elements: &[usize], stress: Symmetric) -> Result<Self, Error> {
         let formulation = self.formulation;
         self.with_phase(elements, |phase| phase.clone().with_initial_stress(stress, &formulation))
@@ -81,8 +81,8 @@ impl ElasticBody {
         self.of_elements.iter_mut().for_each(|phase| *phase = number[*phase as usize].unwrap_or_default());
     }
 
-    /// The body whose stresses are the derivatives of the stresses with respect to a number of each phase, at the same displacement: one
-    /// number for each phase. `None` for a modulus of an orthotropic material.
+    /// The body whose stresses are the derivatives of the stresses with respect to a number of each phase, at the same
+    /// displacement: one number for each phase. `None` for a modulus of an orthotropic material.
     pub(crate) fn derivative(&self, by: &[PhaseNumber]) -> Option<Self> {
         let phases = self.phases.iter().zip(by).map(|(phase, &by)| phase.derivative(by)).collect::<Option<_>>()?;
         Some(ElasticBody { phases, ..self.clone() })

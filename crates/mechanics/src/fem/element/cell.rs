@@ -35,8 +35,8 @@ const LOCATED: f64 = 1e-14;
 
 /// A reference cell with the coordinates of its nodes.
 ///
-/// The coordinates are stored relative to the first node and in a unit: the power of two next to the cell's size. A change of the unit of
-/// length by a power of two then changes no bit of the results, and no size overflows in between.
+/// The coordinates are stored relative to the first node and in a unit: the power of two next to the cell's size. A
+/// change of the unit of length by a power of two then changes no bit of the results, and no size overflows in between.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
     reference: &'static ReferenceElement,
@@ -96,8 +96,8 @@ impl Cell {
         [0, 1, 2].map(|axis| self.origin[axis] + self.unit * at[axis])
     }
 
-    /// The values of the shape functions at a point, one for each node; `None` if the point is outside the cell by more than
-    /// `tolerance`, in reference coordinates.
+    /// The values of the shape functions at a point, one for each node; `None` if the point is outside the cell by more
+    /// than `tolerance`, in reference coordinates.
     pub fn weights_at(&self, point: [f64; 3], tolerance: f64) -> Option<PerNode<f64>> {
         let (reference, at) = (self.reference, self.reference_coordinates(point));
         let weights = (reference.shape)(at);
@@ -114,7 +114,8 @@ impl Cell {
         for _ in 0..LOCATING_STEPS {
             let place = self.place(&(reference.shape)(at));
             let away = [0, 1, 2].map(|axis| (point[axis] - place[axis]) / self.unit);
-            // The shape functions reproduce every linear function, also the reference coordinates: their gradients invert the Jacobian.
+            // The shape functions reproduce every linear function, also the reference coordinates: their gradients
+            // invert the Jacobian.
             let gradients = self.map(&(reference.derivative)(at)).gradients;
             let mut change = [0.0; 3];
             for (node, gradient) in reference.nodes.iter().zip(gradients) {
@@ -162,7 +163,8 @@ impl Cell {
         jacobian
     }
 
-    /// Gradients and determinant at the point with the given shape function derivatives; the cell has the dimension of its space.
+    /// Gradients and determinant at the point with the given shape function derivatives; the cell has the dimension of
+    /// its space.
     #[inline]
     pub fn map(&self, derivative: &PerNode<[f64; 3]>) -> Mapping {
         let dimension = self.reference.dimension;
@@ -184,11 +186,11 @@ impl Cell {
         Mapping { gradients, determinant }
     }
 
-    /// The area vector of a facet at the point with the given shape function derivatives: normal to the facet; its length is the ratio of
-    /// area in place (in powers of the unit of the cell) to area on the reference cell.
+    /// The area vector of a facet at the point with the given shape function derivatives: normal to the facet; its
+    /// length is the ratio of area in place (in powers of the unit of the cell) to area on the reference cell.
     ///
-    /// It points to the right of an edge that runs along its nodes; to the side from which a face's nodes are counterclockwise; along x
-    /// for a point.
+    /// It points to the right of an edge that runs along its nodes; to the side from which a face's nodes are
+    /// counterclockwise; along x for a point.
     pub fn area_vector(&self, derivative: &PerNode<[f64; 3]>) -> [f64; 3] {
         let tangents = self.jacobian(derivative);
         match self.reference.dimension {

@@ -1,5 +1,5 @@
-//! Hex20, the serendipity hexahedron, integrated with 3 x 3 x 3 Gauss points: with s = 1 + xi_a xi and so on,
-//! N = s_1 s_2 s_3 (xi_a xi + eta_a eta + zeta_a zeta - 2)/8 at corners, (1 - xi^2) s_2 s_3/4 and so on at the mid-sides.
+//! Hex20, the serendipity hexahedron, integrated with 3 x 3 x 3 Gauss points: with s = 1 + xi_a xi and so on, N = s_1
+//! s_2 s_3 (xi_a xi + eta_a eta + zeta_a zeta - 2)/8 at corners, (1 - xi^2) s_2 s_3/4 and so on at the mid-sides.
 
 use super::quadrature::CUBE_3X3X3;
 use super::reference::{CalculixCell, FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, with_middles};

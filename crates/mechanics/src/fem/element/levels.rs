@@ -7,10 +7,11 @@ use crate::fem::geometry::minus;
 /// A corner of a piece: reference coordinates, and the value of the function.
 type Corner = ([f64; 3], f64);
 
-/// Five points in each direction of every piece of a cell between `levels` of a function with the values `at_corners`, linear between
-/// them along the sides of the cell and along the cuts.
+/// Five points in each direction of every piece of a cell between `levels` of a function with the values `at_corners`,
+/// linear between them along the sides of the cell and along the cuts.
 ///
-/// If the cell in place is an affine image of its reference, these are the pieces of a function that is linear in the coordinates.
+/// If the cell in place is an affine image of its reference, these are the pieces of a function that is linear in the
+/// coordinates.
 pub fn between_levels(reference: &ReferenceElement, at_corners: &[f64], levels: &[f64]) -> Vec<QuadraturePoint> {
     let whole: Vec<Corner> = reference.nodes.iter().copied().zip(at_corners.iter().copied()).collect();
     let mut pieces = vec![whole];

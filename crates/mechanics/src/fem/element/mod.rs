@@ -1,7 +1,8 @@
 //! Reference cells, their quadrature, and their map into space.
 //!
-//! An element is a [`ReferenceElement`] in its own file and a line in [`ElementKind`], which is defined here; all other code works for
-//! any element. Reference coordinates are `[xi, eta, zeta]`; those beyond the dimension of the cell are zero.
+//! An element is a [`ReferenceElement`] in its own file and a line in [`ElementKind`], which is defined here; all other
+//! code works for any element. Reference coordinates are `[xi, eta, zeta]`; those beyond the dimension of the cell are
+//! zero.
 
 mod cell;
 mod hex20;
@@ -59,11 +60,11 @@ pub enum ElementKind {
     Tet4,
     /// Trilinear hexahedron: the lower face counterclockwise seen from above, then the upper one (VTK order).
     Hex8,
-    /// Quadratic tetrahedron: four corners as those of `Tet4`, then the mid-sides (0,1), (1,2), (2,0), (0,3), (1,3), (2,3)
-    /// (VTK order).
+    /// Quadratic tetrahedron: four corners as those of `Tet4`, then the mid-sides (0,1), (1,2), (2,0), (0,3), (1,3),
+    /// (2,3) (VTK order).
     Tet10,
-    /// Serendipity hexahedron: eight corners as those of `Hex8`, then the mid-sides of the lower face, of the upper one, and of
-    /// the edges between them (VTK order).
+    /// Serendipity hexahedron: eight corners as those of `Hex8`, then the mid-sides of the lower face, of the upper
+    /// one, and of the edges between them (VTK order).
     Hex20,
 }
 
@@ -147,8 +148,8 @@ impl ElementKind {
         self.reference().form == Shape::Product
     }
 
-    /// Returns `true` if the mean of the dilatation over the element can replace the dilatation: the linear products in the plane and in
-    /// space.
+    /// Returns `true` if the mean of the dilatation over the element can replace the dilatation: the linear products in
+    /// the plane and in space.
     pub fn takes_mean_dilatation(self) -> bool {
         self.is_product() && !self.is_quadratic() && self.dimension() > 1
     }
@@ -185,8 +186,8 @@ impl<T> PerKind<T> {
 impl FacetKind {
     /// The straight cells of a facet with these nodes, in the order of its reference cell: the nodes around each cell.
     pub fn straight_cells(self, facet: &[usize]) -> Vec<Vec<usize>> {
-        // A quadratic triangle is cut into four: the corners and the middle. A quadratic quadrilateral is cut into four corners and the
-        // middle.
+        // A quadratic triangle is cut into four: the corners and the middle. A quadratic quadrilateral is cut into four
+        // corners and the middle.
         const QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
         const CORNERS_AND_MIDDLE: [&[usize]; 5] = [&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7], &[4, 5, 6, 7]];
         let of_facet = |cell: &[usize]| cell.iter().map(|&local| facet[local]).collect();

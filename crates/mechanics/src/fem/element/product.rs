@@ -1,5 +1,5 @@
-//! The multilinear shape functions of Line2, Q4 and Hex8: N_a = (1 + xi_a xi)(1 + eta_a eta)(1 + zeta_a zeta) over the number of
-//! corners; the coordinates beyond the dimension are zero.
+//! The multilinear shape functions of Line2, Q4 and Hex8: N_a = (1 + xi_a xi)(1 + eta_a eta)(1 + zeta_a zeta) over the
+//! number of corners; the coordinates beyond the dimension are zero.
 
 use super::reference::{MAX_NODES, PerNode};
 

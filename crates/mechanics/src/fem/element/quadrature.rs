@@ -25,7 +25,8 @@ pub(super) const INTERVAL_2: [QuadraturePoint; 2] = [point(-GAUSS_2, 0.0, 0.0, 1
 pub(super) const INTERVAL_3: [QuadraturePoint; 3] =
     [point(-GAUSS_3, 0.0, 0.0, 5.0 / 9.0), point(0.0, 0.0, 0.0, 8.0 / 9.0), point(GAUSS_3, 0.0, 0.0, 5.0 / 9.0)];
 
-/// The product of a rule on the interval with itself: on the square for as many points as its square has, else on the cube.
+/// The product of a rule on the interval with itself: on the square for as many points as its square has, else on the
+/// cube.
 const fn product<const M: usize, const N: usize>(line: [QuadraturePoint; M]) -> [QuadraturePoint; N] {
     let mut points = [point(0.0, 0.0, 0.0, 1.0); N];
     let mut k = 0;
@@ -91,11 +92,12 @@ pub(super) const TETRAHEDRON_4: [QuadraturePoint; 4] = {
     [point(A, A, A, WEIGHT), point(B, A, A, WEIGHT), point(A, B, A, WEIGHT), point(A, A, B, WEIGHT)]
 };
 
-/// Eight points inside the tetrahedron, exact for cubics: with curved edges the stiffness needs this to pass the patch test.
+/// Eight points inside the tetrahedron, exact for cubics: with curved edges the stiffness needs this to pass the patch
+/// test.
 ///
 /// # Source
-/// Y. Jinyun, *Symmetric Gaussian quadrature formulae for tetrahedronal regions*, Comput. Methods Appl. Mech. Engrg. 43 (1984)
-/// 349-353: two orbits of four points.
+/// Y. Jinyun, *Symmetric Gaussian quadrature formulae for tetrahedronal regions*, Comput. Methods Appl. Mech. Engrg. 43
+/// (1984) 349-353: two orbits of four points.
 pub(super) const TETRAHEDRON_8: [QuadraturePoint; 8] = {
     const A: f64 = 0.328_054_696_711_426_7;
     const WEIGHT_A: f64 = 0.138_527_966_511_862_2 / 6.0;
@@ -122,7 +124,8 @@ const GAUSS_5: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
 
-/// Gauss points on [-1, 1] as `(abscissa, weight)`, exact for degree `2 count - 1`: the zeros of the Legendre polynomial.
+/// Gauss points on [-1, 1] as `(abscissa, weight)`, exact for degree `2 count - 1`: the zeros of the Legendre
+/// polynomial.
 pub fn gauss_legendre(count: usize) -> impl Iterator<Item = (f64, f64)> + Clone {
     /// Steps of Newton's method from the known estimate of a zero: four suffice.
     const STEPS: usize = 6;
@@ -171,8 +174,8 @@ impl Part {
     }
 }
 
-/// Five Gauss points in each direction of a part of the cell; on a simplex the points of the product of intervals, mapped onto the
-/// simplex. Exact for polynomials of total degree six and more.
+/// Five Gauss points in each direction of a part of the cell; on a simplex the points of the product of intervals,
+/// mapped onto the simplex. Exact for polynomials of total degree six and more.
 pub(super) fn fine(form: Shape, dimension: usize, part: Part) -> Vec<QuadraturePoint> {
     let mut points = vec![point(0.0, 0.0, 0.0, 1.0)];
     for axis in 0..dimension {

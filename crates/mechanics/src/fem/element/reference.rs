@@ -74,7 +74,8 @@ pub struct ReferenceElement {
     pub quadrature: &'static [QuadraturePoint],
     /// The same for a cell of a body of revolution: the radius adds one degree.
     pub quadrature_revolved: &'static [QuadraturePoint],
-    /// The kind of a face of the element; for points and edges, which are no elements of a plane body, the kind of its ends.
+    /// The kind of a face of the element; for points and edges, which are no elements of a plane body, the kind of its
+    /// ends.
     pub facet: FacetKind,
     /// The number of the element in a file of Gmsh.
     pub gmsh: usize,
@@ -91,8 +92,8 @@ pub struct ReferenceElement {
 /// An element in the files of results of CalculiX.
 ///
 /// # Source
-/// K. Wittig, *CalculiX GraphiX User's Manual*, version 2.20, "Element Types"; points and their order as CalculiX 2.20 prints strains that
-/// are linear in a single element.
+/// K. Wittig, *CalculiX GraphiX User's Manual*, version 2.20, "Element Types"; points and their order as CalculiX 2.20
+/// prints strains that are linear in a single element.
 #[derive(Debug)]
 pub struct CalculixCell {
     /// The number of the type in a file `.frd`.
@@ -105,7 +106,8 @@ pub struct CalculixCell {
     pub layers: usize,
 }
 
-/// The counts that a cell of a large structured mesh adds: a quadrilateral or a brick, cut into simplices if the element is a simplex.
+/// The counts that a cell of a large structured mesh adds: a quadrilateral or a brick, cut into simplices if the
+/// element is a simplex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LatticeCounts {
     /// Nodes that a cell adds.
@@ -139,7 +141,8 @@ impl ReferenceElement {
         }
     }
 
-    /// The local nodes in the order of a mirrored element: that of the cell with xi and eta exchanged, or, on a line, with xi reversed.
+    /// The local nodes in the order of a mirrored element: that of the cell with xi and eta exchanged, or, on a line,
+    /// with xi reversed.
     pub fn mirrored(&self) -> Vec<usize> {
         let mirror = |[xi, eta, zeta]: [f64; 3]| match self.dimension {
             1 => [-xi, eta, zeta],

@@ -1,5 +1,5 @@
-//! The shape functions of simplices by the barycentric coordinates L, one for each corner: L itself on linear simplices; on quadratic
-//! ones L_a (2 L_a - 1) at corners and 4 L_a L_b at the mid-sides.
+//! The shape functions of simplices by the barycentric coordinates L, one for each corner: L itself on linear
+//! simplices; on quadratic ones L_a (2 L_a - 1) at corners and 4 L_a L_b at the mid-sides.
 
 use super::reference::{MAX_NODES, PerNode};
 

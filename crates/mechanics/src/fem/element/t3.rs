@@ -6,7 +6,8 @@ use super::simplex::{linear, linear_slopes};
 
 /// The linear triangle.
 ///
-/// In a body of revolution it takes three points: with one point, a rotation about the centroid would have no strain energy.
+/// In a body of revolution it takes three points: with one point, a rotation about the centroid would have no strain
+/// energy.
 pub(super) static T3: ReferenceElement = ReferenceElement {
     name: "T3",
     form: Shape::Simplex,

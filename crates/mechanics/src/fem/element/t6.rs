@@ -7,8 +7,8 @@ use super::simplex::{quadratic, quadratic_slopes};
 /// The sides, each with the corners between which its mid-side node lies.
 const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
-/// The quadratic triangle; its rule integrates the stiffness exactly if the sides are straight, in bodies of revolution too, except the
-/// hoop terms.
+/// The quadratic triangle; its rule integrates the stiffness exactly if the sides are straight, in bodies of revolution
+/// too, except the hoop terms.
 pub(super) static T6: ReferenceElement = ReferenceElement {
     name: "T6",
     form: Shape::Simplex,

@@ -76,8 +76,8 @@ impl Tabulated {
         }
     }
 
-    /// The weights that carry values at the quadrature points to the nodes, n_nodes x n_points: the least-squares fit of a linear
-    /// function (multilinear on a product of intervals; a constant if there is only one point).
+    /// The weights that carry values at the quadrature points to the nodes, n_nodes x n_points: the least-squares fit
+    /// of a linear function (multilinear on a product of intervals; a constant if there is only one point).
     pub fn extrapolation(&self) -> DenseMatrix {
         let basis = |at: [f64; 3]| -> Vec<f64> {
             let dimension = self.reference.dimension;

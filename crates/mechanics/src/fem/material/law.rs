@@ -57,7 +57,8 @@ impl Law {
         Law { stiffness, formulation }
     }
 
-    /// The stress of a strain at a place. In an isotropic material `dilatation` replaces the trace; it may be a mean over the element.
+    /// The stress of a strain at a place. In an isotropic material `dilatation` replaces the trace; it may be a mean
+    /// over the element.
     #[inline]
     pub fn stress(&self, strain: &Symmetric, dilatation: f64, place: impl Fn() -> [f64; 3]) -> Symmetric {
         let axes = self.axes(place);
@@ -117,15 +118,16 @@ impl Law {
         }
     }
 
-    /// The stress that suppresses a free strain, both along the axes of the law: minus the stress of that strain, without the components
-    /// that the formulation leaves free.
+    /// The stress that suppresses a free strain, both along the axes of the law: minus the stress of that strain,
+    /// without the components that the formulation leaves free.
     pub fn holding(&self, free: &Symmetric) -> Symmetric {
         let mut held = [0.0; 6];
         self.formulation.stresses().iter().for_each(|&component| held[component] = free[component]);
         self.local_stress(&held, trace(&held)).map(|component| -component)
     }
 
-    /// `sigma : C^-1 : sigma` at a place, twice the density of the complementary energy, of the components whose strain the formulation has.
+    /// `sigma : C^-1 : sigma` at a place, twice the density of the complementary energy, of the components whose strain
+    /// the formulation has.
     pub fn complementary_energy(&self, stress: &Symmetric, place: impl Fn() -> [f64; 3]) -> f64 {
         let stress = local(stress, &self.axes(place));
         self.local_strain(&stress).iter().zip(stress).map(|(strain, stress)| strain * stress).sum()
@@ -159,8 +161,8 @@ impl Law {
         strain
     }
 
-    /// The stiffness against a strain along one direction alone, which gives the speed of pressure waves; in an orthotropic material the
-    /// largest along a coordinate axis.
+    /// The stiffness against a strain along one direction alone, which gives the speed of pressure waves; in an
+    /// orthotropic material the largest along a coordinate axis.
     pub fn wave_modulus(&self) -> f64 {
         match &self.stiffness {
             Stiffness::Isotropic(lame) => lame.lambda + 2.0 * lame.mu,

@@ -49,7 +49,8 @@ impl Material {
     /// Tension along i contracts the material along j by nu_ij times its extension, and `nu_ij / E_i = nu_ji / E_j`.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a modulus that is not positive and finite, or a stiffness that is not positive definite.
+    /// [`qp::Error::Setting`] for a modulus that is not positive and finite, or a stiffness that is not positive
+    /// definite.
     pub fn orthotropic(young: [f64; 3], poisson: [f64; 3], shear: [f64; 3]) -> Result<Self, Error> {
         let elasticity = Elasticity::Orthotropic(Orthotropic::new(young, poisson, shear)?);
         Ok(Material { elasticity, density: None, expansion: None })
@@ -69,8 +70,9 @@ impl Material {
         Ok(Material { elasticity, ..self })
     }
 
-    /// The same material with axes that turn around a line: axis 1 leads away from it, 2 around it, 3 along it. `point` [x, y, z] is on the
-    /// line, in length, and `along` a vector of any length but zero. An isotropic material has no axes, and stays as it is.
+    /// The same material with axes that turn around a line: axis 1 leads away from it, 2 around it, 3 along it. `point`
+    /// [x, y, z] is on the line, in length, and `along` a vector of any length but zero. An isotropic material has no
+    /// axes, and stays as it is.
     ///
     /// # Errors
     /// [`qp::Error::Setting`] for a point or a vector that is not finite, and for a vector without a length.
@@ -96,8 +98,8 @@ impl Material {
         Ok(Material { density: Some(density), ..self })
     }
 
-    /// The same material with three coefficients of thermal expansion, in strain per degree, along its axes, for an isotropic
-    /// material along x, y and z; temperatures need them.
+    /// The same material with three coefficients of thermal expansion, in strain per degree, along its axes, for an
+    /// isotropic material along x, y and z; temperatures need them.
     ///
     /// # Errors
     /// [`qp::Error::Setting`] for a coefficient that is not finite.
@@ -108,8 +110,8 @@ impl Material {
         }
     }
 
-    /// The strain of a body that is one degree warmer, if the material has coefficients of expansion; along its axes if these turn around a
-    /// line.
+    /// The strain of a body that is one degree warmer, if the material has coefficients of expansion; along its axes if
+    /// these turn around a line.
     pub(crate) fn expansion(&self) -> Option<Symmetric> {
         let along = self.expansion?;
         Some(match &self.elasticity {
@@ -140,7 +142,8 @@ impl Material {
         }
     }
 
-    /// The strain along z of a stress `[xx, yy, zz, xy, yz, zx]`; of one along its axes if these turn around a line along z.
+    /// The strain along z of a stress `[xx, yy, zz, xy, yz, zx]`; of one along its axes if these turn around a line
+    /// along z.
     pub(crate) fn strain_across(&self, stress: &Symmetric) -> f64 {
         match &self.elasticity {
             Elasticity::Isotropic { young, poisson } => (stress[2] - poisson * (stress[0] + stress[1])) / young,
@@ -151,8 +154,9 @@ impl Material {
     /// The law of stress and strain in `formulation`.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for nu = 0.5 if the formulation would preserve the volume: plane strain, axisymmetric bodies and space; for
-    /// orthotropic axes out of the plane of a plane model; for an orthotropic stiffness that overflows.
+    /// [`qp::Error::Setting`] for nu = 0.5 if the formulation would preserve the volume: plane strain, axisymmetric
+    /// bodies and space; for orthotropic axes out of the plane of a plane model; for an orthotropic stiffness that
+    /// overflows.
     pub fn law(&self, formulation: &Formulation) -> Result<Law, Error> {
         let stiffness = match &self.elasticity {
             &Elasticity::Isotropic { young, poisson } => Stiffness::Isotropic(lame(young, poisson, formulation)?),
@@ -192,8 +196,8 @@ impl Material {
 
 /// The Lamé constants in `formulation`.
 ///
-/// In plane stress lambda is E nu/(1 - nu^2), for the trace of the strains in the plane; in a bar lambda is 0 and mu is E/2, so that
-/// sigma = E eps.
+/// In plane stress lambda is E nu/(1 - nu^2), for the trace of the strains in the plane; in a bar lambda is 0 and mu is
+/// E/2, so that sigma = E eps.
 fn lame(young: f64, nu: f64, formulation: &Formulation) -> Result<Lame, Error> {
     let mu = young / (1.0 + nu) / 2.0;
     let volumetric = |allowed| match nu < 0.5 {

@@ -97,8 +97,8 @@ impl Orthotropic {
             return Err(qp::Error::Setting { name: "orthotropic.axes", value: lean, allowed }.into());
         }
         let compliance = self.compliance();
-        // The compliance of the components with stress is inverted if the other stresses vanish, the stiffness of the rest if the strains
-        // do.
+        // The compliance of the components with stress is inverted if the other stresses vanish, the stiffness of the
+        // rest if the strains do.
         let stressed = formulation.stresses();
         let strained = if let Formulation::PlaneStrain { .. } = formulation { &[0, 1, 3] } else { stressed };
         let stiffness = inverse(&compliance, stressed).ok_or_else(|| self.overflow())?;

@@ -144,8 +144,8 @@ fn collapsed(interval: usize) -> AxisError {
     AxisError { field: format!("divisions[{interval}]"), message: message.into() }
 }
 
-/// The position of line `cell` of `cells`, as a fraction of the interval: cell sizes grow by the constant factor q = ratio^(1/(cells-1)),
-/// so that the fraction is (q^cell - 1)/(q^cells - 1).
+/// The position of line `cell` of `cells`, as a fraction of the interval: cell sizes grow by the constant factor q =
+/// ratio^(1/(cells-1)), so that the fraction is (q^cell - 1)/(q^cells - 1).
 fn graded_fraction(cell: usize, cells: usize, ratio: f64) -> f64 {
     if ratio == 1.0 || cells == 1 {
         return cell as f64 / cells as f64;

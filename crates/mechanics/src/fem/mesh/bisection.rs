@@ -9,11 +9,13 @@ use crate::fem::geometry::{cross, distance, dot, key, minus};
 
 /// A mesh of tetrahedra with the data that bisection needs of each.
 ///
-/// Every face has a marked edge, which is halved before its other two, and tetrahedra that share a face agree on it: so halves always
-/// meet in whole faces, for any first mesh. Shapes repeat after a few generations, so that no angle tends to zero.
+/// Every face has a marked edge, which is halved before its other two, and tetrahedra that share a face agree on it: so
+/// halves always meet in whole faces, for any first mesh. Shapes repeat after a few generations, so that no angle tends
+/// to zero.
 ///
 /// # Source
-/// D. N. Arnold, A. Mukherjee, L. Pouly, "Locally adapted tetrahedral meshes using bisection", SIAM J. Sci. Comput. 22 (2000) 431-448.
+/// D. N. Arnold, A. Mukherjee, L. Pouly, "Locally adapted tetrahedral meshes using bisection", SIAM J. Sci. Comput. 22
+/// (2000) 431-448.
 #[derive(Clone, Debug)]
 pub(crate) struct Tetrahedra {
     nodes: Vec<[f64; 3]>,
@@ -27,7 +29,8 @@ pub(crate) struct Tetrahedra {
 #[derive(Clone, Copy, Debug)]
 struct Marked {
     nodes: [usize; 4],
-    /// The marked edges of the faces opposite to the first and to the second node; that of the other two faces is the edge to be halved.
+    /// The marked edges of the faces opposite to the first and to the second node; that of the other two faces is the
+    /// edge to be halved.
     opposite: [[usize; 2]; 2],
     /// `true` if bisection made it from a tetrahedron whose marked edges lie in one face.
     is_second: bool,
@@ -36,8 +39,8 @@ struct Marked {
 }
 
 impl Tetrahedra {
-    /// From the elements of a mesh in space, each cut into tetrahedra, with the longest edge of each face marked; `None` if edges are
-    /// curved, or if the tetrahedra do not meet in whole faces.
+    /// From the elements of a mesh in space, each cut into tetrahedra, with the longest edge of each face marked;
+    /// `None` if edges are curved, or if the tetrahedra do not meet in whole faces.
     pub fn of(mesh: &Mesh) -> Option<Self> {
         let pieces = Pieces::of(mesh).ok().filter(|pieces| mesh.dimension() == 3 && pieces.meet(mesh))?;
         let exists: HashSet<Vec<usize>> = pieces.facets().collect();
@@ -56,8 +59,8 @@ impl Tetrahedra {
         Some(Tetrahedra { names, ..Self::new(pieces.nodes.clone(), cells, facets) })
     }
 
-    /// From tetrahedra by their nodes, each with the cell that it is a part of, and from the facets of boundaries by their nodes,
-    /// increasing: numbers of boundaries with the nodes in any order. The boundaries have no names.
+    /// From tetrahedra by their nodes, each with the cell that it is a part of, and from the facets of boundaries by
+    /// their nodes, increasing: numbers of boundaries with the nodes in any order. The boundaries have no names.
     pub fn new<'a>(
         nodes: Vec<[f64; 3]>,
         cells: impl Iterator<Item = (&'a [usize], usize)>,
@@ -87,7 +90,8 @@ impl Tetrahedra {
         self.cells.iter().map(|cell| cell.parent).collect()
     }
 
-    /// The mesh of quadratic tetrahedra with straight edges, in the order of the cells; its boundaries keep their names.
+    /// The mesh of quadratic tetrahedra with straight edges, in the order of the cells; its boundaries keep their
+    /// names.
     ///
     /// # Errors
     /// [`Error::Mesh`], as [`Mesh::new`], and for too many nodes.
@@ -103,8 +107,8 @@ impl Tetrahedra {
         Mesh::new(self.nodes.clone(), kind, connectivity, boundaries)?.elevated(ElementKind::QUADRATIC_TETRAHEDRON)
     }
 
-    /// Halves each marked tetrahedron and its halves `generations` times, and further tetrahedra with a hanging node. The pieces replace
-    /// the whole in the order. Returns the ends of the edge that each new node halves.
+    /// Halves each marked tetrahedron and its halves `generations` times, and further tetrahedra with a hanging node.
+    /// The pieces replace the whole in the order. Returns the ends of the edge that each new node halves.
     pub fn refine(&mut self, marked: &[bool], generations: usize) -> Vec<[usize; 2]> {
         let (mut middles, before) = (HashMap::new(), self.nodes.len());
         let mut left: Vec<usize> = marked.iter().map(|&marked| if marked { generations } else { 0 }).collect();
@@ -170,7 +174,8 @@ impl Tetrahedra {
 }
 
 impl Marked {
-    /// A tetrahedron of the first mesh, the longest edge of each face marked; of edges of one length that of the larger numbers.
+    /// A tetrahedron of the first mesh, the longest edge of each face marked; of edges of one length that of the larger
+    /// numbers.
     fn of(places: &[[f64; 3]], element: &[usize], parent: usize) -> Self {
         let longest = |face: &[usize]| {
             let edges = face.iter().enumerate().flat_map(|(k, &a)| face[k + 1..].iter().map(move |&b| key(a, b)));
@@ -217,7 +222,8 @@ mod tests {
     use crate::fem::geometry::length;
     use crate::fem::mesh::gmsh::GmshFile;
 
-    /// The ratio of the radii of inscribed and circumscribed sphere, times three: 1 for the regular tetrahedron, 0 for a flat one.
+    /// The ratio of the radii of inscribed and circumscribed sphere, times three: 1 for the regular tetrahedron, 0 for
+    /// a flat one.
     fn quality(corners: [[f64; 3]; 4]) -> f64 {
         let area = |[a, b, c]: [[f64; 3]; 3]| length(cross(minus(b, a), minus(c, a))) / 2.0;
         let [a, b, c, d] = corners;

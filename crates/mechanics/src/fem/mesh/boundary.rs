@@ -9,8 +9,8 @@ pub struct Boundary {
     pub name: String,
     /// The element that each of its facets is, as `Line2` for straight edges.
     pub kind: FacetKind,
-    /// The nodes of facet 0, then of facet 1, ..., each in the order of its reference cell; edges are in their order along the boundary
-    /// if they form a line.
+    /// The nodes of facet 0, then of facet 1, ..., each in the order of its reference cell; edges are in their order
+    /// along the boundary if they form a line.
     pub connectivity: Vec<usize>,
 }
 

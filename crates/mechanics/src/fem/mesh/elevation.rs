@@ -7,8 +7,8 @@ use crate::error::Error;
 use crate::fem::geometry::{key, length, minus};
 
 impl Mesh {
-    /// The same mesh of a quadratic `kind`, whose corners are the nodes of its elements; edges stay straight. The new nodes follow
-    /// the old ones.
+    /// The same mesh of a quadratic `kind`, whose corners are the nodes of its elements; edges stay straight. The new
+    /// nodes follow the old ones.
     ///
     /// # Errors
     /// [`Error::Mesh`] for a kind with other corners, or more than `MAX_NODES` nodes.

@@ -23,8 +23,8 @@ fn key(nodes: impl Iterator<Item = usize>) -> Key {
 }
 
 impl Mesh {
-    /// The element and its local face for each facet of a boundary: the first one if the boundary lies between two elements, `None` if
-    /// the facet is not a face of any element.
+    /// The element and its local face for each facet of a boundary: the first one if the boundary lies between two
+    /// elements, `None` if the facet is not a face of any element.
     pub fn faces_of(&self, boundary: &Boundary) -> Vec<Option<(usize, usize)>> {
         let mut found = vec![None; boundary.facet_count()];
         self.for_faces_of(boundary, |index, face| {
@@ -40,7 +40,8 @@ impl Mesh {
         count.iter().position(|&count| count > 1)
     }
 
-    /// Calls `visit` with the number of a facet of a boundary, and an element and its local face, for each that there is.
+    /// Calls `visit` with the number of a facet of a boundary, and an element and its local face, for each that there
+    /// is.
     fn for_faces_of(&self, boundary: &Boundary, mut visit: impl FnMut(usize, (usize, usize))) {
         let mut places: HashMap<Key, Vec<usize>> = HashMap::with_capacity(boundary.facet_count());
         let mut marked = vec![false; self.nodes().len()];
@@ -68,8 +69,8 @@ impl Mesh {
         }
     }
 
-    /// All faces that belong to one of these elements of one kind only, seen from outside; edges in the order in which they follow each
-    /// other.
+    /// All faces that belong to one of these elements of one kind only, seen from outside; edges in the order in which
+    /// they follow each other.
     pub fn surface(&self, elements: Range<usize>) -> Boundary {
         let reference = self.kind_of(elements.start).reference();
         let of_element = |element: usize| {

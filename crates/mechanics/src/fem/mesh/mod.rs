@@ -26,8 +26,8 @@ use crate::error::Error;
 use crate::fem::geometry::distance;
 use std::ops::Range;
 
-/// More nodes than this are refused before memory is allocated: a mesh of Tet4 has some 24 places of elements for each node, and their numbers
-/// fit 32 bits.
+/// More nodes than this are refused before memory is allocated: a mesh of Tet4 has some 24 places of elements for each
+/// node, and their numbers fit 32 bits.
 pub const MAX_NODES: usize = 100_000_000;
 
 /// A mesh, checked once, when it is built: elements of one kind, or blocks of them after [`Mesh::beside`].
@@ -61,9 +61,10 @@ impl Mesh {
     /// indices from 0.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite or lie outside the space of the element, a
-    /// connectivity whose length is not a multiple of the nodes of an element, a node beyond the last, a node that no element uses, two
-    /// boundaries of one name, facets of the wrong kind, a facet that is not a face of an element.
+    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite or lie outside the space of the
+    /// element, a connectivity whose length is not a multiple of the nodes of an element, a node beyond the last, a
+    /// node that no element uses, two boundaries of one name, facets of the wrong kind, a facet that is not a face of
+    /// an element.
     pub fn new(
         nodes: Vec<[f64; 3]>,
         kind: ElementKind,
@@ -235,13 +236,14 @@ impl Mesh {
         Mesh { element_numbers, ..self }
     }
 
-    /// The number of each node in the deck that the mesh comes from, in the order of [`Mesh::nodes`]; `None` for a mesh from elsewhere.
+    /// The number of each node in the deck that the mesh comes from, in the order of [`Mesh::nodes`]; `None` for a mesh
+    /// from elsewhere.
     pub fn node_numbers(&self) -> Option<Vec<usize>> {
         self.node_names.numbers(self.nodes.len())
     }
 
-    /// The number of each element in the deck that the mesh comes from, in the order of [`Mesh::elements`]; `None` for a mesh from
-    /// elsewhere.
+    /// The number of each element in the deck that the mesh comes from, in the order of [`Mesh::elements`]; `None` for
+    /// a mesh from elsewhere.
     pub fn element_numbers(&self) -> Option<&[usize]> {
         (self.element_numbers.len() == self.element_count()).then_some(&self.element_numbers)
     }
@@ -257,8 +259,8 @@ impl Mesh {
         Mesh { connectivity, ..self }
     }
 
-    /// This mesh and `other` in one, sharing no node: nodes and elements of `other` follow those of this mesh; its boundaries are called
-    /// `name.boundary`, and its groups of elements `name.group`.
+    /// This mesh and `other` in one, sharing no node: nodes and elements of `other` follow those of this mesh; its
+    /// boundaries are called `name.boundary`, and its groups of elements `name.group`.
     ///
     /// # Errors
     /// [`Error::Mesh`] for meshes of two dimensions, or a boundary name that exists.

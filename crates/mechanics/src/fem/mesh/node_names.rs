@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-/// The nodes of a mesh by the names of their file: sets of nodes, and single nodes by their numbers. Those of a further body begin with its
-/// name and a point.
+/// The nodes of a mesh by the names of their file: sets of nodes, and single nodes by their numbers. Those of a further
+/// body begin with its name and a point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct NodeNames {
     sets: BTreeMap<String, Vec<usize>>,

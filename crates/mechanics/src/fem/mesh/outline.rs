@@ -5,14 +5,15 @@ use std::collections::{HashMap, HashSet};
 use super::{Boundary, FacetKind, Mesh};
 
 impl Mesh {
-    /// The mesh with these boundaries alone, each with all faces that have only marked nodes; a boundary without a face is left out.
+    /// The mesh with these boundaries alone, each with all faces that have only marked nodes; a boundary without a face
+    /// is left out.
     pub(crate) fn with_sides(mut self, sides: &[(&str, &dyn Fn(usize) -> bool)]) -> Self {
         self.boundaries = sides.iter().filter_map(|(name, marked)| self.boundary_where(name, marked)).collect();
         self
     }
 
-    /// The boundary of all faces that have only marked nodes, in a mesh of one kind, seen from outside; edges in the order in which they
-    /// follow each other. `None` if there is no such face.
+    /// The boundary of all faces that have only marked nodes, in a mesh of one kind, seen from outside; edges in the
+    /// order in which they follow each other. `None` if there is no such face.
     fn boundary_where(&self, name: &str, marked: impl Fn(usize) -> bool) -> Option<Boundary> {
         let reference = self.kind_of(0).reference();
         let mut connectivity = Vec::new();

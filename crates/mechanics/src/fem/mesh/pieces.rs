@@ -9,13 +9,13 @@ use crate::fem::geometry::{cross, distance, dot, minus};
 /// A mid-edge node that lies off the chord by less than this, relative to the chord, is rounding.
 const STRAIGHT: f64 = 1e-9;
 
-/// A hexahedron cut into tetrahedra around its diagonal from corner 0 to corner 6. Opposite faces are cut in the same direction, so that
-/// those of a lattice match.
+/// A hexahedron cut into tetrahedra around its diagonal from corner 0 to corner 6. Opposite faces are cut in the same
+/// direction, so that those of a lattice match.
 const OF_HEXAHEDRON: [[usize; 4]; 6] =
     [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
 
-/// Straight triangles or tetrahedra that make up the elements of a mesh: of the corners alone if all edges are straight, else in the plane
-/// of all nodes.
+/// Straight triangles or tetrahedra that make up the elements of a mesh: of the corners alone if all edges are
+/// straight, else in the plane of all nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Pieces {
     /// The nodes of pieces, in the order of the mesh.
@@ -32,7 +32,8 @@ impl Pieces {
     /// The pieces of a mesh in the plane or in space.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for an element with edges that are so curved that a piece has no size, and in space for any curved edge.
+    /// [`Error::Mesh`] for an element with edges that are so curved that a piece has no size, and in space for any
+    /// curved edge.
     pub fn of(mesh: &Mesh) -> Result<Self, Error> {
         let straight = is_straight(mesh);
         if !straight && mesh.dimension() == 3 {
@@ -80,7 +81,8 @@ impl Pieces {
         })
     }
 
-    /// Returns `true` if the pieces meet in whole facets: all that belong to one piece only lie on the surface of the mesh.
+    /// Returns `true` if the pieces meet in whole facets: all that belong to one piece only lie on the surface of the
+    /// mesh.
     ///
     /// Two hexahedra can cut their common face along different diagonals.
     pub fn meet(&self, mesh: &Mesh) -> bool {
@@ -101,8 +103,8 @@ impl Pieces {
         of_pieces.into_iter().all(|(facet, count)| count == 2 || on_surface.contains(&facet))
     }
 
-    /// The facets of pieces that may form a boundary, each by its nodes in the order of the boundary. A quadrilateral gives those of both
-    /// diagonals, of which pieces have one.
+    /// The facets of pieces that may form a boundary, each by its nodes in the order of the boundary. A quadrilateral
+    /// gives those of both diagonals, of which pieces have one.
     pub fn facets_of(&self, mesh: &Mesh, boundary: &str) -> Vec<Vec<usize>> {
         let of_facet = |facet: &[usize]| -> Vec<Vec<usize>> {
             let numbers: Vec<usize> = facet.iter().filter_map(|&node| self.numbers[node]).collect();
@@ -133,7 +135,8 @@ fn without_one(face: &[usize]) -> Vec<Vec<usize>> {
     }
 }
 
-/// The area of a triangle or the volume of a tetrahedron, times two or six; positive if its corners stand in the order of their kind.
+/// The area of a triangle or the volume of a tetrahedron, times two or six; positive if its corners stand in the order
+/// of their kind.
 fn oriented_size(corners: &[[f64; 3]]) -> f64 {
     let edges: Vec<[f64; 3]> = corners.iter().skip(1).map(|&corner| minus(corner, corners[0])).collect();
     let third = edges.get(2).copied().unwrap_or([0.0, 0.0, 1.0]);
@@ -191,7 +194,8 @@ mod tests {
     use super::super::{Boundary, ElementKind, FacetKind};
     use super::*;
 
-    /// One triangle of six nodes with its mid-edge nodes numbered first; the middle node of one side is moved out by `bulge`.
+    /// One triangle of six nodes with its mid-edge nodes numbered first; the middle node of one side is moved out by
+    /// `bulge`.
     fn triangle(bulge: f64) -> Mesh {
         let nodes = [[0.5, 0.0], [0.5 + bulge, 0.5 + bulge], [0.0, 0.5], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let nodes = nodes.map(|[x, y]| [x, y, 0.0]).to_vec();
@@ -199,7 +203,8 @@ mod tests {
         Mesh::new(nodes, ElementKind::ALL[2], vec![3, 4, 5, 0, 1, 2], vec![side]).unwrap()
     }
 
-    /// Two cubes side by side; the second one begins at another corner, so that it cuts the common face along the other diagonal.
+    /// Two cubes side by side; the second one begins at another corner, so that it cuts the common face along the other
+    /// diagonal.
     #[test]
     fn cubes_meet_in_whole_facets_only_if_they_are_cut_alike() {
         let nodes: Vec<[f64; 3]> = (0..12).map(|node| [node / 4, node / 2 % 2, node % 2].map(f64::from)).collect();

@@ -41,8 +41,8 @@ impl Grading {
         if angle.abs() >= std::f64::consts::FRAC_PI_4 { angle.signum() } else { angle.tan() }
     }
 
-    /// The position, relative to the centre, of a point of the core (given in halves of the core's width) that is moved along its ray by
-    /// `outward`: from the core (0) to the surface (1).
+    /// The position, relative to the centre, of a point of the core (given in halves of the core's width) that is moved
+    /// along its ray by `outward`: from the core (0) to the surface (1).
     pub fn place(&self, core: [f64; 3], outward: f64) -> [f64; 3] {
         if outward == 0.0 {
             return core.map(|value| value * CORE * self.radius);

@@ -13,8 +13,8 @@ use crate::fem::formulation::positive;
 #[schemars(rename = "ZoneSpec")]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
-    /// Distance over which the cells have one size, from the lowest point to each side and into the body: positive, at most the
-    /// radius. Twice the expected contact half-width is a good choice.
+    /// Distance over which the cells have one size, from the lowest point to each side and into the body: positive, at
+    /// most the radius. Twice the expected contact half-width is a good choice.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub width: f64,
     /// Cells on this width, at least 1.

@@ -11,8 +11,8 @@ const LEAST_COVERED: f64 = 0.1;
 /// A facet covered by less than this share of its area counts as not covered.
 const NO_COVER: f64 = 1e-10;
 
-/// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface; curved facets
-/// exceed it by rounding of the curve, two layers by a half at least.
+/// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface;
+/// curved facets exceed it by rounding of the curve, two layers by a half at least.
 const TWICE: f64 = 0.1;
 
 /// The integrals over the covered part of one slave facet.
@@ -51,7 +51,8 @@ impl<'a> Covered<'a> {
         self.full.iter_mut().zip(shape).for_each(|(sum, value)| *sum += area * value);
     }
 
-    /// Adds what it shares with the facets of the other surface, of which only the nearest count where the surface has a step.
+    /// Adds what it shares with the facets of the other surface, of which only the nearest count where the surface has
+    /// a step.
     pub fn add(&mut self, mut shared: Vec<Shared>) {
         self.facing = shared.iter().map(|one| one.area).sum();
         keep_nearest(&mut shared, self.facet.radius);
@@ -78,8 +79,8 @@ impl<'a> Covered<'a> {
         self.area > NO_COVER * self.whole
     }
 
-    /// The weights of the dual functions of the kept nodes: `psi_j = sum_k A_jk phi_k`. A node that is dropped hands its function over
-    /// to the kept nodes of the facet, in equal parts.
+    /// The weights of the dual functions of the kept nodes: `psi_j = sum_k A_jk phi_k`. A node that is dropped hands
+    /// its function over to the kept nodes of the facet, in equal parts.
     ///
     /// Without dropped nodes `integral psi_j phi_k = delta_jk integral phi_j`, and `sum_j psi_j = 1` always.
     fn dual(&self, is_kept: &[bool]) -> DenseMatrix {
@@ -120,8 +121,8 @@ fn add(list: &mut Vec<(usize, f64)>, node: usize, value: f64) {
     }
 }
 
-/// The nodes that carry rows, from all facets of the surface: of those that `may_carry` one, the nodes of which enough is covered, and
-/// the best covered node of each covered facet that would have none.
+/// The nodes that carry rows, from all facets of the surface: of those that `may_carry` one, the nodes of which enough
+/// is covered, and the best covered node of each covered facet that would have none.
 pub(super) fn kept(covered: &[Covered], nodes: usize, may_carry: &dyn Fn(usize) -> bool) -> Vec<bool> {
     let (mut area, mut full, mut around) = (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; nodes]);
     for facet in covered {

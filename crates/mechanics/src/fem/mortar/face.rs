@@ -12,8 +12,8 @@ const ON_LINE: f64 = 1e-12;
 /// A polygon below this share of its facet is rounding.
 const NO_AREA: f64 = 1e-14;
 
-/// Faces that are no images of their reference cells by linear maps need more points, because the inverse of the map is no polynomial:
-/// points in each direction of a triangle, and the distortion from which on the second number counts.
+/// Faces that are no images of their reference cells by linear maps need more points, because the inverse of the map is
+/// no polynomial: points in each direction of a triangle, and the distortion from which on the second number counts.
 const FINE: usize = 8;
 const FINEST: usize = 12;
 const DISTORTED: f64 = 0.5;

@@ -94,8 +94,8 @@ impl<'a> Facet<'a> {
         dot(self.normal, other.normal) < -FACING
     }
 
-    /// Adds its part to the normals of its nodes, with weights that leave no error on circles and spheres, however much the facets
-    /// around a node differ: `|a x b| / (a.a b.b)` at a corner with the edges a and b.
+    /// Adds its part to the normals of its nodes, with weights that leave no error on circles and spheres, however much
+    /// the facets around a node differ: `|a x b| / (a.a b.b)` at a corner with the edges a and b.
     pub fn add_normals(&self, sums: &mut [[f64; 3]]) {
         let (reference, cell) = (self.reference(), Cell::new(self.reference(), &self.corners));
         for (local, &node) in self.nodes.iter().enumerate() {
@@ -121,8 +121,9 @@ impl<'a> Facet<'a> {
     }
 }
 
-/// The largest `h angle / 8` of facets that stand for a curve: `h` is the length of an edge, and the angle that between the normals at its
-/// ends. An edge between normals that turn more than 40 degrees is a corner, and curved facets follow the curve.
+/// The largest `h angle / 8` of facets that stand for a curve: `h` is the length of an edge, and the angle that between
+/// the normals at its ends. An edge between normals that turn more than 40 degrees is a corner, and curved facets
+/// follow the curve.
 pub(super) fn sag(facets: &[Facet], normals: &[[f64; 3]]) -> f64 {
     const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
     const ROUNDING: f64 = 1e-7;
@@ -139,7 +140,8 @@ pub(super) fn sag(facets: &[Facet], normals: &[[f64; 3]]) -> f64 {
     largest
 }
 
-/// The area of a straight piece as a vector along its outward normal: half the sum over its corners; of an edge its length.
+/// The area of a straight piece as a vector along its outward normal: half the sum over its corners; of an edge its
+/// length.
 pub(super) fn area_vector(piece: &[[f64; 3]]) -> [f64; 3] {
     match *piece {
         [a, b] => {

@@ -85,8 +85,8 @@ fn zero(function: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
     Some(xi)
 }
 
-/// Calls `visit` for every integration point of the part of `slave` that `master` covers along the `directions` at the nodes of
-/// `slave`, if it is within `reach`.
+/// Calls `visit` for every integration point of the part of `slave` that `master` covers along the `directions` at the
+/// nodes of `slave`, if it is within `reach`.
 pub(super) fn for_each_point(
     slave: &Facet,
     directions: &[[f64; 3]],
@@ -133,7 +133,8 @@ pub(super) fn for_each_point(
     }
 }
 
-/// Calls `visit` for the integration points of a whole edge: reference coordinates, and the length that each stands for.
+/// Calls `visit` for the integration points of a whole edge: reference coordinates, and the length that each stands
+/// for.
 pub(super) fn for_each_of_whole(slave: &Facet, visit: &mut dyn FnMut([f64; 3], f64)) {
     let own = Edge::of(slave, slave.middle);
     for (xi, weight) in gauss_legendre(POINTS) {

@@ -1,24 +1,25 @@
-//! Rows between two surfaces whose meshes do not match: dual mortar elements, integrated segment by segment over the covered part.
+//! Rows between two surfaces whose meshes do not match: dual mortar elements, integrated segment by segment over the
+//! covered part.
 //!
 //! The slave surface carries a row at each of its nodes, with a dual function `psi_j` of the multiplier,
-//! `integral psi_j phi_k = delta_jk D_j`, and `D_j = integral phi_j`, all over the part of the slave surface that the master surface
-//! covers:
+//! `integral psi_j phi_k = delta_jk D_j`, and `D_j = integral phi_j`, all over the part of the slave surface that the
+//! master surface covers:
 //!
 //! ```text
 //! n_j . (u_j - sum_l P_jl u_l) <= g_j,    P_jl = (integral psi_j phi_l) / D_j,    sum_l P_jl = 1.
 //! ```
 //!
-//! A multiplier is a force; over `D_j` it is a pressure. A uniform pressure passes between any two meshes without error. A node of
-//! which less than a tenth is covered carries no row: its function goes to the other nodes of its facets, and its motion enters their
-//! rows. Functions of quadratic faces in space are those of the positive basis, because a uniform pressure has no force at the corners
-//! of the others.
+//! A multiplier is a force; over `D_j` it is a pressure. A uniform pressure passes between any two meshes without
+//! error. A node of which less than a tenth is covered carries no row: its function goes to the other nodes of its
+//! facets, and its motion enters their rows. Functions of quadratic faces in space are those of the positive basis,
+//! because a uniform pressure has no force at the corners of the others.
 //!
 //! # Source
-//! B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012 (dual functions); M. A. Puso, T. A. Laursen, J. Solberg, Comput. Methods Appl.
-//! Mech. Engrg. 197 (2008) 555-566 (segments of quadratic faces); T. Cichosz, M. Bischoff, Comput. Methods Appl. Mech. Engrg. 200 (2011)
-//! 1317-1332 (functions over the covered part); N. Max, J. Graphics Tools 4 (1999) 1-6 (weights of normals); A. Popp, A. Seitz, M. W. Gee,
-//! W. A. Wall, Comput. Methods Appl. Mech. Engrg. 264 (2013)
-//! 67-80 (nodes that are dropped).
+//! B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989-1012 (dual functions); M. A. Puso, T. A. Laursen, J. Solberg,
+//! Comput. Methods Appl. Mech. Engrg. 197 (2008) 555-566 (segments of quadratic faces); T. Cichosz, M. Bischoff,
+//! Comput. Methods Appl. Mech. Engrg. 200 (2011) 1317-1332 (functions over the covered part); N. Max, J. Graphics Tools
+//! 4 (1999) 1-6 (weights of normals); A. Popp, A. Seitz, M. W. Gee, W. A. Wall, Comput. Methods Appl. Mech. Engrg. 264
+//! (2013) 67-80 (nodes that are dropped).
 
 mod coverage;
 mod face;
@@ -86,7 +87,8 @@ pub struct Mortar<'a> {
 /// The rows of a [`Mortar`] in the nodal displacements: `contact * [u_slave, u_master] <= gap`.
 #[derive(Clone, Debug)]
 pub struct MortarRows {
-    /// B, dimensionless: a row for each entry of `nodes`, `dim` columns for each node of the slave surface, then of the master surface.
+    /// B, dimensionless: a row for each entry of `nodes`, `dim` columns for each node of the slave surface, then of the
+    /// master surface.
     pub contact: SparseMatrix,
     /// The mean distance of the undeformed surfaces over the area of each row, in length; negative where they overlap.
     pub gap: Vec<f64>,
@@ -103,7 +105,8 @@ pub struct MortarRows {
 pub(crate) struct MortarRow {
     /// The slave node that carries it.
     pub node: usize,
-    /// The coefficients of slave nodes with their shares, which add up to 1, and displacements of master nodes with theirs.
+    /// The coefficients of slave nodes with their shares, which add up to 1, and displacements of master nodes with
+    /// theirs.
     pub slave: Vec<(usize, f64)>,
     pub master: Vec<(usize, f64)>,
     pub normal: [f64; 3],
@@ -131,11 +134,13 @@ pub(crate) struct Opposite {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Found {
     pub rows: Vec<MortarRow>,
-    /// The covered share of the area of the slave surface, and the share of the master nodes, each counted with its facets, that face it.
+    /// The covered share of the area of the slave surface, and the share of the master nodes, each counted with its
+    /// facets, that face it.
     pub covered: [f64; 2],
     /// The master nodes that face the slave surface.
     pub opposite: Vec<Opposite>,
-    /// The largest distance of a straight facet from the curve for which it stands, in length, by the angles of the normals around it.
+    /// The largest distance of a straight facet from the curve for which it stands, in length, by the angles of the
+    /// normals around it.
     pub sag: f64,
 }
 
@@ -156,10 +161,12 @@ impl std::fmt::Debug for Mortar<'_> {
 }
 
 impl<'a> Mortar<'a> {
-    /// Rows at the nodes of `slave`, against `master`: better on the softer body, and on the finer mesh if both are as soft.
+    /// Rows at the nodes of `slave`, against `master`: better on the softer body, and on the finer mesh if both are as
+    /// soft.
     ///
-    /// Each surface is `(nodes, boundary)`: the coordinates [x, y, z] of its own nodes, in length, z = 0 in the plane, and facets that
-    /// name these nodes. The body lies to the left of an edge; from outside, the corners of a face run counterclockwise.
+    /// Each surface is `(nodes, boundary)`: the coordinates [x, y, z] of its own nodes, in length, z = 0 in the plane,
+    /// and facets that name these nodes. The body lies to the left of an edge; from outside, the corners of a face run
+    /// counterclockwise.
     pub fn new(
         slave: (&'a [[f64; 3]], &'a Boundary),
         master: (&'a [[f64; 3]], &'a Boundary),
@@ -174,8 +181,8 @@ impl<'a> Mortar<'a> {
         Mortar { slave, master, formulation, direction: None, reach, may_carry: None, has_coefficient: None }
     }
 
-    /// The same with all rows along `direction`, a unit vector [x, y, z] from the slave body into the other, instead of half way between
-    /// the normals of both surfaces.
+    /// The same with all rows along `direction`, a unit vector [x, y, z] from the slave body into the other, instead of
+    /// half way between the normals of both surfaces.
     pub fn along(self, direction: [f64; 3]) -> Self {
         Mortar { direction: Some(direction), ..self }
     }
@@ -190,7 +197,8 @@ impl<'a> Mortar<'a> {
         Mortar { may_carry: Some(may_carry), ..self }
     }
 
-    /// The same with coefficients of the positive basis at some of the mid-side nodes of slave faces in space; without this, at all.
+    /// The same with coefficients of the positive basis at some of the mid-side nodes of slave faces in space; without
+    /// this, at all.
     pub(crate) fn with_coefficients(self, has_coefficient: &'a dyn Fn(usize) -> bool) -> Self {
         Mortar { has_coefficient: Some(has_coefficient), ..self }
     }
@@ -198,8 +206,8 @@ impl<'a> Mortar<'a> {
     /// The rows in nodal displacements.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for facets that do not fit the formulation, nodes that do not exist, and a surface that lies in several layers
-    /// before the other within reach.
+    /// [`Error::Mesh`] for facets that do not fit the formulation, nodes that do not exist, and a surface that lies in
+    /// several layers before the other within reach.
     pub fn rows(&self) -> Result<MortarRows, Error> {
         let (found, dimension) = (self.found()?, self.formulation.dimension());
         let first_of_master = self.slave.nodes.len();

@@ -1,4 +1,5 @@
-//! The search: what each facet of the slave surface shares with the master surface, and the master nodes that face the slave surface.
+//! The search: what each facet of the slave surface shares with the master surface, and the master nodes that face the
+//! slave surface.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -130,8 +131,8 @@ impl<'a> Distances<'a> {
         Distances { slave: mortar.slave.nodes, sides, tree: sides.tree(), curve, reach: mortar.reach }
     }
 
-    /// The gap of a row by the distances of its slave nodes, which lie on their curve; `None` if the curve ends before one of them.
-    /// `ends` are those of the edges of nodes that have coefficients.
+    /// The gap of a row by the distances of its slave nodes, which lie on their curve; `None` if the curve ends before
+    /// one of them. `ends` are those of the edges of nodes that have coefficients.
     pub fn of_row(&self, row: &MortarRow, ends: &[Option<[usize; 2]>]) -> Option<f64> {
         let distance = |node: usize| self.along(self.slave[node], row.normal);
         let mut gap = 0.0;
@@ -176,7 +177,8 @@ impl<'a> Distances<'a> {
 }
 
 impl Mortar<'_> {
-    /// The integrals over the covered part of every slave facet, and the nearest place of the slave surface for each master node.
+    /// The integrals over the covered part of every slave facet, and the nearest place of the slave surface for each
+    /// master node.
     pub(super) fn covered<'f>(&self, sides: &'f Sides<'f>) -> (Vec<Covered<'f>>, Vec<Opposite>) {
         let tree = sides.tree();
         let mut nearest: BTreeMap<usize, Opposite> = BTreeMap::new();

@@ -6,7 +6,8 @@ use crate::fem::element::PerNode;
 /// Most nodes of a facet.
 pub(super) const MOST: usize = 8;
 
-/// Parts of the other surface that do not join before a facet lie at other distances if these differ by more than this share of its size.
+/// Parts of the other surface that do not join before a facet lie at other distances if these differ by more than this
+/// share of its size.
 const STEP: f64 = 0.1;
 
 /// The integrals over what a slave facet shares with one facet of the other surface.
@@ -15,7 +16,8 @@ pub(super) struct Shared<'a> {
     pub area: f64,
     /// Of the distance, along the direction of the slave facet.
     gap: f64,
-    /// Of the functions of the nodes of the slave facet, of their products, and of those with the functions of the other facet.
+    /// Of the functions of the nodes of the slave facet, of their products, and of those with the functions of the
+    /// other facet.
     pub functions: [f64; MOST],
     pub products: [[f64; MOST]; MOST],
     pub with: [[f64; MOST]; MOST],
@@ -40,8 +42,8 @@ impl<'a> Shared<'a> {
     }
 }
 
-/// Leaves the nearest part of the other surface. Behind a step other parts begin, which share no node with it before the facet: a mean over
-/// both would be the distance of neither.
+/// Leaves the nearest part of the other surface. Behind a step other parts begin, which share no node with it before
+/// the facet: a mean over both would be the distance of neither.
 pub(super) fn keep_nearest(all: &mut Vec<Shared>, size: f64) {
     let part_of = joined(all);
     let distance = |part: usize| {

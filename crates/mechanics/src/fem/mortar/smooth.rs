@@ -1,8 +1,9 @@
 //! The curves for which straight facets stand: cubic, through the nodes, along the normals there.
 //!
 //! # Source
-//! A. Vlachos, J. Peters, C. Boyd, J. L. Mitchell, *Curved PN triangles*, Symposium on Interactive 3D Graphics (2001) 159-166; here the
-//! control points are those with which an edge between two points of a circle meets the circle in its middle.
+//! A. Vlachos, J. Peters, C. Boyd, J. L. Mitchell, *Curved PN triangles*, Symposium on Interactive 3D Graphics (2001)
+//! 159-166; here the control points are those with which an edge between two points of a circle meets the circle in its
+//! middle.
 
 use std::collections::HashMap;
 
@@ -40,8 +41,8 @@ impl<'a> Curve<'a> {
         Curve { normals, is_rim }
     }
 
-    /// How far the curve lies beyond a point of a straight facet, along the normal of the facet, in length; the point is given by the
-    /// `shape` functions there. Zero at nodes, and for a curved facet, which is its own curve.
+    /// How far the curve lies beyond a point of a straight facet, along the normal of the facet, in length; the point
+    /// is given by the `shape` functions there. Zero at nodes, and for a curved facet, which is its own curve.
     pub fn beyond(&self, facet: &Facet, shape: &PerNode<f64>) -> f64 {
         if !facet.reference().mid_sides.is_empty() {
             return 0.0;
@@ -70,8 +71,8 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// The control point beside node i on the way to node j, beyond the facet. At a corner or at a rim, where the normal is not that of the
-    /// curve, the curve turns as at the other end.
+    /// The control point beside node i on the way to node j, beyond the facet. At a corner or at a rim, where the
+    /// normal is not that of the curve, the curve turns as at the other end.
     fn control(&self, facet: &Facet, i: usize, j: usize) -> f64 {
         let is_corner = |at: usize| dot(self.normals[facet.nodes[at]], facet.normal) < CORNER.to_radians().cos();
         let is_rim = |at: usize| self.is_rim[facet.nodes[at]];

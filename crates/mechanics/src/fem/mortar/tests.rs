@@ -111,8 +111,8 @@ fn random(state: &mut u64) -> f64 {
     (*state >> 40) as f64 / f64::from(1 << 24)
 }
 
-/// A grid of quadrilaterals or triangles of `kind` on [0, wide] x [0, 1], with inner nodes moved by up to `jitter` of a cell; facing up,
-/// or down.
+/// A grid of quadrilaterals or triangles of `kind` on [0, wide] x [0, 1], with inner nodes moved by up to `jitter` of a
+/// cell; facing up, or down.
 fn sheet(
     kind: FacetKind,
     counts: [usize; 2],
@@ -179,8 +179,9 @@ fn turned(nodes: &[[f64; 3]], scale: f64, by: f64, shift: [f64; 3]) -> Vec<[f64;
         .collect()
 }
 
-/// For all pairs of faces, on random meshes, fully and partly covered, tilted, small and large: shares add up to 1, rigid motions leave
-/// all rows at rest, the areas add up to the covered area, and a uniform pressure reaches every covered master node in full.
+/// For all pairs of faces, on random meshes, fully and partly covered, tilted, small and large: shares add up to 1,
+/// rigid motions leave all rows at rest, the areas add up to the covered area, and a uniform pressure reaches every
+/// covered master node in full.
 #[test]
 fn rows_of_any_two_sheets_carry_a_uniform_pressure_and_no_rigid_motion() {
     let mut state = 3;

@@ -12,7 +12,8 @@ const POINTS: usize = 5;
 const SAME: f64 = 1e-9;
 /// The box of the nodes of an element grows by this share of its size: curved sides may leave it.
 const BULGE: f64 = 0.25;
-/// On the axis of revolution u_r/r is 0/0: the stress is taken so far from there towards the centroid, in reference coordinates.
+/// On the axis of revolution u_r/r is 0/0: the stress is taken so far from there towards the centroid, in reference
+/// coordinates.
 const OFF_AXIS: f64 = 1e-6;
 /// Newton's method ends when the reference coordinates move by less than this.
 const CONVERGED: f64 = 1e-13;
@@ -60,8 +61,9 @@ impl PathPiece {
 }
 
 impl ElasticBody {
-    /// The pieces of a line between two points, in length, in the elements of the body under the nodal displacement `displacement` (`dim` a node): region by region, in the
-    /// order of the line. Along a common side of several elements of one region, the piece of one of them alone.
+    /// The pieces of a line between two points, in length, in the elements of the body under the nodal displacement
+    /// `displacement` (`dim` a node): region by region, in the order of the line. Along a common side of several
+    /// elements of one region, the piece of one of them alone.
     ///
     /// # Errors
     /// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
@@ -208,8 +210,9 @@ impl Line {
         parts
     }
 
-    /// The distance along the line from the origin of the coordinates of a face, which lies on the line, to the point at which the line
-    /// meets the face, by Newton's method in reference coordinates from `at`. `None` outside the face, and if the line lies in it.
+    /// The distance along the line from the origin of the coordinates of a face, which lies on the line, to the point
+    /// at which the line meets the face, by Newton's method in reference coordinates from `at`. `None` outside the
+    /// face, and if the line lies in it.
     fn meets(&self, reference: &ReferenceElement, cell: &Cell, mut at: [f64; 3]) -> Option<f64> {
         for _ in 0..STEPS {
             let place = cell.place(&(reference.shape)(at));

@@ -9,14 +9,17 @@ use crate::fem::geometry::Symmetric;
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
-/// Estimates the relative error in energy norm of the nodal displacement `displacement` (length `dim * n_nodes`), whose stress is
-/// `field`, against the solution of the continuum: `||sigma* - sigma_h|| / sqrt(||sigma_h||^2 + ||sigma* - sigma_h||^2)` in the norm of
-/// the complementary energy, where sigma* interpolates the averaged nodal stresses by the shape functions, and in quadratic tetrahedra fits
-/// the stresses around each corner by a quadratic function; where materials meet, each has its own. Zero if there is no stress.
+/// Estimates the relative error in energy norm of the nodal displacement `displacement` (length `dim * n_nodes`), whose
+/// stress is `field`, against the solution of the continuum:
+/// `||sigma* - sigma_h|| / sqrt(||sigma_h||^2 + ||sigma* - sigma_h||^2)` in the norm of the complementary energy, where
+/// sigma* interpolates the averaged nodal stresses by the shape functions, and in quadratic tetrahedra fits the
+/// stresses around each corner by a quadratic function; where materials meet, each has its own. Zero if there is no
+/// stress.
 ///
 /// # Source
 /// O. C. Zienkiewicz, J. Z. Zhu, 1987, "A simple error estimator and adaptive procedure for practical engineering
-/// analysis"; for quadratic tetrahedra their "The superconvergent patch recovery and a posteriori error estimates", 1992.
+/// analysis"; for quadratic tetrahedra their "The superconvergent patch recovery and a posteriori error estimates",
+/// 1992.
 ///
 /// # Errors
 /// [`qp::Error::Length`] if displacement or field do not belong to the body.

@@ -1,4 +1,5 @@
-//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the discretisation error from it.
+//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the discretisation error from
+//! it.
 
 pub(crate) mod along;
 pub(crate) mod discretisation;
@@ -90,7 +91,8 @@ pub struct StressField {
     /// One stress per node, in the order of the mesh: extrapolated from the quadrature points, averaged over the
     /// elements around the node, of all materials.
     pub nodes: Vec<Stress>,
-    /// The average over the elements of each phase, by node and phase, where several phases meet: there the stress jumps.
+    /// The average over the elements of each phase, by node and phase, where several phases meet: there the stress
+    /// jumps.
     sides: BTreeMap<(usize, u32), Stress>,
 }
 
@@ -103,8 +105,8 @@ impl StressField {
         }
     }
 
-    /// The field of the whole of which `body` is a part: at a node on a plane of symmetry the shear stresses of the mirror images cancel.
-    /// `axes_at` gives the axes across the planes on which a node lies.
+    /// The field of the whole of which `body` is a part: at a node on a plane of symmetry the shear stresses of the
+    /// mirror images cancel. `axes_at` gives the axes across the planes on which a node lies.
     pub(crate) fn of_whole(mut self, body: &ElasticBody, axes_at: impl Fn(usize) -> [bool; 3]) -> Self {
         let nodes = self.nodes.iter_mut().enumerate();
         let sides = self.sides.iter_mut().map(|(&(node, _), stress)| (node, stress));
@@ -173,10 +175,12 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
     Ok(StressField { elements, nodes, sides: sides.iter().map(|(&side, sum)| (side, average(sum))).collect() })
 }
 
-/// The stresses at some nodes of a boundary, averaged over the elements around. `displacement` has `dim` entries per node.
+/// The stresses at some nodes of a boundary, averaged over the elements around. `displacement` has `dim` entries per
+/// node.
 ///
-/// Quadratic elements are extrapolated, as in [`StressField::nodes`]. Linear ones give the stress at their centroid, where it is most
-/// accurate: on a boundary without friction the normal stress does not change with the depth to first order.
+/// Quadratic elements are extrapolated, as in [`StressField::nodes`]. Linear ones give the stress at their centroid,
+/// where it is most accurate: on a boundary without friction the normal stress does not change with the depth to first
+/// order.
 pub(crate) fn stress_at(body: &ElasticBody, displacement: &[f64], nodes: &BTreeSet<usize>) -> BTreeMap<usize, Stress> {
     let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
     let mut sums: BTreeMap<usize, (Symmetric, usize)> = BTreeMap::new();

@@ -1,4 +1,5 @@
-//! The stress of quadratic tetrahedra recovered by patches: quadratic functions that fit the stresses of the elements around each corner.
+//! The stress of quadratic tetrahedra recovered by patches: quadratic functions that fit the stresses of the elements
+//! around each corner.
 
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::dense::DenseMatrix;
@@ -6,21 +7,22 @@ use crate::fem::element::{ElementKind, TabulatedPoint};
 use crate::fem::geometry::{Around, Symmetric, distance, minus};
 use crate::fem::threads::each;
 
-/// The coefficients of a quadratic function in space, and the fewest elements of a patch: near edges of the body it takes further
-/// elements from around its own.
+/// The coefficients of a quadratic function in space, and the fewest elements of a patch: near edges of the body it
+/// takes further elements from around its own.
 const TERMS: usize = 10;
 
-/// What the squares of the coefficients add to the squares of the misfit: points on a surface of second degree determine no fit alone.
+/// What the squares of the coefficients add to the squares of the misfit: points on a surface of second degree
+/// determine no fit alone.
 const RIDGE: f64 = 1e-8;
 
 /// A quadratic function for each corner of a quadratic tetrahedron and each phase there.
 ///
-/// Averages at the nodes, which suffice for linear elements, contain the error of the elements: on both sides of a node the derivatives of
-/// quadratic functions miss that of a cubic one by the same amount.
+/// Averages at the nodes, which suffice for linear elements, contain the error of the elements: on both sides of a node
+/// the derivatives of quadratic functions miss that of a cubic one by the same amount.
 ///
 /// # Source
-/// O. C. Zienkiewicz, J. Z. Zhu, "The superconvergent patch recovery and a posteriori error estimates", *Int. J. Numer. Methods Eng.* 33
-/// (1992) 1331-1364.
+/// O. C. Zienkiewicz, J. Z. Zhu, "The superconvergent patch recovery and a posteriori error estimates", *Int. J. Numer.
+/// Methods Eng.* 33 (1992) 1331-1364.
 pub(super) struct Patches(Vec<Vec<(u32, Quadratic)>>);
 
 /// A point of an element, and the stress there.
@@ -84,8 +86,8 @@ impl Patches {
         }))
     }
 
-    /// The recovered stress at a tabulated point of a quadratic tetrahedron: the mean of the functions of its corners, weighted by the
-    /// barycentric coordinates of the point, so that it is continuous.
+    /// The recovered stress at a tabulated point of a quadratic tetrahedron: the mean of the functions of its corners,
+    /// weighted by the barycentric coordinates of the point, so that it is continuous.
     pub fn stress(&self, element: &BodyElement, at: &TabulatedPoint) -> Symmetric {
         let (reference, place) = (element.kind.reference(), element.cell.place(&at.shape));
         let (of_corners, of_middles) = at.shape.split_at(reference.corners);

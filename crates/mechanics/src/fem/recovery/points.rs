@@ -30,8 +30,8 @@ pub(crate) fn nodal_strain(body: &ElasticBody, displacement: &[f64]) -> Result<V
 /// Strain and stress in some elements at the points of CalculiX, layer by layer.
 ///
 /// # Errors
-/// [`qp::Error::Length`] if the displacement does not have `dim` entries per node, [`qp::Error::Setting`] for an element that does not
-/// exist.
+/// [`qp::Error::Length`] if the displacement does not have `dim` entries per node, [`qp::Error::Setting`] for an
+/// element that does not exist.
 pub(crate) fn at_points(
     body: &ElasticBody,
     displacement: &[f64],
@@ -54,8 +54,8 @@ pub(crate) fn at_points(
     elements.iter().map(values).collect()
 }
 
-/// The volume of each element, and its energy `1/2 sigma : C^-1 : sigma` with the law in space: in the plane, stress and strain across it
-/// do work as well.
+/// The volume of each element, and its energy `1/2 sigma : C^-1 : sigma` with the law in space: in the plane, stress
+/// and strain across it do work as well.
 ///
 /// # Errors
 /// As [`nodal_strain`].

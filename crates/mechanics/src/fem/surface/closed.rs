@@ -9,7 +9,8 @@ use crate::fem::geometry::{Around, distance, dot, length, minus};
 /// A volume below this times area and extent is rounding: a sheet folded onto itself encloses no volume.
 const NO_VOLUME: f64 = 1e-13;
 
-/// The boundary of one solid or of several, made of triangles that leave no gap, so that each place is inside or outside.
+/// The boundary of one solid or of several, made of triangles that leave no gap, so that each place is inside or
+/// outside.
 #[derive(Debug)]
 pub struct ClosedSurface {
     vertices: Vec<[f64; 3]>,
@@ -82,8 +83,8 @@ fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
     let [mut open, mut crowded, mut alike]: [Option<Faulty>; 3] = [None; 3];
     let mut edges: Vec<(u32, Along)> = Vec::new();
     for vertex in 0..facets.vertices.len() as u32 {
-        // An edge is counted at its end with the lower number, as the other end and a triangle along it. They are sorted: the tip of a
-        // cone and copies of one triangle have very many.
+        // An edge is counted at its end with the lower number, as the other end and a triangle along it. They are
+        // sorted: the tip of a cone and copies of one triangle have very many.
         edges.clear();
         for &triangle in around.at(vertex as usize) {
             let corners = facets.corners[triangle as usize];

@@ -4,7 +4,8 @@ use super::closed::ClosedSurface;
 use super::triangle::Part;
 use crate::fem::geometry::{distance, dot, length, minus, unit};
 
-/// With this many closest points a node has them all around, like the centre of a ball: any one of these points can be used.
+/// With this many closest points a node has them all around, like the centre of a ball: any one of these points can be
+/// used.
 const MOST_FEET: usize = 64;
 
 /// Normals cancel if their mean is shorter than this: the remainder gives no direction.
@@ -29,24 +30,26 @@ struct Foot {
 }
 
 impl ClosedSurface {
-    /// The position of `point` (`[x, y, z]`, in length) relative to the surface. Lengths below `tolerance` are rounding.
+    /// The position of `point` (`[x, y, z]`, in length) relative to the surface. Lengths below `tolerance` are
+    /// rounding.
     ///
-    /// The normal is that of the triangle, or the direction to an edge or a corner; for a point on the surface it is the mean over the
-    /// triangles that meet there, weighted by their angles. If several points of the surface are equally close, it is their mean normal,
-    /// and the height is measured from the planes through them. If these normals cancel or there are too many, it is the normal most
-    /// against `towards`, the direction into the solid.
+    /// The normal is that of the triangle, or the direction to an edge or a corner; for a point on the surface it is
+    /// the mean over the triangles that meet there, weighted by their angles. If several points of the surface are
+    /// equally close, it is their mean normal, and the height is measured from the planes through them. If these
+    /// normals cancel or there are too many, it is the normal most against `towards`, the direction into the solid.
     ///
     /// The sign follows from the crossings of a line, which is correct also for solids that intersect.
     ///
     /// # Source
-    /// J. A. Baerentzen, H. Aanaes, *Signed distance computation using the angle weighted pseudonormal*, IEEE Trans. Vis. Comput.
-    /// Graph. 11 (2005) 243-253.
+    /// J. A. Baerentzen, H. Aanaes, *Signed distance computation using the angle weighted pseudonormal*, IEEE Trans.
+    /// Vis. Comput. Graph. 11 (2005) 243-253.
     pub fn closest(&self, point: [f64; 3], tolerance: f64, towards: [f64; 3]) -> Closest {
         let feet = self.feet(point, tolerance);
         let against = |outward: [f64; 3]| -dot(outward, towards);
         let nearest = feet.iter().fold(f64::INFINITY, |nearest: f64, foot| nearest.min(foot.distance));
         if nearest <= tolerance {
-            // At an edge or a corner several triangles have a foot; for one triangle it may still lie inside by rounding.
+            // At an edge or a corner several triangles have a foot; for one triangle it may still lie inside by
+            // rounding.
             let sharpest = feet.iter().max_by_key(|foot| foot.part.rank());
             let outward = sharpest.map_or([0.0; 3], |foot| self.pseudonormal(foot));
             let outward = if outward == [0.0; 3] { towards.map(|part| -part) } else { outward };
@@ -68,7 +71,8 @@ impl ClosedSurface {
             return alone;
         }
         let outward = unit(sum);
-        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther away.
+        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther
+        // away.
         Closest { outward, height: alone.height / dot(alone.outward, outward) }
     }
 
@@ -91,8 +95,8 @@ impl ClosedSurface {
         feet
     }
 
-    /// The first feet that lie apart. On one smooth piece, feet that are equally close up to `tolerance` lie within the square root of
-    /// twice the tolerance times the distance.
+    /// The first feet that lie apart. On one smooth piece, feet that are equally close up to `tolerance` lie within the
+    /// square root of twice the tolerance times the distance.
     fn apart(feet: &[Foot], point: [f64; 3], tolerance: f64) -> Vec<Foot> {
         let mut apart: Vec<Foot> = Vec::new();
         for &foot in feet {
@@ -119,7 +123,8 @@ impl ClosedSurface {
         Closest { outward: way, height: sign * foot.distance }
     }
 
-    /// The normal at a foot: unit normals of the triangles that meet there, weighted by their angles. Zero if they cancel.
+    /// The normal at a foot: unit normals of the triangles that meet there, weighted by their angles. Zero if they
+    /// cancel.
     fn pseudonormal(&self, foot: &Foot) -> [f64; 3] {
         let corners = self.corners_of(foot.triangle);
         let weighted = |sum: [f64; 3], triangle: u32, weight: f64| {

@@ -1,5 +1,5 @@
-//! The crossings of a line along an axis with a surface, without leaks: the line is moved aside by two infinitely small steps, so that it
-//! meets no edge and no corner; the side of an edge on which it runs is decided exactly.
+//! The crossings of a line along an axis with a surface, without leaks: the line is moved aside by two infinitely small
+//! steps, so that it meets no edge and no corner; the side of an edge on which it runs is decided exactly.
 
 use robust::{Coord, orient2d};
 
@@ -10,7 +10,8 @@ use super::closed::ClosedSurface;
 pub(crate) struct Crossing {
     /// The coordinate along the axis.
     pub at: f64,
-    /// Change of the number of solids around the line at the crossing, in the direction of the axis: 1 into a solid, -1 out of a solid.
+    /// Change of the number of solids around the line at the crossing, in the direction of the axis: 1 into a solid, -1
+    /// out of a solid.
     pub turns: i32,
 }
 
@@ -48,8 +49,9 @@ impl ClosedSurface {
     }
 }
 
-/// The side of the line from `a` to `b` on which the point lies after an infinitely small step along x and an infinitely smaller step
-/// along y: 1 left, -1 right, 0 if `a` and `b` are the same; and twice the area of their triangle before these steps.
+/// The side of the line from `a` to `b` on which the point lies after an infinitely small step along x and an
+/// infinitely smaller step along y: 1 left, -1 right, 0 if `a` and `b` are the same; and twice the area of their
+/// triangle before these steps.
 fn side(a: Coord<f64>, b: Coord<f64>, point: Coord<f64>) -> (i32, f64) {
     let area = orient2d(a, b, point);
     let moved = if area != 0.0 {

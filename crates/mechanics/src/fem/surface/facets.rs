@@ -14,8 +14,8 @@ const LARGEST: f64 = 1e90;
 pub(super) struct Facets {
     file: PathBuf,
     pub vertices: Vec<[f64; 3]>,
-    /// Three different vertices of each triangle. A triangle that is only an edge or a point is left out; its edges coincide, so that
-    /// this opens no surface.
+    /// Three different vertices of each triangle. A triangle that is only an edge or a point is left out; its edges
+    /// coincide, so that this opens no surface.
     pub corners: Vec<[u32; 3]>,
     places: Vec<u32>,
     unit: Unit,

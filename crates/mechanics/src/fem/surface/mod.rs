@@ -1,7 +1,8 @@
 //! Closed surfaces of triangles from files: the closest point, the side on which a point lies, the crossings of a line.
 //!
-//! The readers are short and give the position of every error; the tree is the contact search itself. Its triangles need two things that
-//! libraries of collision detection leave out: edges without leaks, and all closest points at equal distance.
+//! The readers are short and give the position of every error; the tree is the contact search itself. Its triangles
+//! need two things that libraries of collision detection leave out: edges without leaks, and all closest points at
+//! equal distance.
 
 mod closed;
 mod closest;
@@ -28,13 +29,14 @@ use signorini_qp::file::read_capped;
 const MOST_OF_SURFACE: u64 = 1 << 30;
 
 impl ClosedSurface {
-    /// Reads a surface from an STL file, binary or ASCII, or from an OBJ file, by the extension of its name; its coordinates are
-    /// multiplied by `scale` and moved by `origin` (`[x, y, z]`, in length).
+    /// Reads a surface from an STL file, binary or ASCII, or from an OBJ file, by the extension of its name; its
+    /// coordinates are multiplied by `scale` and moved by `origin` (`[x, y, z]`, in length).
     ///
     /// # Errors
-    /// [`qp::Error::File`] for a file that cannot be read, [`qp::Error::Setting`] for a scale that is not positive and finite;
-    /// [`qp::Error::FileSyntax`] with a line, or [`qp::Error::FileBytes`] with an offset, for a file of another form, coordinates
-    /// that are not finite or too large, and triangles that do not close to the surface of a solid. No error quotes the file.
+    /// [`qp::Error::File`] for a file that cannot be read, [`qp::Error::Setting`] for a scale that is not positive and
+    /// finite; [`qp::Error::FileSyntax`] with a line, or [`qp::Error::FileBytes`] with an offset, for a file of another
+    /// form, coordinates that are not finite or too large, and triangles that do not close to the surface of a solid.
+    /// No error quotes the file.
     pub fn read(file: &Path, scale: f64, origin: [f64; 3]) -> Result<Self, Error> {
         positive("scale", scale)?;
         let ending = file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);

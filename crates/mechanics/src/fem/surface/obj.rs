@@ -1,4 +1,5 @@
-//! Wavefront OBJ: only lines `v` (vertices) and `f` (faces) are read; a polygon is cut into a fan from its first corner.
+//! Wavefront OBJ: only lines `v` (vertices) and `f` (faces) are read; a polygon is cut into a fan from its first
+//! corner.
 
 use std::path::Path;
 

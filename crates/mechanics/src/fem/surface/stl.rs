@@ -1,4 +1,5 @@
-//! STL: binary, 84 bytes and then 50 for each triangle, or ASCII. Stored normals are ignored: the order of the corners gives the outside.
+//! STL: binary, 84 bytes and then 50 for each triangle, or ASCII. Stored normals are ignored: the order of the corners
+//! gives the outside.
 
 use std::path::Path;
 

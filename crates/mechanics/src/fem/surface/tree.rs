@@ -10,7 +10,8 @@ const LEAF: usize = 4;
 struct Branch {
     low: [f64; 3],
     high: [f64; 3],
-    /// In a leaf the index of its first item in the order; else the index of its second half. The first half follows directly.
+    /// In a leaf the index of its first item in the order; else the index of its second half. The first half follows
+    /// directly.
     next: u32,
     /// Number of items of a leaf; zero for a branch with halves.
     count: u32,
@@ -91,8 +92,8 @@ impl Tree {
         self.branches.first().map_or(NOWHERE, |all| [all.low, all.high])
     }
 
-    /// Visits the things near a point, roughly from near to far; `visit` returns the squared distance beyond which the remaining items do
-    /// not matter.
+    /// Visits the things near a point, roughly from near to far; `visit` returns the squared distance beyond which the
+    /// remaining items do not matter.
     pub fn near(&self, point: [f64; 3], mut visit: impl FnMut(u32) -> f64) {
         let mut reach = f64::INFINITY;
         let far = |place: usize| self.branches[place].squared_distance(point);
@@ -129,8 +130,9 @@ impl Tree {
         }
     }
 
-    /// Visits all items whose boxes may lie in a cone: within `radius` of a line through `point` along a unit vector, more by `spread`
-    /// per distance from the point, and at most `reach` away along the line. It may visit items outside.
+    /// Visits all items whose boxes may lie in a cone: within `radius` of a line through `point` along a unit vector,
+    /// more by `spread` per distance from the point, and at most `reach` away along the line. It may visit items
+    /// outside.
     pub fn around_line(
         &self,
         point: [f64; 3],

@@ -2,8 +2,8 @@
 
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
 
-/// A triangle with a height below this share of its longest side is treated as its sides only: rounding turns its normal by 1e-7, and no
-/// other choice moves a closest point by more.
+/// A triangle with a height below this share of its longest side is treated as its sides only: rounding turns its
+/// normal by 1e-7, and no other choice moves a closest point by more.
 const FLAT: f64 = 1e-9;
 
 /// The closest part of a triangle.
@@ -17,7 +17,8 @@ pub(super) enum Part {
     Corner(usize),
 }
 
-/// The distance of a point from an edge of two corners, or from a face of three or four, cut into triangles, all in length.
+/// The distance of a point from an edge of two corners, or from a face of three or four, cut into triangles, all in
+/// length.
 pub(crate) fn distance_from(corners: &[[f64; 3]], point: [f64; 3]) -> f64 {
     let last = corners.len() - 1;
     // An edge is a triangle without height.

@@ -5,11 +5,12 @@
 //! M a+ = f+ - K u+ - C v~,   v+ = v~ + dt a+/2,   lambda = M (v~ - v*)/dt
 //! ```
 //!
-//! The bound lets an open row reach the obstacle but not cross it; with a restitution e > 0 a row that would cross it leaves with `-e`
-//! times its velocity.
+//! The bound lets an open row reach the obstacle but not cross it; with a restitution e > 0 a row that would cross it
+//! leaves with `-e` times its velocity.
 //!
-//! A restitution above 0 makes the mesh oscillate: with e = 0.5 the energy of a bar stays within 1 % at 0.3 of the stable step, and grows
-//! by 10 % at 0.5 and by 500 % at 0.9. With e = 0 it never grows: see `fox_goodwin.rs`, of which this is the rule with beta = 0.
+//! A restitution above 0 makes the mesh oscillate: with e = 0.5 the energy of a bar stays within 1 % at 0.3 of the
+//! stable step, and grows by 10 % at 0.5 and by 500 % at 0.9. With e = 0 it never grows: see `fox_goodwin.rs`, of which
+//! this is the rule with beta = 0.
 //!
 //! # Source
 //! J. J. Moreau, *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999) 329-349: the
@@ -105,8 +106,8 @@ impl Advance for CentralDifference {
         Some(halfway(back, 0.0, state, (&velocity, &momentum), &rate))
     }
 
-    /// The mean of both ends: the impulse of the contact forces changes the momentum over this interval. Dampers act with the velocities
-    /// `v~` that led to both ends; at the start there is only v.
+    /// The mean of both ends: the impulse of the contact forces changes the momentum over this interval. Dampers act
+    /// with the velocities `v~` that led to both ends; at the start there is only v.
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
         let back = |state: &State| if state.steps == 0 { 0.0 } else { step / 2.0 };
         let damped = |state: &State, dof: usize| state.velocity[dof] - back(state) * state.acceleration[dof];

@@ -1,29 +1,33 @@
-//! Fox and Goodwin's rule: Newmark's two-step rule with beta = 1/12. A contact node that reaches its obstacle stops there.
+//! Fox and Goodwin's rule: Newmark's two-step rule with beta = 1/12. A contact node that reaches its obstacle stops
+//! there.
 //!
 //! ```text
 //! (S + dt C/2) (v+ - v)/dt = f_n - K u_n - C v + B' lambda,   u+ = u_n + dt v+,   B u+ <= g,   S = M + beta dt^2 K
 //! ```
 //!
-//! The velocities v stand between the steps, the displacements u and the forces at them. The rule is of fourth order, and so are the waves
-//! on the mean of the lumped and the consistent mass along a uniform mesh; together they move a bar exactly if a step is the time of a
-//! wave through a cell. Beyond the largest step at which beta = 1/12 is stable, `sqrt(6)/omega` with the largest frequency omega of the
-//! mesh, beta grows to `1/4 - 1/(omega dt)^2`; without a bound on omega it is 1/4.
+//! The velocities v stand between the steps, the displacements u and the forces at them. The rule is of fourth order,
+//! and so are the waves on the mean of the lumped and the consistent mass along a uniform mesh; together they move a
+//! bar exactly if a step is the time of a wave through a cell. Beyond the largest step at which beta = 1/12 is stable,
+//! `sqrt(6)/omega` with the largest frequency omega of the mesh, beta grows to `1/4 - 1/(omega dt)^2`; without a bound
+//! on omega it is 1/4.
 //!
-//! **Energy never grows.** `S - dt^2/4 K` is positive for every step, so that `E = v'(S - dt^2/4 K)v/2 + u~'K u~/2` with the mean u~
-//! of two displacements is an energy. A step adds to it the work of all forces along `(B u+ - B u-)/2`, u- being the displacement before
-//! u_n. A row with a force has `B u+ = g`, and `B u- <= g`: contact forces only take energy. What they take is kinetic energy of the
-//! contact nodes that stop, a share that falls with the cell size.
+//! **Energy never grows.** `S - dt^2/4 K` is positive for every step, so that `E = v'(S - dt^2/4 K)v/2 + u~'K u~/2`
+//! with the mean u~ of two displacements is an energy. A step adds to it the work of all forces along
+//! `(B u+ - B u-)/2`, u- being the displacement before u_n. A row with a force has `B u+ = g`, and `B u- <= g`: contact
+//! forces only take energy. What they take is kinetic energy of the contact nodes that stop, a share that falls with
+//! the cell size.
 //!
-//! **Obstacles that move** have their gap at the end of a step; what they put in is the work of the contact forces along the mean change of the
-//! gap, `(g+ - g-)/2`, and rows have velocities relative to them.
+//! **Obstacles that move** have their gap at the end of a step; what they put in is the work of the contact forces
+//! along the mean change of the gap, `(g+ - g-)/2`, and rows have velocities relative to them.
 //!
-//! **At release** a node gets back what it lost when it stopped, up to the velocity with which it would follow its neighbours if it had no
-//! mass. In a bar that hits a wall, at any time within a step, this restores the motion exactly.
+//! **At release** a node gets back what it lost when it stopped, up to the velocity with which it would follow its
+//! neighbours if it had no mass. In a bar that hits a wall, at any time within a step, this restores the motion
+//! exactly.
 //!
 //! # Source
-//! T. J. R. Hughes, *The Finite Element Method*, Prentice-Hall, 1987, section 9.1: Newmark's family, with Fox and Goodwin's rule. T. A.
-//! Laursen, G. R. Love, *Improved implicit integrators for transient impact problems*, Int. J. Numer. Methods Eng. 53 (2002) 245-274:
-//! velocities that change at release so that energy is restored.
+//! T. J. R. Hughes, *The Finite Element Method*, Prentice-Hall, 1987, section 9.1: Newmark's family, with Fox and
+//! Goodwin's rule. T. A. Laursen, G. R. Love, *Improved implicit integrators for transient impact problems*, Int. J.
+//! Numer. Methods Eng. 53 (2002) 245-274: velocities that change at release so that energy is restored.
 
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
@@ -34,14 +38,15 @@ use signorini_qp::SparseMatrix;
 /// The beta of fourth order.
 const FOURTH_ORDER: f64 = 1.0 / 12.0;
 
-/// Entries of the matrix of a step below this, relative to those on the diagonal, are what is left of mass and stiffness that cancel.
+/// Entries of the matrix of a step below this, relative to those on the diagonal, are what is left of mass and
+/// stiffness that cancel.
 const CANCELLED: f64 = 1e-13;
 
 /// A distance from the obstacle below this, relative to that of one step with the velocity that was stopped, is none.
 const CLOSE: f64 = 1e-6;
 
-/// An impulse below this, relative to the one that gives back all that is kept, and energy below this, relative to what was kept, are
-/// rounding.
+/// An impulse below this, relative to the one that gives back all that is kept, and energy below this, relative to what
+/// was kept, are rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
 pub(super) static ABOUT: About = About {
@@ -113,7 +118,8 @@ impl Advance for FoxGoodwin {
         }
     }
 
-    /// At the beginning of the step, where the forces act. `beta dt^2` times the acceleration is part of the displacement.
+    /// At the beginning of the step, where the forces act. `beta dt^2` times the acceleration is part of the
+    /// displacement.
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
         let (time, over) = (before.steps as f64 * step, if before.steps == 0 { step / 2.0 } else { step });
         let each = |value: &dyn Fn(usize) -> f64| at.iter().map(|&dof| value(dof)).collect::<Vec<f64>>();
@@ -152,7 +158,8 @@ impl FoxGoodwin {
         let work = |row: usize| forces[row] * (before[row] + now[row]) / 2.0 * step;
         let kept = |(row, kept): (usize, &f64)| {
             let left = kept - work(row);
-            // A row that gave back too much remembers it. At the start the energy is that of the velocity then, not of the first step.
+            // A row that gave back too much remembers it. At the start the energy is that of the velocity then, not of
+            // the first step.
             match left.abs() <= NEGLIGIBLE * kept {
                 true => 0.0,
                 false if forces[row] == 0.0 || state.steps == 0 => left.min(0.0),
@@ -166,7 +173,8 @@ impl FoxGoodwin {
         State { rate, kept, ..end }
     }
 
-    /// The forces, as multipliers, that let nodes follow their neighbours at the end of their contact; `None` if there are none.
+    /// The forces, as multipliers, that let nodes follow their neighbours at the end of their contact; `None` if there
+    /// are none.
     fn released(
         &self,
         problem: &DynamicProblem,
@@ -199,7 +207,8 @@ impl FoxGoodwin {
         pull.iter().any(|&force| force != 0.0).then_some(pull)
     }
 
-    /// The step once more with forces that let nodes go, or `end` without them if they gave back more energy than was kept.
+    /// The step once more with forces that let nodes go, or `end` without them if they gave back more energy than was
+    /// kept.
     fn let_go(
         &self,
         problem: &DynamicProblem,
@@ -233,8 +242,8 @@ fn elastic_rate(problem: &DynamicProblem, state: &State) -> Vec<f64> {
     }
 }
 
-/// The mass that a force along each row moves if the dofs have the masses S: `1/(b'S^-1 b)`, or its share in the mass of dofs that several
-/// rows have, with forces on all rows in proportion to `others`, if that is less.
+/// The mass that a force along each row moves if the dofs have the masses S: `1/(b'S^-1 b)`, or its share in the mass
+/// of dofs that several rows have, with forces on all rows in proportion to `others`, if that is less.
 fn masses_along(contact: &SparseMatrix, masses: &[f64], others: &[f64]) -> Vec<f64> {
     let of_all = contact.mul_transposed(others);
     let (mut alone, mut together) = (vec![0.0; contact.rows()], vec![0.0; contact.rows()]);

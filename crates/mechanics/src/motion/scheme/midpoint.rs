@@ -5,13 +5,13 @@
 //! u+ = u + 2 w,   v+ = 4 w/dt - v
 //! ```
 //!
-//! If contact nodes have no mass, the other nodes move under forces that are continuous in their displacement. The midpoint rule
-//! integrates these without chatter; the end of a step satisfies every constraint.
+//! If contact nodes have no mass, the other nodes move under forces that are continuous in their displacement. The
+//! midpoint rule integrates these without chatter; the end of a step satisfies every constraint.
 //!
-//! In a step in which contact nodes close or open, the work of the force at the middle differs from the energy that they store. If the
-//! difference is not small, the force of the step becomes `R + s ((R_n + R_n+1)/2 - R)`: between the force at the middle, R, and the mean
-//! of those at both ends, with the share s that preserves the energy. For a spring that closes, the middle gives too little and the ends
-//! too much.
+//! In a step in which contact nodes close or open, the work of the force at the middle differs from the energy that
+//! they store. If the difference is not small, the force of the step becomes `R + s ((R_n + R_n+1)/2 - R)`: between the
+//! force at the middle, R, and the mean of those at both ends, with the share s that preserves the energy. For a spring
+//! that closes, the middle gives too little and the ends too much.
 //!
 //! # Source
 //! O. Gonzalez, *Exact energy and momentum conserving algorithms for general models in nonlinear elasticity*, Comput.
@@ -46,10 +46,11 @@ pub(super) static ABOUT: About = About {
     follows_obstacles: false,
     is_exact_in_bars: false,
     load_times: &[0.5],
-    // A node with mass that is held at the wall at the middle of a step is as far inside the wall at one end as it was outside at the
-    // other. A step that starts inside by d gains the energy 2 |lambda| d, one that starts outside loses it, and nothing balances the
-    // two. Measured on two bars, a block and a disc at steps of 0.25 to 3 times the time of a wave through a cell: the energy grows by at
-    // least 5 % and up to 160 times. It is preserved only in a bar that flies freely, at steps of one such time and more.
+    // A node with mass that is held at the wall at the middle of a step is as far inside the wall at one end as it was
+    // outside at the other. A step that starts inside by d gains the energy 2 |lambda| d, one that starts outside loses
+    // it, and nothing balances the two. Measured on two bars, a block and a disc at steps of 0.25 to 3 times the time
+    // of a wave through a cell: the energy grows by at least 5 % and up to 160 times. It is preserved only in a bar
+    // that flies freely, at steps of one such time and more.
     unstable_in_contact: &[MassForm::Consistent, MassForm::Lumped],
     prepare: |problem, step, _, settings| {
         let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
@@ -104,8 +105,8 @@ impl Massless {
         Ok(Massless { dofs, rows, stepping })
     }
 
-    /// Puts the dofs without mass in equilibrium with the others, which have the displacement and velocity of `state`; `before` is the
-    /// displacement a step earlier.
+    /// Puts the dofs without mass in equilibrium with the others, which have the displacement and velocity of `state`;
+    /// `before` is the displacement a step earlier.
     fn settle(&self, problem: &DynamicProblem, step: f64, before: &[f64], state: &mut State) -> Result<(), Error> {
         let mut residual = plus(&problem.load_at(state.steps as f64 * step), -1.0, &state.elastic);
         self.dofs.iter().for_each(|&dof| state.velocity[dof] = (state.displacement[dof] - before[dof]) / step);
@@ -151,8 +152,8 @@ impl Advance for Midpoint {
         }
     }
 
-    /// At the middle of the step. There the contact forces of the step determine the dofs without mass; they are not the mean of both
-    /// ends.
+    /// At the middle of the step. There the contact forces of the step determine the dofs without mass; they are not
+    /// the mean of both ends.
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
         let mean = Balance::of_middle(step, before, after, at);
         if after.middle.is_empty() {
@@ -183,8 +184,8 @@ impl Midpoint {
         Ok(end)
     }
 
-    /// The end of the step with the contact force that preserves the energy; `None` if the step to `next` preserves it, or if no force
-    /// between those of the middle and the ends does.
+    /// The end of the step with the contact force that preserves the energy; `None` if the step to `next` preserves it,
+    /// or if no force between those of the middle and the ends does.
     fn balanced(
         &self,
         problem: &DynamicProblem,
@@ -236,8 +237,8 @@ fn along_rows(contact: &SparseMatrix, force: &[f64]) -> Vec<f64> {
     contact.mul(force).into_iter().zip(&squares).map(share_of_row).collect()
 }
 
-/// The state at the share from 0 to 1 at which the imbalance of `at` is zero to within `kept`; `first` is the imbalance at 0. `None` if
-/// the signs at both ends are equal.
+/// The state at the share from 0 to 1 at which the imbalance of `at` is zero to within `kept`; `first` is the imbalance
+/// at 0. `None` if the signs at both ends are equal.
 fn regula_falsi(
     first: f64,
     kept: f64,

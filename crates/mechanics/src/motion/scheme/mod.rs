@@ -39,7 +39,8 @@ pub enum SchemeSpec {
     Hht,
     /// Trapezoidal Newmark with penalty springs: penetrates, and gains energy if the springs are stiff. For comparison.
     Penalty,
-    /// Trapezoidal Newmark with the classical loop: the penalty grows by factors of ten until nothing penetrates. For comparison.
+    /// Trapezoidal Newmark with the classical loop: the penalty grows by factors of ten until nothing penetrates. For
+    /// comparison.
     PenaltyLoop,
     /// Explicit central differences with Moreau's impact law; steps are small and cheap.
     CentralDifference,
@@ -115,19 +116,21 @@ impl SchemeSpec {
 /// | penalty-loop | **gained**, as by the trapezoidal rule | chatters | below a threshold |
 /// | central differences | lost a little: the mass of the contact nodes stops | smooth on lumped mass | none |
 ///
-/// On its own the midpoint rule uses the force at the middle of a step; a node that closes in the second half does not touch yet at that
-/// time. A bar of length L and cells h that hits a wall flatly would gain or lose up to `(c dt/h)^2 h/(4 L)` of its energy. If the energy
-/// of a step is wrong by more than 1e-5, the step therefore uses a force between those of its middle and of its ends that does the right
-/// work, at the cost of a few solves. Bodies with nodes that close one after the other hardly need it; with damping it is not applied.
+/// On its own the midpoint rule uses the force at the middle of a step; a node that closes in the second half does not
+/// touch yet at that time. A bar of length L and cells h that hits a wall flatly would gain or lose up to
+/// `(c dt/h)^2 h/(4 L)` of its energy. If the energy of a step is wrong by more than 1e-5, the step therefore uses a
+/// force between those of its middle and of its ends that does the right work, at the cost of a few solves. Bodies with
+/// nodes that close one after the other hardly need it; with damping it is not applied.
 ///
-/// Implicit steps slow down short waves, and a consistent mass speeds them up: along a uniform mesh of linear elements the wave number k
-/// travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The returning front is smeared over some cells, and the waves behind it stay
-/// in the body: the rebound is too slow by a share that falls with h^(2/3).
+/// Implicit steps slow down short waves, and a consistent mass speeds them up: along a uniform mesh of linear elements
+/// the wave number k travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The returning front is smeared over some
+/// cells, and the waves behind it stay in the body: the rebound is too slow by a share that falls with h^(2/3).
 ///
 /// `tools/impact` prints the figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Scheme {
-    /// Fox and Goodwin's two-step rule: of fourth order without contact and damping; a contact node that reaches its obstacle stops.
+    /// Fox and Goodwin's two-step rule: of fourth order without contact and damping; a contact node that reaches its
+    /// obstacle stops.
     #[default]
     FoxGoodwin,
     /// The midpoint rule: contact at the middle of each step; massless dofs follow in equilibrium at its end.
@@ -154,8 +157,8 @@ pub enum Scheme {
         /// Stiffness of the springs eps in multiples of the local stiffness of a step, positive.
         penalty: f64,
     },
-    /// The trapezoidal rule with the classical loop in every step: the penalty of [`Scheme::Penalty`] grows by factors of ten, and C is
-    /// found again, until norm\[C (u - g)\] is below a threshold.
+    /// The trapezoidal rule with the classical loop in every step: the penalty of [`Scheme::Penalty`] grows by factors
+    /// of ten, and C is found again, until norm\[C (u - g)\] is below a threshold.
     ///
     /// **Gains energy** as the trapezoidal rule does, because the last springs are stiff.
     PenaltyLoop {
@@ -215,8 +218,8 @@ impl Scheme {
         self.about().masses[0]
     }
 
-    /// Returns `true` if the scheme can use a mass of this form. Only the midpoint rule allows dofs without mass; the explicit scheme
-    /// needs a diagonal mass.
+    /// Returns `true` if the scheme can use a mass of this form. Only the midpoint rule allows dofs without mass; the
+    /// explicit scheme needs a diagonal mass.
     pub fn allows(self, form: MassForm) -> bool {
         self.about().masses.contains(&form)
     }

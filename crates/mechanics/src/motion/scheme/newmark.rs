@@ -23,7 +23,8 @@ pub(super) struct Newmark {
     mass: Stepping,
 }
 
-/// The start of a step: displacement and velocity as they would be without its acceleration, and the contact problem of the change.
+/// The start of a step: displacement and velocity as they would be without its acceleration, and the contact problem of
+/// the change.
 pub(super) struct Predicted {
     pub displacement: Vec<f64>,
     velocity: Vec<f64>,
@@ -32,7 +33,8 @@ pub(super) struct Predicted {
 }
 
 impl Newmark {
-    /// The rule with parameter alpha; `rigid` are the settings of the contact problems with the mass, `settings` those of the steps.
+    /// The rule with parameter alpha; `rigid` are the settings of the contact problems with the mass, `settings` those
+    /// of the steps.
     pub fn new(
         problem: &DynamicProblem,
         step: f64,
@@ -103,7 +105,8 @@ impl Advance for Newmark {
         Ok(self.arrive(problem, step, state, &predicted, found))
     }
 
-    /// The balance at the end of the step, or with alpha < 0 earlier by the share `-alpha`; the acceleration is that of the end.
+    /// The balance at the end of the step, or with alpha < 0 earlier by the share `-alpha`; the acceleration is that of
+    /// the end.
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
         let acceleration = at.iter().map(|&dof| after.acceleration[dof]).collect();
         Balance { acceleration, ..Balance::between(step, before, after, 1.0 + self.alpha, at) }

@@ -1,4 +1,5 @@
-//! The trapezoidal rule with the classical penalty loop in every step: springs ten times stiffer, until nothing penetrates.
+//! The trapezoidal rule with the classical penalty loop in every step: springs ten times stiffer, until nothing
+//! penetrates.
 //!
 //! ```text
 //! for eps = 1, 10, 100, ... times the local stiffness of a step:
@@ -17,8 +18,8 @@ use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp as qp;
 use signorini_qp::largest;
 
-/// Number of penalties, each ten times the one before, from the local stiffness on. At the last one, 1e8, the rounding of double
-/// precision and the remaining penetration are equally large; larger penalties would only add noise.
+/// Number of penalties, each ten times the one before, from the local stiffness on. At the last one, 1e8, the rounding
+/// of double precision and the remaining penetration are equally large; larger penalties would only add noise.
 const PENALTIES: i32 = 9;
 
 pub(super) static ABOUT: About = About {

@@ -13,9 +13,10 @@ const LIMIT_ROUNDING: f64 = 1e-12;
 
 /// The largest allowed share of the stable step if bodies touch.
 ///
-/// At 1 the shortest wave has a double root: each impact adds to it, and it grows with time. Below 1, at the share C, it carries up to
-/// 1/(1 - C^2) times the energy of the impacts that feed it: 50 at 0.99. Measured on the bar of period 3 over 20 periods, the energy
-/// grows by 0.1 % at 0.9, by 0.4 % at 0.99, by 6 % at 0.999, by 420 % at 0.9999 and by 100 % at 1.
+/// At 1 the shortest wave has a double root: each impact adds to it, and it grows with time. Below 1, at the share C,
+/// it carries up to 1/(1 - C^2) times the energy of the impacts that feed it: 50 at 0.99. Measured on the bar of period
+/// 3 over 20 periods, the energy grows by 0.1 % at 0.9, by 0.4 % at 0.99, by 6 % at 0.999, by 420 % at 0.9999 and by
+/// 100 % at 1.
 pub(crate) const MOST_IN_CONTACT: f64 = 0.99;
 
 /// As [`DynamicProblem::stable_step`].
@@ -37,7 +38,8 @@ pub(crate) fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
     Ok(2.0 / omega * (ratio.hypot(1.0) - ratio))
 }
 
-/// An upper bound on the largest angular frequency, per time, of a stiffness with a positive diagonal mass, without damping.
+/// An upper bound on the largest angular frequency, per time, of a stiffness with a positive diagonal mass, without
+/// damping.
 pub(crate) fn frequency_bound(stiffness: &SymmetricMatrix, mass: &[f64]) -> f64 {
     let mut x = vec![1.0; mass.len()];
     let mut bound = f64::INFINITY;
@@ -69,8 +71,8 @@ pub(super) fn check_step(problem: &DynamicProblem, step: f64) -> Result<(), Erro
 }
 
 impl DynamicProblem {
-    /// An upper bound on the largest angular frequency without damping, per time: the given one, or that of a positive diagonal mass;
-    /// `None` if none is known.
+    /// An upper bound on the largest angular frequency without damping, per time: the given one, or that of a positive
+    /// diagonal mass; `None` if none is known.
     pub(super) fn largest_frequency(&self) -> Option<f64> {
         let diagonal = self.mass().diagonal();
         let is_diagonal = || {
@@ -81,19 +83,19 @@ impl DynamicProblem {
         self.given_frequency().or_else(bound)
     }
 
-    /// A step, in time, up to which central differences with the diagonal mass of `problem` are stable: `2/omega (sqrt(1 + xi^2) - xi)` with
-    /// an upper bound of the largest frequency omega and its damping ratio xi.
+    /// A step, in time, up to which central differences with the diagonal mass of `problem` are stable:
+    /// `2/omega (sqrt(1 + xi^2) - xi)` with an upper bound of the largest frequency omega and its damping ratio xi.
     ///
-    /// The bound is that of Collatz for the matrix of magnitudes `|M^-1 K|`: `omega^2 <= max_i (|M^-1 K| x)_i / x_i` for
-    /// every positive x. It is sharp in a bar and a few percent to some ten percent large elsewhere.
+    /// The bound is that of Collatz for the matrix of magnitudes `|M^-1 K|`: `omega^2 <= max_i (|M^-1 K| x)_i / x_i`
+    /// for every positive x. It is sharp in a bar and a few percent to some ten percent large elsewhere.
     ///
     /// # Errors
     /// [`qp::Error::Setting`] for a mass that is not diagonal, or not positive.
     ///
     /// # Source
-    /// T. Belytschko, W. K. Liu, B. Moran, *Nonlinear Finite Elements for Continua and Structures*, Wiley, 2000, section
-    /// 6.2: the stable step with damping. L. Collatz, *Einschließungssatz für die charakteristischen Zahlen von Matrizen*,
-    /// Math. Z. 48 (1942) 221-226.
+    /// T. Belytschko, W. K. Liu, B. Moran, *Nonlinear Finite Elements for Continua and Structures*, Wiley, 2000,
+    /// section 6.2: the stable step with damping. L. Collatz, *Einschließungssatz für die charakteristischen Zahlen von
+    /// Matrizen*, Math. Z. 48 (1942) 221-226.
     pub fn stable_step(&self) -> Result<f64, Error> {
         stable_step(self)
     }

@@ -15,12 +15,12 @@ use crate::scene::models::rows::ContactRow;
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, Solution};
 
-/// Reactions below this times the largest nodal force of temperatures and initial stresses are rounding of the solve: these forces cancel
-/// if the body is free.
+/// Reactions below this times the largest nodal force of temperatures and initial stresses are rounding of the solve:
+/// these forces cancel if the body is free.
 const OWN_ROUNDING: f64 = 1e-10;
 
-/// Displacements, multipliers and closed rows of a model, and the results that follow: stresses, pressures, forces. Stresses and forces
-/// are computed on demand, and only once.
+/// Displacements, multipliers and closed rows of a model, and the results that follow: stresses, pressures, forces.
+/// Stresses and forces are computed on demand, and only once.
 #[derive(Clone, Debug)]
 pub struct Answer {
     model: Arc<Model>,
@@ -70,8 +70,8 @@ impl Answer {
         Self::new(model, &solution.displacement, &multiplier, &solution.contact_set)
     }
 
-    /// An answer from the displacement of the free dofs (one entry per free dof, in length) with the multiplier (one entry per contact
-    /// row, then one per equation of a tie, in force) and the closed rows.
+    /// An answer from the displacement of the free dofs (one entry per free dof, in length) with the multiplier (one
+    /// entry per contact row, then one per equation of a tie, in force) and the closed rows.
     ///
     /// # Errors
     /// [`qp::Error::Length`] if a vector does not fit the model.
@@ -100,8 +100,8 @@ impl Answer {
         })
     }
 
-    /// The answer with its nodes moved by `factor` times a nodal motion (length `dim * n_nodes`, together in length): the equilibrium at a moment of a
-    /// vibration. Contact rows, pressures and the values of the unknowns stay.
+    /// The answer with its nodes moved by `factor` times a nodal motion (length `dim * n_nodes`, together in length):
+    /// the equilibrium at a moment of a vibration. Contact rows, pressures and the values of the unknowns stay.
     ///
     /// # Errors
     /// [`qp::Error::Length`] for a motion of another mesh.
@@ -123,13 +123,14 @@ impl Answer {
         &self.displacement
     }
 
-    /// Displacement of an obstacle that a force presses, against its approach direction, in length; `None` for an obstacle that stands
-    /// still.
+    /// Displacement of an obstacle that a force presses, against its approach direction, in length; `None` for an
+    /// obstacle that stands still.
     pub fn travel(&self, obstacle: usize) -> Option<f64> {
         self.travel.get(obstacle).copied().flatten()
     }
 
-    /// The whole shift of an obstacle along its approach direction, in length: the gap of the scene plus its own gap, minus its travel.
+    /// The whole shift of an obstacle along its approach direction, in length: the gap of the scene plus its own gap,
+    /// minus its travel.
     pub fn shift(&self, obstacle: usize) -> f64 {
         self.model.shift_of(obstacle) - self.travel(obstacle).unwrap_or(0.0)
     }
@@ -139,8 +140,8 @@ impl Answer {
         self.gaps_of(self.model.rows())
     }
 
-    /// The pressure and the remaining gap at the node of each entry of [`Model::rows_across`]: in force per area, `>= 0`, that of the
-    /// carrying side opposite to it, and in length, negative where the node went through.
+    /// The pressure and the remaining gap at the node of each entry of [`Model::rows_across`]: in force per area,
+    /// `>= 0`, that of the carrying side opposite to it, and in length, negative where the node went through.
     pub fn across(&self) -> Vec<[f64; 2]> {
         let rows = self.model.rows().iter().zip(&self.pressure);
         let pressures: HashMap<(usize, usize), f64> =
@@ -219,8 +220,8 @@ impl Answer {
         once(&self.stress, || self.model.stress_of_nodal(&self.displacement))
     }
 
-    /// The strain at each node, dimensionless tensor components `[xx, yy, zz, xy, yz, zx]`, extension positive, in the order of the mesh:
-    /// recovered and averaged as the stress. The expansion by temperature is a part of it.
+    /// The strain at each node, dimensionless tensor components `[xx, yy, zz, xy, yz, zx]`, extension positive, in the
+    /// order of the mesh: recovered and averaged as the stress. The expansion by temperature is a part of it.
     ///
     /// # Errors
     /// As [`Model::stress`].
@@ -228,8 +229,9 @@ impl Answer {
         nodal_strain(self.model.body(), &self.displacement)
     }
 
-    /// Strain (dimensionless) and stress (force per area) in some elements of the mesh, numbered from 0, at the points at which CalculiX
-    /// prints them, in its order: tensor components `[xx, yy, zz, xy, yz, zx]`, extension and tension positive.
+    /// Strain (dimensionless) and stress (force per area) in some elements of the mesh, numbered from 0, at the points
+    /// at which CalculiX prints them, in its order: tensor components `[xx, yy, zz, xy, yz, zx]`, extension and tension
+    /// positive.
     ///
     /// # Errors
     /// [`qp::Error::Setting`] for an element that does not exist.
@@ -315,10 +317,11 @@ fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> Result<T, Error>) -> Resul
 
 impl Model {
     /// Nodal support reactions on the body, length `dim * n_nodes`, in force, along the positive axes; zero along free
-    /// dofs, so that a roller pushes along its normal. `multiplier` has one entry per contact row, in force, `<= 0`, then one per equation of a tie.
+    /// dofs, so that a roller pushes along its normal. `multiplier` has one entry per contact row, in force, `<= 0`,
+    /// then one per equation of a tie.
     ///
-    /// They are the internal forces at the supported dofs, minus load and contact force there. The multiplier enters because a contact
-    /// row may press on a supported dof.
+    /// They are the internal forces at the supported dofs, minus load and contact force there. The multiplier enters
+    /// because a contact row may press on a supported dof.
     ///
     /// # Errors
     /// [`qp::Error::Length`] if `displacement` or `multiplier` do not fit.

@@ -9,8 +9,8 @@ use crate::fem::element::{Tabulated, TabulatedPoint};
 pub(crate) struct Depths {
     /// The largest depth on each element, in length; zero on an element outside all obstacles.
     pub of_elements: Vec<f64>,
-    /// The displacement that the obstacles impose, or would impose: the largest displacement along a row at a penetrating place, or the
-    /// largest depth before any displacement, in length.
+    /// The displacement that the obstacles impose, or would impose: the largest displacement along a row at a
+    /// penetrating place, or the largest depth before any displacement, in length.
     pub pushed: f64,
 }
 
@@ -23,8 +23,8 @@ impl Depths {
 }
 
 impl Answer {
-    /// The depths at five points in each direction of every facet that may touch a rigid obstacle. Parts of an obstacle narrower than the
-    /// distance of these points are missed.
+    /// The depths at five points in each direction of every facet that may touch a rigid obstacle. Parts of an obstacle
+    /// narrower than the distance of these points are missed.
     ///
     /// # Errors
     /// [`Error::Scene`] for a place without a row because it lies too deep.

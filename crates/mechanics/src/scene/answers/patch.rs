@@ -1,9 +1,9 @@
 //! The boundary of an obstacle with its closed nodes: its straight cells, connected pieces, edges of the contact.
 //!
-//! Rows exist only at nodes, so that the edge of the contact lies between the last closed node and the next open one. Near the edge of a
-//! smooth contact pressures are proportional to the square root of the distance: their squares lie on a straight line. The edge is
-//! estimated at the zero of this line through the last two nodes. A zero far beyond the open node contradicts that node: the edge is then
-//! taken in the middle.
+//! Rows exist only at nodes, so that the edge of the contact lies between the last closed node and the next open one.
+//! Near the edge of a smooth contact pressures are proportional to the square root of the distance: their squares lie
+//! on a straight line. The edge is estimated at the zero of this line through the last two nodes. A zero far beyond the
+//! open node contradicts that node: the edge is then taken in the middle.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,11 +14,13 @@ use crate::scene::Answer;
 use crate::scene::models::rows::ContactRow;
 use signorini_qp::Forest;
 
-/// Least cosine of the angle between the direction from an inner node to the last closed one and the direction to the open one.
+/// Least cosine of the angle between the direction from an inner node to the last closed one and the direction to the
+/// open one.
 const AHEAD: f64 = 0.5;
 
-/// How far beyond the last closed node, in cells, the zero may lie although the edge lies within one cell: in the contact of Hertz a line
-/// through nodes at 1/2 and 3/2 cells from the centre has its zero 2 cells beyond if the edge is at 5/2, and less through nodes farther out.
+/// How far beyond the last closed node, in cells, the zero may lie although the edge lies within one cell: in the
+/// contact of Hertz a line through nodes at 1/2 and 3/2 cells from the centre has its zero 2 cells beyond if the edge
+/// is at 5/2, and less through nodes farther out.
 const FARTHEST: f64 = 2.0;
 
 /// Squared lengths of a mean normal that differ from 1 by less are rounding.
@@ -155,13 +157,14 @@ impl<'a> Patch<'a> {
         beside.iter().any(|(&other, &cells)| cells == 1 && !model.share_plane(node, other))
     }
 
-    /// Returns `true` if a node lies on a plane of symmetry: the boundary of the meshed part ends there, not that of the whole.
+    /// Returns `true` if a node lies on a plane of symmetry: the boundary of the meshed part ends there, not that of
+    /// the whole.
     pub fn is_on_plane(&self, node: usize) -> bool {
         self.answer.model().share_plane(node, node)
     }
 
-    /// The mean pressure of nodes around a node, itself or not, in force per area. A node on a plane of symmetry has the mirror images of
-    /// its neighbours around it as well.
+    /// The mean pressure of nodes around a node, itself or not, in force per area. A node on a plane of symmetry has
+    /// the mirror images of its neighbours around it as well.
     pub fn mean_around(&self, node: usize, around: &BTreeSet<usize>) -> f64 {
         let images = |other: usize| self.images_around(node, other).len() as f64;
         let count: f64 = around.iter().map(|&other| images(other)).sum();

@@ -1,7 +1,7 @@
 //! Contact segments: connected closed parts of an obstacle's boundary, and their extent.
 //!
-//! An uncertainty is meant to contain the value of a mesh that is four times finer (`reference/uncertainty.py` measures in how many parts
-//! it does); where no number is known to do that, there is none.
+//! An uncertainty is meant to contain the value of a mesh that is four times finer (`reference/uncertainty.py` measures
+//! in how many parts it does); where no number is known to do that, there is none.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,34 +13,38 @@ use crate::fem::recovery::{Stress, stress_at};
 use crate::scene::Answer;
 use crate::scene::models::resultants::Sum;
 
-/// A peak pressure at the end of a boundary is that of an edge if it is this many times the mean of the closed nodes around. The weakest
-/// edge of practice, a right angle on a flat body of the same material, has a pressure proportional to `d^-0.226` at the distance d: its
-/// means over the last half cell and the cell before are as 1.5 to 1. Smooth pressures are as 1 to 1.
+/// A peak pressure at the end of a boundary is that of an edge if it is this many times the mean of the closed nodes
+/// around. The weakest edge of practice, a right angle on a flat body of the same material, has a pressure proportional
+/// to `d^-0.226` at the distance d: its means over the last half cell and the cell before are as 1.5 to 1. Smooth
+/// pressures are as 1 to 1.
 const EDGE: f64 = 4.0 / 3.0;
 
 /// The extent of a contact, estimated between the nodes from the pressures next to its edge, with its uncertainty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ContactExtent {
-    /// Uncertainty of the largest pressure, in force per area: the largest difference, at its node and the inner nodes around, between the
-    /// pressure (the force of a row over its area) and the normal stress of the body, which is a second value with errors of its own;
-    /// plus half of the difference of the largest pressure from the mean over its node and the closed nodes around. `None` if it stands at an edge, where refinement changes it by
-    /// any amount, or if no node of the contact has only closed nodes around.
+    /// Uncertainty of the largest pressure, in force per area: the largest difference, at its node and the inner nodes
+    /// around, between the pressure (the force of a row over its area) and the normal stress of the body, which is a
+    /// second value with errors of its own; plus half of the difference of the largest pressure from the mean over its
+    /// node and the closed nodes around. `None` if it stands at an edge, where refinement changes it by any amount, or
+    /// if no node of the contact has only closed nodes around.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_uncertainty: Option<f64>,
     /// Estimated area of the contact, in area; thickness or circumference included.
     pub area: f64,
-    /// Half of the area that lies in cells at the edge, in area; in closed cells the part by which a curved surface may differ.
+    /// Half of the area that lies in cells at the edge, in area; in closed cells the part by which a curved surface may
+    /// differ.
     pub area_uncertainty: f64,
     /// Estimated length along the boundary, in length, if the model is plane or axisymmetric.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
-    /// Half of the length that lies in cells at the edge, in length; in closed cells the part by which a curved line may differ.
+    /// Half of the length that lies in cells at the edge, in length; in closed cells the part by which a curved line
+    /// may differ.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width_uncertainty: Option<f64>,
 }
 
-/// Connected closed rows of one obstacle on its boundary: one piece of the contact, with its force and its extent. With planes of symmetry
-/// all of it is of the meshed part.
+/// Connected closed rows of one obstacle on its boundary: one piece of the contact, with its force and its extent. With
+/// planes of symmetry all of it is of the meshed part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Segment {
     /// The obstacle of the segment, numbered from 0 in the order of the scene.
@@ -49,15 +53,17 @@ pub struct Segment {
     pub nodes: Vec<usize>,
     /// The force of the obstacle on the body, one component for each coordinate, in force, along the positive axes.
     pub force: Vec<f64>,
-    /// A point on its line of action, one coordinate for each axis, in length, as in [`Resultant`](crate::scene::Resultant).
+    /// A point on its line of action, one coordinate for each axis, in length, as in
+    /// [`Resultant`](crate::scene::Resultant).
     pub centre: Option<Vec<f64>>,
     /// The largest pressure among its nodes, in force per area, `>= 0`.
     pub pressure_max: f64,
     /// Estimated area and width of the contact, with their uncertainty.
     #[serde(flatten)]
     pub extent: ContactExtent,
-    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not, or at the end of the
-    /// boundary and far above the nodes around: an edge of the obstacle or of the body, where the exact pressure is unbounded.
+    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not, or at the
+    /// end of the boundary and far above the nodes around: an edge of the obstacle or of the body, where the exact
+    /// pressure is unbounded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edge_peak: Option<usize>,
     /// The two estimated ends, `[x, y]` each, in length, on the undeformed boundary, if the model is plane or
@@ -139,8 +145,8 @@ impl Answer {
         pieces.iter().map(|(nodes, peak)| self.segment(&patch, obstacle, nodes, peak, &recovered)).collect()
     }
 
-    /// The pressure at closed nodes by the stress of the body: the traction along the row over the area that faces the obstacle, without
-    /// the part of the loads at the node.
+    /// The pressure at closed nodes by the stress of the body: the traction along the row over the area that faces the
+    /// obstacle, without the part of the loads at the node.
     fn recovered(&self, patch: &Patch, nodes: impl Iterator<Item = usize>) -> Recovered {
         let model = self.model();
         let stresses = stress_at(model.body(), self.displacement(), &nodes.collect());

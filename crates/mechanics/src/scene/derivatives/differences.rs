@@ -1,5 +1,5 @@
-//! Derivatives of smooth vectors by central differences of fourth order, with steps that shrink until they agree; corners are found, not
-//! smoothed over.
+//! Derivatives of smooth vectors by central differences of fourth order, with steps that shrink until they agree;
+//! corners are found, not smoothed over.
 
 /// The first step, in the scale of the variable; each further one is a tenth of it.
 const FIRST_STEP: f64 = 1e-3;
@@ -7,15 +7,15 @@ const FIRST_STEP: f64 = 1e-3;
 /// Number of steps that are tried.
 const STEPS: usize = 6;
 
-/// Differences of two steps agree if they are closer than this, relative to the largest of the vector. Where the vector is smooth, the
-/// error of the fourth order is about the square; where only its slope is continuous, this is the error.
+/// Differences of two steps agree if they are closer than this, relative to the largest of the vector. Where the vector
+/// is smooth, the error of the fourth order is about the square; where only its slope is continuous, this is the error.
 const AGREEMENT: f64 = 1e-7;
 
 /// Rounding of an entry, relative to the largest.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The derivative of a vector at zero, with one entry for each of its entries; `None` at a corner, or where it is nowhere smooth. `scale`
-/// is the size of a change of the variable that changes the vector noticeably.
+/// The derivative of a vector at zero, with one entry for each of its entries; `None` at a corner, or where it is
+/// nowhere smooth. `scale` is the size of a change of the variable that changes the vector noticeably.
 pub(super) fn derivative<E>(at: impl Fn(f64) -> Result<Vec<f64>, E>, scale: f64) -> Result<Option<Vec<f64>>, E> {
     let middle = at(0.0)?;
     let mut step = FIRST_STEP * scale;

@@ -55,8 +55,8 @@ impl Branch {
     }
 }
 
-/// Adds the change of the moment `sum of lambda (r x n)` of an obstacle about an axis through the origin: with the places r of rows, which
-/// are those of their coefficients, and with normals that turn.
+/// Adds the change of the moment `sum of lambda (r x n)` of an obstacle about an axis through the origin: with the
+/// places r of rows, which are those of their coefficients, and with normals that turn.
 fn add_moment(answer: &Answer, obstacle: usize, axis: usize, gradient: &mut [f64]) -> Result<(), Why> {
     let (model, dimension) = (answer.model(), answer.model().body().dimension());
     let slopes = Slopes::of(model, obstacle);
@@ -80,7 +80,8 @@ fn add_moment(answer: &Answer, obstacle: usize, axis: usize, gradient: &mut [f64
     Ok(())
 }
 
-/// Adds the change of a component of the stress at reference coordinates of an element: the point moves with the element.
+/// Adds the change of a component of the stress at reference coordinates of an element: the point moves with the
+/// element.
 fn add_stress(
     answer: &Answer,
     (element, at, component): (usize, [f64; 3], usize),

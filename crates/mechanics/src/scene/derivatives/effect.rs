@@ -85,7 +85,8 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
     }
 }
 
-/// Returns `true` if the whole stiffness is proportional to one Young's modulus, and no force comes from elsewhere in the body.
+/// Returns `true` if the whole stiffness is proportional to one Young's modulus, and no force comes from elsewhere in
+/// the body.
 fn is_proportional(answer: &Answer) -> bool {
     let parts = &answer.model().parts;
     let is_moved =

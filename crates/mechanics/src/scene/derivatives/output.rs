@@ -277,7 +277,8 @@ pub(super) fn moment_of(model: &Model, obstacle: usize, at: [f64; 3], force: [f6
     model.parts.symmetry.moment(model.obstacles()[obstacle].approach(), at, force, axis)
 }
 
-/// The work that the internal forces of a body do up to the displacement of an answer: they grow linearly from those of its own stress.
+/// The work that the internal forces of a body do up to the displacement of an answer: they grow linearly from those of
+/// its own stress.
 fn work_to(answer: &Answer, body: &ElasticBody) -> Result<f64, Why> {
     let displacement = answer.displacement();
     let work = |at: &[f64]| -> Result<f64, Why> {

@@ -58,7 +58,8 @@ impl Scene {
     /// The same scene with another value of the parameter of this name; `loads[0]` is a factor of that load.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a name that does not exist, with those that do, and for a value that the scene does not allow.
+    /// [`Error::Scene`] for a name that does not exist, with those that do, and for a value that the scene does not
+    /// allow.
     pub fn with_parameter(&self, name: &str, value: f64) -> Result<Scene, Error> {
         let parameter = self.parameter(name)?;
         self.varied(&parameter, value - parameter.value)
@@ -214,7 +215,8 @@ impl Parameter {
 }
 
 impl Scene {
-    /// The scene with a one in the place of a number to which a load is proportional, and zeros in those of its other components.
+    /// The scene with a one in the place of a number to which a load is proportional, and zeros in those of its other
+    /// components.
     ///
     /// # Errors
     /// [`Error::Scene`] if the load does not allow it.

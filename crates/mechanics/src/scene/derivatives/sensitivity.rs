@@ -46,7 +46,8 @@ pub struct ByParameter {
     /// The unit of this number of the scene; empty if it is dimensionless.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub unit: String,
-    /// The derivative, in the unit of the output over that of the parameter; of the places of all nodes the largest magnitude.
+    /// The derivative, in the unit of the output over that of the parameter; of the places of all nodes the largest
+    /// magnitude.
     pub derivative: Derivative<f64>,
     /// The change of the output in per cent for a parameter larger by one per cent; `None` if one of both is zero.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -73,8 +74,8 @@ pub struct Sensitivities {
 }
 
 impl Scene {
-    /// Solves the scene, and gives the derivatives of `outputs` with respect to `parameters`, by their names: see [`Scene::parameters`]
-    /// and [`Scene::outputs`].
+    /// Solves the scene, and gives the derivatives of `outputs` with respect to `parameters`, by their names: see
+    /// [`Scene::parameters`] and [`Scene::outputs`].
     ///
     /// ```
     /// use signorini_mechanics::Scene;
@@ -102,8 +103,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Scene`] for a name that does not exist, with those that do, and for a scene of a motion; those of [`Scene::build`] and of
-    /// [`signorini_qp::solve`].
+    /// [`Error::Scene`] for a name that does not exist, with those that do, and for a scene of a motion; those of
+    /// [`Scene::build`] and of [`signorini_qp::solve`].
     pub fn sensitivity(
         &self,
         outputs: &[&str],
@@ -272,7 +273,8 @@ impl At<'_> {
         adjoint.map(of_piece).transposed()
     }
 
-    /// The derivative of a branch along the effect of a parameter: at a kink of the answer by tangents, which tell its sides apart.
+    /// The derivative of a branch along the effect of a parameter: at a kink of the answer by tangents, which tell its
+    /// sides apart.
     fn along(&self, branch: &Branch, adjoint: &Derivative<Adjoint>, effect: &Effect) -> Result<Derivative<f64>, Error> {
         let direct = match branch.direct(self.answer, effect) {
             Ok(direct) => direct,
@@ -300,7 +302,8 @@ fn joined_places(mut branches: Vec<Derivative<Vec<f64>>>) -> Derivative<Vec<f64>
     }
 }
 
-/// The derivative of the largest of several branches that tie: theirs, if all agree. Derivatives far below `scale` are rounding.
+/// The derivative of the largest of several branches that tie: theirs, if all agree. Derivatives far below `scale` are
+/// rounding.
 fn joined(mut branches: Vec<Derivative<f64>>, scale: f64) -> Derivative<f64> {
     let values: Vec<f64> = branches.iter().flat_map(values_of).collect();
     let size = values.iter().fold(scale, |size: f64, value| size.max(value.abs()));

@@ -5,8 +5,8 @@ use crate::fem::geometry::{distance, unit};
 use crate::fem::mesh::{Boundary, Mesh};
 use signorini_qp as qp;
 
-/// Tolerance, in units of the body's size, for a point on a node and for a table that reaches a candidate: above the rounding of written
-/// decimals, far below the size of any cell.
+/// Tolerance, in units of the body's size, for a point on a node and for a table that reaches a candidate: above the
+/// rounding of written decimals, far below the size of any cell.
 pub(crate) const PLACE_TOLERANCE: f64 = 1e-9;
 
 /// Lengths below this times the body's size are rounding of coordinates.

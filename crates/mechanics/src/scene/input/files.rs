@@ -17,8 +17,8 @@ pub(crate) struct Files<'a> {
 }
 
 impl Files<'_> {
-    /// The file of this name at a JSON path, which must lie in the folder of the scene after `..` and links are followed, unless the
-    /// scene may read outside.
+    /// The file of this name at a JSON path, which must lie in the folder of the scene after `..` and links are
+    /// followed, unless the scene may read outside.
     pub fn named(&self, name: &str, path: String) -> Result<PathBuf, Error> {
         let file = self.folder.join(name);
         let real = match file.canonicalize() {

@@ -5,8 +5,8 @@ use serde_json::Value;
 use crate::scene::Scene;
 
 impl Scene {
-    /// The JSON Schema of scenes, as indented text: fields, choices and the ranges of single numbers. Only [`Scene::build`] checks
-    /// conditions between several fields.
+    /// The JSON Schema of scenes, as indented text: fields, choices and the ranges of single numbers. Only
+    /// [`Scene::build`] checks conditions between several fields.
     pub fn json_schema() -> String {
         let mut schema = schemars::schema_for!(Scene).to_value();
         without_null(&mut schema);

@@ -15,8 +15,8 @@ use signorini_qp::file::read_text_capped;
 pub(super) const MOST_OF_SCENE: u64 = 256 << 20;
 
 impl Scene {
-    /// An error of a value with its line and column, if the scene was read from a file that can be read again: a scene, or the deck of a
-    /// `step` (the last one without it).
+    /// An error of a value with its line and column, if the scene was read from a file that can be read again: a scene,
+    /// or the deck of a `step` (the last one without it).
     pub fn located(error: Error, file: &Path, step: Option<usize>) -> Error {
         if is_deck(file) {
             // Only the lines of its entries are wanted.
@@ -57,7 +57,8 @@ impl Scene {
     }
 }
 
-/// Line and column of the value at `path`; if it is missing, of the value that should contain it. `None` if the text is not JSON.
+/// Line and column of the value at `path`; if it is missing, of the value that should contain it. `None` if the text is
+/// not JSON.
 fn position(text: &str, path: &str) -> Option<(usize, usize)> {
     let text = plain(text);
     let scene = parsed(&text).ok()?;

@@ -29,8 +29,8 @@ impl Scene {
         })
     }
 
-    /// Reads a scene from a JSON file, or from a deck of CalculiX, whose name ends with `.inp`; relative names of other files start in its
-    /// folder.
+    /// Reads a scene from a JSON file, or from a deck of CalculiX, whose name ends with `.inp`; relative names of other
+    /// files start in its folder.
     ///
     /// # Errors
     /// [`qp::Error::File`] for a file that cannot be read, and as [`Scene::from_json`] and [`Scene::read_deck`].

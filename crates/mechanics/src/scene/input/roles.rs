@@ -1,4 +1,5 @@
-//! The boundaries of the bodies that a first scene holds and presses: chosen by name and by the direction that they face.
+//! The boundaries of the bodies that a first scene holds and presses: chosen by name and by the direction that they
+//! face.
 
 use std::collections::HashSet;
 
@@ -22,8 +23,8 @@ const ALIKE: f64 = 0.99;
 /// The facets of a part have normals within this angle of its direction, in degrees.
 const WITHIN: f64 = 45.0;
 
-/// The plate first touches a node whose normal makes an angle with this cosine or a larger one with the way of the plate: about 60 degrees,
-/// above the angle of a face that is inclined to all axes alike.
+/// The plate first touches a node whose normal makes an angle with this cosine or a larger one with the way of the
+/// plate: about 60 degrees, above the angle of a face that is inclined to all axes alike.
 const FIRST: f64 = 0.5;
 
 /// Sines below this are rounding: such a normal is perpendicular to the way of the plate.
@@ -87,7 +88,8 @@ struct Pressed {
     first: Vec<usize>,
 }
 
-/// How well a held and a pressed side go together, the best first: the force goes from body to body, or at least from one to another.
+/// How well a held and a pressed side go together, the best first: the force goes from body to body, or at least from
+/// one to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Fit {
     Stacked,
@@ -106,7 +108,8 @@ struct Sides<'a> {
     named: Vec<&'a Boundary>,
 }
 
-/// The roles that fit, the best first: among those as good, those of two named boundaries, then those of the sides that face an axis.
+/// The roles that fit, the best first: among those as good, those of two named boundaries, then those of the sides that
+/// face an axis.
 pub(crate) fn roles(body: &ElasticBody) -> Vec<Roles> {
     let mesh = body.mesh();
     let surfaces: Vec<Boundary> = body.regions().iter().map(|region| mesh.surface(region.elements())).collect();
@@ -323,8 +326,8 @@ fn mean_normal(body: &ElasticBody, boundary: &Boundary) -> [f64; 3] {
     normal
 }
 
-/// The axis and the sense of a boundary's normal; the vertical axis if the normal is as close to it as to another, and up if the boundary
-/// faces all directions.
+/// The axis and the sense of a boundary's normal; the vertical axis if the normal is as close to it as to another, and
+/// up if the boundary faces all directions.
 fn facing(normal: [f64; 3], up: usize) -> Way {
     if length(normal) < FACING {
         return (up, 1.0);

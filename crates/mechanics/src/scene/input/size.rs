@@ -78,7 +78,8 @@ impl Scene {
         size
     }
 
-    /// Refuses a scene that would take more than `most` bytes. [`Scene::build`] refuses a scene with too many nodes at its divisions.
+    /// Refuses a scene that would take more than `most` bytes. [`Scene::build`] refuses a scene with too many nodes at
+    /// its divisions.
     ///
     /// # Errors
     /// [`qp::Error::TooLarge`].
@@ -104,7 +105,8 @@ impl Scene {
         self.check_bytes(self.size().model_bytes, 0.0, most)
     }
 
-    /// Refuses bodies whose assembly alone would take more than `most` bytes: the size of a mesh from a file is known only now.
+    /// Refuses bodies whose assembly alone would take more than `most` bytes: the size of a mesh from a file is known
+    /// only now.
     ///
     /// # Errors
     /// [`qp::Error::TooLarge`].
@@ -136,8 +138,8 @@ impl Scene {
     }
 }
 
-/// Pairs of nodes in the factor of a lattice with these numbers of nodes along its axes, by nested dissection across the longest
-/// axis: the separator is coupled with itself and with the `around` nodes around the part that it divides.
+/// Pairs of nodes in the factor of a lattice with these numbers of nodes along its axes, by nested dissection across
+/// the longest axis: the separator is coupled with itself and with the `around` nodes around the part that it divides.
 ///
 /// # Source
 /// A. George, *Nested dissection of a regular finite element mesh*, SIAM J. Numer. Anal. 10 (1973) 345-363.

@@ -18,17 +18,18 @@ impl Scene {
     /// Discretises the scene and sets up its contact problem.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a value that describes no problem, [`qp::Error::UnderHeld`](signorini_qp::Error::UnderHeld) for a rigid-body mode that neither
-    /// supports nor obstacles resist.
+    /// [`Error::Scene`] for a value that describes no problem, [`qp::Error::UnderHeld`](signorini_qp::Error::UnderHeld)
+    /// for a rigid-body mode that neither supports nor obstacles resist.
     pub fn build(&self) -> Result<Model, Error> {
         self.build_with(&[])
     }
 
-    /// The same with user-defined obstacles after those of the scene, each with the name of the boundary that may touch it.
+    /// The same with user-defined obstacles after those of the scene, each with the name of the boundary that may touch
+    /// it.
     ///
     /// # Errors
-    /// As [`Scene::build`]; [`Error::Scene`] for a boundary that does not exist, and for a direction or a normal that is
-    /// not of unit length or leads out of the model.
+    /// As [`Scene::build`]; [`Error::Scene`] for a boundary that does not exist, and for a direction or a normal that
+    /// is not of unit length or leads out of the model.
     pub fn build_with(&self, further: &[(&str, Arc<dyn Obstacle>)]) -> Result<Model, Error> {
         self.build_of(self.bodies()?, further)
     }
@@ -36,7 +37,8 @@ impl Scene {
     /// As [`Scene::build`], for a scene that may take at most `most` bytes.
     ///
     /// # Errors
-    /// As [`Scene::build`]; [`qp::Error::TooLarge`](signorini_qp::Error::TooLarge) before the assembly of bodies that are too large.
+    /// As [`Scene::build`]; [`qp::Error::TooLarge`](signorini_qp::Error::TooLarge) before the assembly of bodies that
+    /// are too large.
     pub fn build_within(&self, most: f64) -> Result<Model, Error> {
         let bodies = self.bodies()?;
         Scene::check_bodies(&bodies, most)?;

@@ -12,7 +12,8 @@ use crate::scene::input::schema::{Place, Scene, SupportSpec};
 /// Radii below this times the body's size lie on the axis of revolution.
 pub(crate) const ON_THE_AXIS: f64 = 1e-12;
 
-/// The normals of a flat boundary have one direction up to the rounding of coordinates: one minus the cosine of their angle.
+/// The normals of a flat boundary have one direction up to the rounding of coordinates: one minus the cosine of their
+/// angle.
 const FLAT: f64 = 1e-9;
 
 impl Scene {
@@ -47,7 +48,8 @@ impl Scene {
         Ok(held)
     }
 
-    /// Returns `true` if a support lets a flat boundary slide along itself and prescribes nothing else: it may be a plane of symmetry.
+    /// Returns `true` if a support lets a flat boundary slide along itself and prescribes nothing else: it may be a
+    /// plane of symmetry.
     pub(crate) fn may_be_part(&self, body: &ElasticBody) -> Result<bool, Error> {
         if body.dimension() == 1 {
             return Ok(false);

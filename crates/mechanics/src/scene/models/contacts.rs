@@ -14,8 +14,8 @@ const REACH: f64 = 0.25;
 const HALVINGS: usize = 12;
 
 impl Scene {
-    /// The scene with an obstacle for each pair of bodies that face each other and that no obstacle names, and the body with the boundaries
-    /// of these obstacles.
+    /// The scene with an obstacle for each pair of bodies that face each other and that no obstacle names, and the body
+    /// with the boundaries of these obstacles.
     ///
     /// # Errors
     /// None for bodies of one model.

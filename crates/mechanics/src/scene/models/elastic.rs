@@ -10,10 +10,12 @@ use crate::scene::input::entry::{located, wrong};
 use crate::scene::input::schema::{ModelSpec, Scene, Units};
 use signorini_qp as qp;
 
-/// Poisson's ratios above which elements lock: linear elements noticeably above the first; measured, quadratic elements above the second.
+/// Poisson's ratios above which elements lock: linear elements noticeably above the first; measured, quadratic elements
+/// above the second.
 const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
 
-/// Young's moduli of one body that differ by more than this leave few digits in the strain of the soft part, and slow down iterations.
+/// Young's moduli of one body that differ by more than this leave few digits in the strain of the soft part, and slow
+/// down iterations.
 const STIFFNESS_JUMP: f64 = 1e4;
 
 /// Young's modulus of steel, in pascals.
@@ -22,11 +24,12 @@ pub(crate) const STEEL: f64 = 2.1e11;
 /// The largest Young's modulus of diamond by direction, in pascals: no material of engineering is stiffer.
 ///
 /// # Source
-/// H. J. McSkimin, P. Andreatch, "Elastic moduli of diamond as a function of pressure and temperature", J. Appl. Phys. 43 (1972)
-/// 2944-2948: stiffnesses of 1079, 124 and 578 GPa.
+/// H. J. McSkimin, P. Andreatch, "Elastic moduli of diamond as a function of pressure and temperature", J. Appl. Phys.
+/// 43 (1972) 2944-2948: stiffnesses of 1079, 124 and 578 GPa.
 const DIAMOND: f64 = 1.2e12;
 
-/// A modulus above that of diamond by this factor is in another unit: the next unit in use, the pascal, is a factor of 1e6 away.
+/// A modulus above that of diamond by this factor is in another unit: the next unit in use, the pascal, is a factor of
+/// 1e6 away.
 const OTHER_UNIT: f64 = 2.0;
 
 /// A body as a scene describes it, with its place.

@@ -12,8 +12,8 @@ const LISTED_NODES: usize = 3;
 impl Model {
     /// Rewrites an error of a solver into the words of this scene; other errors are returned unchanged.
     ///
-    /// [`qp::Error::Unbounded`] and [`qp::Error::UnderHeld`] name the rigid-body mode; [`qp::Error::Infeasible`] names nodes,
-    /// coordinates and obstacles.
+    /// [`qp::Error::Unbounded`] and [`qp::Error::UnderHeld`] name the rigid-body mode; [`qp::Error::Infeasible`] names
+    /// nodes, coordinates and obstacles.
     pub fn explain(&self, error: impl Into<Error>) -> Error {
         match error.into() {
             Error::Qp(qp::Error::Unbounded { mode, direction }) => {

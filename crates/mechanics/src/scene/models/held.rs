@@ -8,7 +8,8 @@ use crate::fem::geometry::{COORDINATES, dot};
 use crate::fem::mesh::Mesh;
 use crate::scene::input::entry::{number, point, wrong};
 
-/// A normal depends on the earlier ones if the sine of its angle to their span is below this: the rounding of written components.
+/// A normal depends on the earlier ones if the sine of its angle to their span is below this: the rounding of written
+/// components.
 const DEPENDENT_NORMAL: f64 = 1e-9;
 
 /// Dependent normals must agree in their values to within this, relative to the largest value.
@@ -122,8 +123,8 @@ impl Held {
         })
     }
 
-    /// The force at each held node, shared among its holders: each gets the part along its own direction; if several have the same
-    /// direction, the first gets it.
+    /// The force at each held node, shared among its holders: each gets the part along its own direction; if several
+    /// have the same direction, the first gets it.
     pub fn shares(&self, force: impl Fn(usize) -> [f64; 3]) -> impl Iterator<Item = (usize, Vec<(Holder, [f64; 3])>)> {
         self.nodes.iter().map(move |(&node, components)| (node, shared(components, force(node))))
     }
@@ -151,7 +152,8 @@ fn shared(components: &[Component], force: [f64; 3]) -> Vec<(Holder, [f64; 3])> 
     shares
 }
 
-/// The unit vector of a normal; a normal along a coordinate axis gives exactly that axis, or its opposite. `None` for zero.
+/// The unit vector of a normal; a normal along a coordinate axis gives exactly that axis, or its opposite. `None` for
+/// zero.
 pub(crate) fn unit_normal(normal: [f64; 3]) -> Option<[f64; 3]> {
     let largest = normal.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
     let scaled = normal.map(|part| part / largest);

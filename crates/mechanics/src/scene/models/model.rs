@@ -21,8 +21,8 @@ const NO_AREA: f64 = 1e-12;
 
 /// A discretised scene: mesh, contact problem, and the meaning of its rows and dofs.
 ///
-/// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement` arguments are those
-/// of a solution: one entry per free dof, then the travel of each obstacle that a force presses.
+/// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement`
+/// arguments are those of a solution: one entry per free dof, then the travel of each obstacle that a force presses.
 ///
 /// ```
 /// use signorini_mechanics::Scene;
@@ -111,8 +111,8 @@ impl Model {
         Self::with_rows(self.parts.clone(), gap, built, (stiffness, load, near_null))
     }
 
-    /// The same with obstacles that have moved along their approach directions, one entry per obstacle, in length: rows keep the normals
-    /// that they have.
+    /// The same with obstacles that have moved along their approach directions, one entry per obstacle, in length: rows
+    /// keep the normals that they have.
     ///
     /// # Errors
     /// [`qp::Error::NotFinite`] for gaps that are not finite.
@@ -128,13 +128,14 @@ impl Model {
         Ok(model)
     }
 
-    /// The displacements of the obstacles along their approach directions in a motion, one entry per obstacle, in length, positive away from
-    /// the body; empty if none moves.
+    /// The displacements of the obstacles along their approach directions in a motion, one entry per obstacle, in
+    /// length, positive away from the body; empty if none moves.
     pub fn moved_obstacles(&self) -> &[f64] {
         &self.moved
     }
 
-    /// The whole shift of an obstacle along its approach direction, without its travel: that of the scene, its own, and that of a motion.
+    /// The whole shift of an obstacle along its approach direction, without its travel: that of the scene, its own, and
+    /// that of a motion.
     pub(crate) fn shift_of(&self, obstacle: usize) -> f64 {
         self.obstacles()[obstacle].shift(self.gap) + self.moved.get(obstacle).copied().unwrap_or(0.0)
     }
@@ -231,8 +232,9 @@ impl Model {
         self.parts.symmetry.axes_at(at)
     }
 
-    /// The sum of the contact forces on each obstacle and pair of bodies, one entry per obstacle in the order of the scene, in force,
-    /// `>= 0`, for the multipliers of the rows (in force, `<= 0`); with planes of symmetry that of the whole body.
+    /// The sum of the contact forces on each obstacle and pair of bodies, one entry per obstacle in the order of the
+    /// scene, in force, `>= 0`, for the multipliers of the rows (in force, `<= 0`); with planes of symmetry that of the
+    /// whole body.
     pub fn obstacle_forces(&self, multiplier: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.obstacles().len()];
         for (row, lambda) in self.rows().iter().zip(multiplier) {
@@ -256,7 +258,8 @@ impl Model {
         }
     }
 
-    /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a mirror image.
+    /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a
+    /// mirror image.
     pub(crate) fn copies_of_obstacle(&self, obstacle: usize) -> f64 {
         self.parts_of_whole() / self.parts.parts_of_obstacle(obstacle)
     }
@@ -321,9 +324,9 @@ impl Model {
         &self.rows
     }
 
-    /// The contact seen from the nodes of the other side, where rows are means over meshes that do not match: each as a row from that
-    /// node to the place that it faces, with the tributary area 0. They are no rows of the problem, and may be violated between the nodes
-    /// of the carrying side by as much as the meshes differ.
+    /// The contact seen from the nodes of the other side, where rows are means over meshes that do not match: each as a
+    /// row from that node to the place that it faces, with the tributary area 0. They are no rows of the problem, and
+    /// may be violated between the nodes of the carrying side by as much as the meshes differ.
     pub fn rows_across(&self) -> &[ContactRow] {
         &self.across
     }
@@ -360,8 +363,8 @@ impl Model {
         self.parts.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)
     }
 
-    /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these `displacement`s;
-    /// `None` for an obstacle at rest.
+    /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these
+    /// `displacement`s; `None` for an obstacle at rest.
     ///
     /// # Errors
     /// As [`Model::nodal_displacement`].
@@ -432,7 +435,8 @@ impl Model {
         &self.parts.load
     }
 
-    /// The point of application of the force of a row for moments: the node, or, in the middle of a curved edge, its coefficient.
+    /// The point of application of the force of a row for moments: the node, or, in the middle of a curved edge, its
+    /// coefficient.
     pub(crate) fn place(&self, node: usize) -> [f64; 3] {
         self.parts.dofs.basis.place(self.mesh().nodes(), node)
     }

@@ -1,4 +1,5 @@
-//! Overlaps of displaced bodies: where no contact row keeps them apart, and between the rows where these lie too far apart.
+//! Overlaps of displaced bodies: where no contact row keeps them apart, and between the rows where these lie too far
+//! apart.
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -81,8 +82,8 @@ impl Solid {
         Solid { surface, facets, sags, elements: tree_of_elements, first: elements.start }
     }
 
-    /// The nodes of its surface, and the middles of its facets: where two bodies cross, no node need lie inside. `allowed` has how deep a node
-    /// may lie in the other body, in lengths of a facet.
+    /// The nodes of its surface, and the middles of its facets: where two bodies cross, no node need lie inside.
+    /// `allowed` has how deep a node may lie in the other body, in lengths of a facet.
     fn points(&self, nodes: &[[f64; 3]], allowed: impl Fn(usize) -> f64) -> Vec<Point> {
         let of_nodes = self.surface.nodes().into_iter();
         let mut points: Vec<Point> =
@@ -109,7 +110,8 @@ impl Solid {
         })
     }
 
-    /// The distance of a point from the surface, straight pieces of curved facets for these, and the number of the nearest facet.
+    /// The distance of a point from the surface, straight pieces of curved facets for these, and the number of the
+    /// nearest facet.
     fn depth(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> (f64, usize) {
         let of_piece = |piece: Vec<usize>| {
             let places: Vec<[f64; 3]> = piece.into_iter().map(|node| nodes[node]).collect();
@@ -131,8 +133,8 @@ impl Solid {
 }
 
 impl Model {
-    /// The deepest overlap of two displaced bodies at a node or in the middle of a facet, beyond what contact rows between the two leave;
-    /// `None` without one. `displacement` has `dim` entries a node.
+    /// The deepest overlap of two displaced bodies at a node or in the middle of a facet, beyond what contact rows
+    /// between the two leave; `None` without one. `displacement` has `dim` entries a node.
     pub(crate) fn overlap(&self, displacement: &[f64]) -> Option<Overlap> {
         let (mesh, regions, dimension) = (self.mesh(), self.body().regions(), self.body().dimension());
         if regions.len() < 2 || dimension < 2 {
@@ -173,8 +175,8 @@ impl Model {
         deepest
     }
 
-    /// How deep nodes may lie in a body, in lengths of a facet, because contact rows keep the two apart: nodes that carry a row or lie
-    /// opposite to one, and nodes that take part in the means of others. By node and body.
+    /// How deep nodes may lie in a body, in lengths of a facet, because contact rows keep the two apart: nodes that
+    /// carry a row or lie opposite to one, and nodes that take part in the means of others. By node and body.
     fn depths_that_rows_leave(&self) -> HashMap<(usize, usize), f64> {
         let region_of = |node: usize| self.body().region_at(node).unwrap_or(0);
         let [mut kept_apart, mut taking_part] = [HashMap::new(), HashMap::new()];

@@ -15,7 +15,8 @@ impl Scene {
     /// The body with the parts of its boundaries that the scene names, after the others.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a name that exists, a boundary that does not exist, an invalid region, a part without a facet.
+    /// [`Error::Scene`] for a name that exists, a boundary that does not exist, an invalid region, a part without a
+    /// facet.
     pub(crate) fn with_parts(&self, mut body: ElasticBody) -> Result<ElasticBody, Error> {
         for (index, spec) in self.parts.iter().enumerate() {
             let path = format!("parts[{index}]");

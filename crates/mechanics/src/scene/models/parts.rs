@@ -82,8 +82,8 @@ impl Parts {
         }
     }
 
-    /// The forces of one tie on its first side, or of all ties on both sides: on the nodes, length `dim * n_nodes`, in force, from the
-    /// multipliers of all equations.
+    /// The forces of one tie on its first side, or of all ties on both sides: on the nodes, length `dim * n_nodes`, in
+    /// force, from the multipliers of all equations.
     pub fn tie_forces(&self, of_ties: &[f64], one: Option<usize>) -> Vec<f64> {
         let (ties, dimension) = (&self.ties, self.body.dimension());
         let rows = one.map_or(0..ties.rows.len(), |tie| ties.of_tie[tie].clone());

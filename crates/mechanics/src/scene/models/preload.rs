@@ -1,7 +1,8 @@
-//! Preloads of bolts: two faces of a cut that move together along themselves, and towards each other by one shortening q.
+//! Preloads of bolts: two faces of a cut that move together along themselves, and towards each other by one shortening
+//! q.
 //!
-//! Each mean over the cut holds t . (u - u') = 0 along the faces. Along the direction n of the bolt, either all hold n . (u - u') = q with
-//! a prescribed q, or they are equal to each other, and the tension F does the work F q.
+//! Each mean over the cut holds t . (u - u') = 0 along the faces. Along the direction n of the bolt, either all hold n
+//! . (u - u') = q with a prescribed q, or they are equal to each other, and the tension F does the work F q.
 
 use std::ops::Range;
 
@@ -46,8 +47,8 @@ impl PreloadSpec {
     /// The rows of the cut at `path`, tie number `tie`, and its shortening.
     ///
     /// # Errors
-    /// [`Error::Scene`] for boundaries that do not face each other, for a preload without a force or a shortening or with both, and for a
-    /// direction along the faces.
+    /// [`Error::Scene`] for boundaries that do not face each other, for a preload without a force or a shortening or
+    /// with both, and for a direction along the faces.
     pub(super) fn rows(
         &self,
         (path, tie): (&str, usize),
@@ -112,7 +113,8 @@ const ROUNDING: f64 = 1e-12;
 /// The least cosine between the direction of a bolt and the normal of its cut.
 const LEAST: f64 = 1e-3;
 
-/// Two unit vectors at right angles to `towards`, one in the plane: along axes of the node where these are at right angles.
+/// Two unit vectors at right angles to `towards`, one in the plane: along axes of the node where these are at right
+/// angles.
 fn across(towards: [f64; 3], axes: &[[f64; 3]; 3], dimension: usize) -> [[f64; 3]; 2] {
     if dimension == 2 {
         return [[0.0 - towards[1], towards[0], 0.0], [0.0; 3]];

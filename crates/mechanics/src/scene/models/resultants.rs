@@ -24,7 +24,8 @@ const MESHED_PART: &str = "of the meshed part: a plane of symmetry at a sliding 
 /// The resultant of all forces of one kind on the body: force, moment, and a point on the line of action.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Resultant {
-    /// The source of the forces: `obstacles[0]`; `pair[0]` for the first obstacle that is another body; `supports[0]`; `loads`.
+    /// The source of the forces: `obstacles[0]`; `pair[0]` for the first obstacle that is another body; `supports[0]`;
+    /// `loads`.
     pub of: String,
     /// The body on which the forces act, if there are several; the first one is called `body`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,8 +87,8 @@ impl Sum {
         [0, 1, 2].map(|axis| moments().fold(0.0, |sum, moment| sum + moment[axis]))
     }
 
-    /// The centre of the forces along their resultant, moved perpendicular to it onto the line of action if the forces have moments; in
-    /// an axisymmetric model they have no moments.
+    /// The centre of the forces along their resultant, moved perpendicular to it onto the line of action if the forces
+    /// have moments; in an axisymmetric model they have no moments.
     pub fn centre(&self, formulation: &Formulation) -> Option<[f64; 3]> {
         let (force, moment) = (self.force(), self.moment());
         let magnitudes = self.forces.iter().fold(0.0, |sum, &(_, force)| sum + length(force));
@@ -153,7 +154,8 @@ impl Model {
         let mut sums = vec![Sum::default(); self.obstacles().len()];
         for (row, &lambda) in self.rows().iter().zip(multiplier) {
             let force = row.normal.map(|component| 0.0 + lambda * component);
-            // A plane of symmetry normal to its approach direction gives an obstacle a mirror image, whose force does not count here.
+            // A plane of symmetry normal to its approach direction gives an obstacle a mirror image, whose force does
+            // not count here.
             let approach = self.obstacles()[row.obstacle].approach();
             self.add_images(&mut sums[row.obstacle], self.place(row.node), force, |axis| approach[axis] == 0.0);
         }
@@ -166,8 +168,8 @@ impl Model {
         Ok(sums.iter().enumerate().map(resultant).collect())
     }
 
-    /// The moment about the origin of the contact forces on the other body of an obstacle, as [`Resultant::moment`], from the multipliers of
-    /// all rows.
+    /// The moment about the origin of the contact forces on the other body of an obstacle, as [`Resultant::moment`],
+    /// from the multipliers of all rows.
     pub(crate) fn moment_on_other(&self, obstacle: usize, multiplier: &[f64]) -> Vec<f64> {
         let mut sum = Sum::default();
         for (row, &lambda) in self.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
@@ -201,8 +203,8 @@ impl Model {
         (0..self.parts.springs.len()).map(|index| format!("springs[{index}]"))
     }
 
-    /// The resultants of the support reactions, support by support, from the force on each held node; its part along free dofs is left
-    /// out.
+    /// The resultants of the support reactions, support by support, from the force on each held node; its part along
+    /// free dofs is left out.
     pub(crate) fn support_resultants(&self, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
         let nodes = self.mesh().nodes();
         let mut supports = vec![Sum::default(); self.parts.supports];
@@ -228,7 +230,8 @@ impl Model {
         supports.iter().zip(held).zip(self.support_names()).map(of_support).collect()
     }
 
-    /// Adds a force on the modelled part with its mirror images in those planes of symmetry for whose axis `across` is `true`.
+    /// Adds a force on the modelled part with its mirror images in those planes of symmetry for whose axis `across` is
+    /// `true`.
     fn add_images(&self, sum: &mut Sum, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) {
         self.parts.symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
     }
@@ -251,7 +254,8 @@ impl Model {
         self.parts.springs.iter().zip(self.spring_names()).map(of_springs).collect()
     }
 
-    /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the body.
+    /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the
+    /// body.
     ///
     /// # Errors
     /// [`qp::Error::Length`](signorini_qp::Error::Length) if the forces are not those of all nodes.
@@ -287,8 +291,8 @@ impl Model {
         Ok(all)
     }
 
-    /// The resultants of the ties on their first sides, in the order of the scene, from the multipliers of all equations and the values
-    /// of the unknowns.
+    /// The resultants of the ties on their first sides, in the order of the scene, from the multipliers of all
+    /// equations and the values of the unknowns.
     pub(crate) fn tie_resultants(&self, of_ties: &[f64], unknowns: &[f64]) -> Vec<Resultant> {
         let ties = &self.parts.ties;
         let of_tie = |(index, rows): (usize, &Range<usize>)| {
@@ -323,10 +327,12 @@ impl Model {
         (regions.len() > 1).then(|| if region.name().is_empty() { "body".into() } else { region.name().into() })
     }
 
-    /// The reference of the forces in a report, as `per metre, of the whole body, 2 times the meshed part`; empty if they are those of the whole body.
+    /// The reference of the forces in a report, as `per metre, of the whole body, 2 times the meshed part`; empty if
+    /// they are those of the whole body.
     ///
-    /// With planes of symmetry the report gives the forces of the whole, a multiple of the modelled part. Without them the body counts as a
-    /// part if a support lets a flat boundary slide along itself and prescribes nothing else: that may be a plane of symmetry.
+    /// With planes of symmetry the report gives the forces of the whole, a multiple of the modelled part. Without them
+    /// the body counts as a part if a support lets a flat boundary slide along itself and prescribes nothing else: that
+    /// may be a plane of symmetry.
     pub fn basis_of_forces(&self) -> String {
         let unit = match self.units().length.as_str() {
             "m" => "metre",

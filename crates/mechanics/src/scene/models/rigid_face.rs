@@ -1,4 +1,5 @@
-//! Rigid faces of a scene: u = t + omega x (x - c) at the nodes of a boundary; each component of t and omega is prescribed or an unknown.
+//! Rigid faces of a scene: u = t + omega x (x - c) at the nodes of a boundary; each component of t and omega is
+//! prescribed or an unknown.
 
 use std::collections::BTreeMap;
 
@@ -46,11 +47,13 @@ impl Motion {
 }
 
 impl Scene {
-    /// The rigid faces. Other prescribed components of their nodes are removed if the faces move the nodes in the same way.
+    /// The rigid faces. Other prescribed components of their nodes are removed if the faces move the nodes in the same
+    /// way.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a face that is not a boundary, shares nodes with another face or has motions or forces that the model does
-    /// not have, and for a node at which a support or a plane of symmetry contradicts the motion of its face.
+    /// [`Error::Scene`] for a face that is not a boundary, shares nodes with another face or has motions or forces that
+    /// the model does not have, and for a node at which a support or a plane of symmetry contradicts the motion of its
+    /// face.
     pub(crate) fn rigid_faces(&self, body: &ElasticBody, held: &mut Held) -> Result<Vec<RigidFace>, Error> {
         let mut owner: BTreeMap<usize, usize> = BTreeMap::new();
         let mut faces = Vec::with_capacity(self.rigid_faces.len());

@@ -15,24 +15,26 @@ use signorini_qp::SparseMatrix;
 pub struct ContactRow {
     /// Index of the node in the mesh, from 0.
     pub node: usize,
-    /// The nodes that the row couples, each as `(node, share)`, its own first, with dimensionless shares that add up to 1 on its own body
-    /// and to -1 on another body: 1 and -1 for a pair of nodes.
+    /// The nodes that the row couples, each as `(node, share)`, its own first, with dimensionless shares that add up to
+    /// 1 on its own body and to -1 on another body: 1 and -1 for a pair of nodes.
     pub ends: Vec<(usize, f64)>,
     /// The obstacle or other body that the row keeps out, numbered from 0 in the order of the scene.
     pub obstacle: usize,
-    /// Normal of the row: a dimensionless vector [x, y, z] of length 1 into the obstacle or the other body, zero beyond the dimension of
-    /// the model.
+    /// Normal of the row: a dimensionless vector [x, y, z] of length 1 into the obstacle or the other body, zero beyond
+    /// the dimension of the model.
     pub normal: [f64; 3],
-    /// Signed distance of the undeformed node to the obstacle, or to its partner, along `normal`, in length; negative inside.
+    /// Signed distance of the undeformed node to the obstacle, or to its partner, along `normal`, in length; negative
+    /// inside.
     ///
-    /// The gap of the problem is this value minus the prescribed displacements of its nodes along the normal. At mid-side nodes of
-    /// quadratic faces in space, row and gap of the problem are those of a coefficient (see
+    /// The gap of the problem is this value minus the prescribed displacements of its nodes along the normal. At
+    /// mid-side nodes of quadratic faces in space, row and gap of the problem are those of a coefficient (see
     /// [`DofMap::with_contact_faces`](crate::fem::DofMap::with_contact_faces)).
     pub gap: f64,
-    /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or circumference included. On
-    /// quadratic faces in space the shape function is one with a positive integral.
+    /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or
+    /// circumference included. On quadratic faces in space the shape function is one with a positive integral.
     pub tributary_area: f64,
-    /// `true` if the row holds means over its area, between meshes that do not match; `false` if it holds the values at its nodes.
+    /// `true` if the row holds means over its area, between meshes that do not match; `false` if it holds the values at
+    /// its nodes.
     pub is_mean: bool,
     /// Outward unit normal [x, y, z] of the body at the node: the mean over the facets around it; zero if these cancel.
     pub outward: [f64; 3],
@@ -67,8 +69,8 @@ pub(crate) struct Rows {
 
 /// Builds the rows with all obstacles shifted by `scene_gap`.
 ///
-/// If all dofs of a row are supported, no unknown can change it: it is left out if it is satisfied, and stays as an empty row with a
-/// negative gap if it is violated.
+/// If all dofs of a row are supported, no unknown can change it: it is left out if it is satisfied, and stays as an
+/// empty row with a negative gap if it is violated.
 pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     let Found { rows, entries, gap, warnings } = found(parts, &parts.obstacles, scene_gap)?;
     let contact = SparseMatrix::from_triplets(rows.len(), parts.unknowns.count(), &entries)?;

@@ -5,7 +5,8 @@ use crate::fem::body::ElasticBody;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::schema::part::PartBoxSpec;
 
-/// The selected elements of a body: those of a group, those with the centroid in a box, those in both; all if neither is given.
+/// The selected elements of a body: those of a group, those with the centroid in a box, those in both; all if neither
+/// is given.
 pub(crate) struct Selection<'a> {
     pub group: Option<&'a str>,
     pub cuboid: Option<&'a PartBoxSpec>,

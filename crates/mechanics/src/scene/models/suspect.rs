@@ -106,7 +106,8 @@ pub(crate) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
 /// For each obstacle the later ones with the same rows at most of their nodes.
 fn doubled_obstacles(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     let rounding = COORDINATE_ROUNDING * parts.body.mesh().size();
-    // Along the rows of a node, sorted by their gaps, a row is compared with those before it up to the rounding of a gap.
+    // Along the rows of a node, sorted by their gaps, a row is compared with those before it up to the rounding of a
+    // gap.
     let mut sorted: Vec<&ContactRow> = rows.iter().collect();
     sorted.sort_by(|a, b| a.node.cmp(&b.node).then(a.gap.total_cmp(&b.gap)));
     let mut different: Vec<&ContactRow> = Vec::new();

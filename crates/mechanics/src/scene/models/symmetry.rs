@@ -1,4 +1,5 @@
-//! Planes of symmetry of a scene: their positions, their effect on nodes, and the whole body of which the model is a part.
+//! Planes of symmetry of a scene: their positions, their effect on nodes, and the whole body of which the model is a
+//! part.
 
 use super::held::{Component, Held, Holder};
 use crate::error::Error;
@@ -21,8 +22,8 @@ impl Scene {
     /// The planes of symmetry; they lie at flat ends of the body.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a plane that is named twice or does not exist in the model, if the body has no flat end normal to its axis,
-    /// or if both ends are flat and neither lies at zero.
+    /// [`Error::Scene`] for a plane that is named twice or does not exist in the model, if the body has no flat end
+    /// normal to its axis, or if both ends are flat and neither lies at zero.
     pub(crate) fn planes_of_symmetry(&self, body: &ElasticBody) -> Result<Symmetry, Error> {
         let rounding = COORDINATE_ROUNDING * body.mesh().size();
         let mut symmetry = Symmetry { planes: Vec::new(), rounding };
@@ -93,15 +94,15 @@ impl Symmetry {
         2.0_f64.powi(self.planes.len() as i32)
     }
 
-    /// Number of parts that one obstacle with the approach direction `approach` presses: a plane normal to it gives a second obstacle on
-    /// the other side.
+    /// Number of parts that one obstacle with the approach direction `approach` presses: a plane normal to it gives a
+    /// second obstacle on the other side.
     pub fn parts_of_obstacle(&self, approach: [f64; 3]) -> f64 {
         2.0_f64.powi(self.planes.iter().filter(|plane| approach[plane.0] == 0.0).count() as i32)
     }
 
-    /// Number of places at which a contact of nodes at `places` stands in the whole. A contact that reaches a plane goes on in its mirror
-    /// image and is one with it; a plane that it does not reach gives a second contact. Planes for whose axis `across` is `false` do not
-    /// count.
+    /// Number of places at which a contact of nodes at `places` stands in the whole. A contact that reaches a plane
+    /// goes on in its mirror image and is one with it; a plane that it does not reach gives a second contact. Planes
+    /// for whose axis `across` is `false` do not count.
     pub fn contacts(&self, places: &[[f64; 3]], across: impl Fn(usize) -> bool) -> usize {
         let reached = |plane: &(usize, f64)| places.iter().any(|at| self.lies_on(*plane, at));
         self.planes.iter().filter(|plane| across(plane.0) && !reached(plane)).fold(1, |contacts, _| 2 * contacts)
@@ -114,7 +115,8 @@ impl Symmetry {
         if along == normal { normal } else { unit(along) }
     }
 
-    /// The images of the place `other` around the place `at` in the whole: one on each side of a plane on which only `at` lies.
+    /// The images of the place `other` around the place `at` in the whole: one on each side of a plane on which only
+    /// `at` lies.
     pub fn images_around(&self, at: &[f64; 3], other: &[f64; 3]) -> Vec<[f64; 3]> {
         let mut all = vec![*other];
         for &(axis, plane) in self.planes.iter().filter(|plane| self.lies_on(**plane, at)) {
@@ -132,8 +134,8 @@ impl Symmetry {
         all
     }
 
-    /// The moment about an axis through the origin of a force of one obstacle at a place, with its mirror images. Planes normal to the
-    /// `approach` direction make a second obstacle, whose forces do not count.
+    /// The moment about an axis through the origin of a force of one obstacle at a place, with its mirror images.
+    /// Planes normal to the `approach` direction make a second obstacle, whose forces do not count.
     pub fn moment(&self, approach: [f64; 3], at: [f64; 3], force: [f64; 3], axis: usize) -> f64 {
         let mut all = vec![(at, force)];
         for &(normal, plane) in self.planes.iter().filter(|plane| approach[plane.0] == 0.0) {
@@ -161,8 +163,8 @@ impl Symmetry {
         (at[axis] - plane).abs() <= self.rounding
     }
 
-    /// A force at a place with its mirror images, in the planes for whose axis `across` is `true`. A place on a plane is its own image: the
-    /// whole has one node there, with both forces.
+    /// A force at a place with its mirror images, in the planes for whose axis `across` is `true`. A place on a plane
+    /// is its own image: the whole has one node there, with both forces.
     pub fn images(&self, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) -> Vec<([f64; 3], [f64; 3])> {
         let mut all = vec![(at, force)];
         for &(axis, plane) in self.planes.iter().filter(|plane| across(plane.0)) {

@@ -15,7 +15,8 @@ use crate::scene::input::obstacle::SideOrder;
 use crate::scene::input::schema::{EquationSpec, Place, PreloadSpec, Scene, TermSpec, TieSpec, TiedSurfacesSpec};
 use signorini_qp::SparseMatrix;
 
-/// An equation of which less than this share is left by others follows from them: far above the rounding of integrals over facets.
+/// An equation of which less than this share is left by others follows from them: far above the rounding of integrals
+/// over facets.
 const REPEATED: f64 = 1e-9;
 
 /// All ties of a scene in the unknowns.
@@ -56,8 +57,8 @@ impl Scene {
     /// The ties, without equations that supports alone fulfil.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a boundary or a node that does not exist, surfaces that do not face each other, an equation without terms, and
-    /// for one that supports contradict.
+    /// [`Error::Scene`] for a boundary or a node that does not exist, surfaces that do not face each other, an equation
+    /// without terms, and for one that supports contradict.
     pub(crate) fn tied(&self, body: &ElasticBody, dofs: &DofMap, unknowns: &Unknowns) -> Result<Ties, Error> {
         if !self.ties.is_empty() && self.dynamic().is_some() {
             return Err(wrong("ties", "ties are for equilibria only; a motion has only supports"));
@@ -156,7 +157,8 @@ fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMa
 /// The nodes of terms, each with its vector [x, y, z].
 ///
 /// # Errors
-/// [`Error::Scene`] for a list without terms, a term without a node or a coefficient, and for a displacement that the model does not have.
+/// [`Error::Scene`] for a list without terms, a term without a node or a coefficient, and for a displacement that the
+/// model does not have.
 pub(super) fn terms_of(terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<Vec<(usize, [f64; 3])>, Error> {
     let mut found = Vec::with_capacity(terms.len());
     for (index, term) in terms.iter().enumerate() {

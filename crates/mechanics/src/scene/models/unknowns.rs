@@ -1,12 +1,12 @@
-//! The unknowns of a contact problem: the free dofs except those of rigid faces, the motions of rigid faces, and the travels of
-//! obstacles that a force presses.
+//! The unknowns of a contact problem: the free dofs except those of rigid faces, the motions of rigid faces, and the
+//! travels of obstacles that a force presses.
 //!
-//! The nodes of a rigid face follow its motions: u = R y + u_0 with the displacement u of the free dofs and the unknowns y, so that
-//! the stiffness is R' K R and the load R' (f - K u_0).
+//! The nodes of a rigid face follow its motions: u = R y + u_0 with the displacement u of the free dofs and the
+//! unknowns y, so that the stiffness is R' K R and the load R' (f - K u_0).
 //!
-//! A pressed obstacle, and one with a mass in a motion, moves along its approach direction `a` alone, by the travel `d` against it: one more
-//! unknown without stiffness, with the force F as its load. Each of its rows holds `n . u + (n . a) d <= gap`, so that the forces of its rows along `a` add up to
-//! F.
+//! A pressed obstacle, and one with a mass in a motion, moves along its approach direction `a` alone, by the travel `d`
+//! against it: one more unknown without stiffness, with the force F as its load. Each of its rows holds
+//! `n . u + (n . a) d <= gap`, so that the forces of its rows along `a` add up to F.
 
 use std::borrow::Cow;
 
@@ -103,7 +103,8 @@ impl Unknowns {
         self.pressed.iter().position(|&pressed| pressed == obstacle).map(|place| self.of_body() + place)
     }
 
-    /// The values of the motions of a rigid face that are unknowns, among values of the unknowns; `None` if one is prescribed.
+    /// The values of the motions of a rigid face that are unknowns, among values of the unknowns; `None` if one is
+    /// prescribed.
     pub fn motions(&self, values: &[f64], face: usize) -> Vec<Option<f64>> {
         let unknowns = self.on_faces.as_ref().and_then(|on_faces| on_faces.unknowns.get(face));
         unknowns.into_iter().flatten().map(|unknown| unknown.and_then(|unknown| values.get(unknown).copied())).collect()
@@ -134,7 +135,8 @@ impl Unknowns {
             .map_or(Cow::Borrowed(of_body), |on_faces| Cow::Owned(on_faces.rows.mul_transposed(of_body))))
     }
 
-    /// The unknowns of a displacement of the free dofs, next to it on rigid faces, with a value for each obstacle with a travel.
+    /// The unknowns of a displacement of the free dofs, next to it on rigid faces, with a value for each obstacle with
+    /// a travel.
     pub fn of_displacement(&self, mut of_free: Vec<f64>, of_travel: impl Fn(usize) -> f64) -> Vec<f64> {
         if let Some(on_faces) = &self.on_faces {
             of_free.iter_mut().zip(&on_faces.offset).for_each(|(of_free, offset)| *of_free -= offset);
@@ -142,7 +144,8 @@ impl Unknowns {
         self.of_motion(of_free, of_travel)
     }
 
-    /// The unknowns of a motion of the free dofs in which the faces move rigidly, with a value for each obstacle with a travel.
+    /// The unknowns of a motion of the free dofs in which the faces move rigidly, with a value for each obstacle with a
+    /// travel.
     pub fn of_motion(&self, of_free: Vec<f64>, of_travel: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut values = match &self.on_faces {
             Some(on_faces) => on_faces.nearest(&of_free),

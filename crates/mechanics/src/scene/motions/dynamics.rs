@@ -33,13 +33,13 @@ const COURANT: [f64; 2] = [0.5, 0.9];
 
 /// Contact forces are averaged over this share of the time in which a pressure wave crosses the body.
 ///
-/// An impact lasts at least two such times, so this is at most a tenth of an impact: the mean over it reduces the peak of half a sine wave by
-/// 0.4 %. The oscillations of a mesh behind a wave front are shorter the finer the cells are, and disappear from this mean; the largest
-/// force of a single step contains them.
+/// An impact lasts at least two such times, so this is at most a tenth of an impact: the mean over it reduces the peak
+/// of half a sine wave by 0.4 %. The oscillations of a mesh behind a wave front are shorter the finer the cells are,
+/// and disappear from this mean; the largest force of a single step contains them.
 const WINDOW: f64 = 0.2;
 
-/// The peak of the force is a mean over the time of a wave through this many of the smallest cells: it holds one period of the shortest
-/// waves of the mesh, and shrinks with the cells.
+/// The peak of the force is a mean over the time of a wave through this many of the smallest cells: it holds one period
+/// of the shortest waves of the mesh, and shrinks with the cells.
 const PEAK_CELLS: f64 = 4.0;
 
 /// A motion to be computed: the problem, the scheme, its steps, and the times and points of its output.
@@ -55,8 +55,9 @@ pub struct Dynamics {
     pub steps: usize,
     /// Number of states to be written, besides the first.
     pub frames: usize,
-    /// The two times over which contact forces are averaged, in time: `[0]` a fifth of the time in which a pressure wave crosses the body
-    /// along the first contact normal (zero without contact rows), `[1]` that of a wave through four of the smallest cells, for the peak.
+    /// The two times over which contact forces are averaged, in time: `[0]` a fifth of the time in which a pressure
+    /// wave crosses the body along the first contact normal (zero without contact rows), `[1]` that of a wave through
+    /// four of the smallest cells, for the peak.
     pub windows: [f64; 2],
     /// Points with output at every step.
     pub watched: Vec<WatchedPoint>,
@@ -230,7 +231,8 @@ impl Scene {
     }
 }
 
-/// A bound on the largest frequency of a model with its mass in this form. Rigid faces only reduce it: it is that of the free dofs.
+/// A bound on the largest frequency of a model with its mass in this form. Rigid faces only reduce it: it is that of
+/// the free dofs.
 fn largest_frequency(model: &Model, form: MassForm) -> Result<f64, Error> {
     let parts = &model.parts;
     let lumped = model.nodal_mass(MassForm::Lumped)?;
@@ -245,21 +247,21 @@ fn largest_frequency(model: &Model, form: MassForm) -> Result<f64, Error> {
 }
 
 impl Dynamics {
-    /// The resultants of contact forces, support reactions and springs of the last step, obstacle by obstacle, then support by
-    /// support, then spring by spring. `integrator` moves [`problem`](Self::problem), that of `model`.
+    /// The resultants of contact forces, support reactions and springs of the last step, obstacle by obstacle, then
+    /// support by support, then spring by spring. `integrator` moves [`problem`](Self::problem), that of `model`.
     ///
-    /// Both are those of the balance that the scheme solved in the step: at its beginning (`fox-goodwin`), at its middle
-    /// (`midpoint`, `contact-stabilised`), at its end (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the
-    /// end minus `alpha` times that of the beginning (`hht`), the mean of both ends (`central-difference`). The reactions on the
-    /// body are, at supported dofs,
+    /// Both are those of the balance that the scheme solved in the step: at its beginning (`fox-goodwin`), at its
+    /// middle (`midpoint`, `contact-stabilised`), at its end (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha`
+    /// times that of the end minus `alpha` times that of the beginning (`hht`), the mean of both ends
+    /// (`central-difference`). The reactions on the body are, at supported dofs,
     ///
     /// ```text
     /// R = M a + C v + K u - f(t) - B' lambda
     /// ```
     ///
-    /// Schemes of Newmark's kind take the acceleration a at the end of the step, others its mean over the step. So contact
-    /// forces, reactions and loads add up to the change of momentum. Before the first step, and between a resume and the next step, this
-    /// balance does not exist, and the supports are left out.
+    /// Schemes of Newmark's kind take the acceleration a at the end of the step, others its mean over the step. So
+    /// contact forces, reactions and loads add up to the change of momentum. Before the first step, and between a
+    /// resume and the next step, this balance does not exist, and the supports are left out.
     ///
     /// # Errors
     /// [`qp::Error::Length`] for an integrator of another model.
@@ -535,8 +537,8 @@ fn wave_speed(phase: &Phase) -> f64 {
     (phase.law.wave_modulus() / phase.material().density().unwrap_or(f64::NAN)).sqrt()
 }
 
-/// The time in which a pressure wave crosses the body behind the row with the smallest gap, along its normal; for several obstacles the
-/// shortest, for several materials that of the fastest. `None` without contact rows.
+/// The time in which a pressure wave crosses the body behind the row with the smallest gap, along its normal; for
+/// several obstacles the shortest, for several materials that of the fastest. `None` without contact rows.
 fn crossing_time(model: &Model) -> Option<f64> {
     let (body, nodes) = (model.body(), model.mesh().nodes());
     let of_obstacle = (0..model.obstacles().len()).filter_map(|obstacle| {

@@ -40,7 +40,8 @@ impl NodalLoads {
 }
 
 impl Scene {
-    /// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is the JSON path of the motion.
+    /// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is the JSON path of the
+    /// motion.
     ///
     /// # Errors
     /// [`Error::Scene`] for a load that does not exist or has two factors, and for an invalid factor.

@@ -8,14 +8,16 @@ use crate::motion::Balance;
 use crate::scene::Model;
 use signorini_qp::SparseMatrix;
 
-/// Stiffness, mass and loads of the nodes with supported dofs, and the unknowns coupled to them: all data that a step needs.
+/// Stiffness, mass and loads of the nodes with supported dofs, and the unknowns coupled to them: all data that a step
+/// needs.
 ///
 /// Prescribed displacements are constant: supported dofs have neither velocity nor acceleration.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingSupports {
     /// The nodes, increasing; empty if the scene has no support.
     nodes: Vec<usize>,
-    /// The unknowns that share an element or a spring with them, increasing: those whose motion [`reactions`](Self::reactions) needs.
+    /// The unknowns that share an element or a spring with them, increasing: those whose motion
+    /// [`reactions`](Self::reactions) needs.
     pub around: Vec<usize>,
     /// Force on the nodes per displacement of these dofs, transposed: `around.len() x (dim * nodes.len())`.
     stiffness: SparseMatrix,
@@ -33,8 +35,8 @@ pub(crate) struct MovingSupports {
 type Effects = Vec<(usize, usize, f64)>;
 
 impl MovingSupports {
-    /// The data of `model` with a nodal mass (the lower triangle, `n_nodes x n_nodes`), the damping c_m and c_k, and the loads on all
-    /// nodes.
+    /// The data of `model` with a nodal mass (the lower triangle, `n_nodes x n_nodes`), the damping c_m and c_k, and
+    /// the loads on all nodes.
     ///
     /// # Errors
     /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the stiffness overflows.

@@ -1,4 +1,5 @@
-//! The search with an estimate, if no guarantee exists: the recovered stress gives the distance of the mesh from the continuum.
+//! The search with an estimate, if no guarantee exists: the recovered stress gives the distance of the mesh from the
+//! continuum.
 
 use std::sync::Arc;
 
@@ -14,14 +15,15 @@ use crate::scene::{Answer, Model, Scene};
 use crate::study::{ModelSize, Status};
 use signorini_qp::{Settings, solve};
 
-/// The share of the total error allowed for the algebraic error: the errors are nearly orthogonal, so that it adds half a hundredth.
+/// The share of the total error allowed for the algebraic error: the errors are nearly orthogonal, so that it adds half
+/// a hundredth.
 const OF_ALGEBRA: f64 = 0.1;
 
 /// The seconds of a mesh grow with this power of its unknowns.
 const PER_UNKNOWN: f64 = 1.3;
 
-/// Number of times that a marked tetrahedron of the estimate is halved. Measured on a block under a sphere: with 1 more meshes are needed,
-/// and 3 refine too much.
+/// Number of times that a marked tetrahedron of the estimate is halved. Measured on a block under a sphere: with 1 more
+/// meshes are needed, and 3 refine too much.
 const GENERATIONS: usize = 2;
 
 /// Allowed exponents of the error in the cell size: from a strong singularity to smooth quadratic elements.
@@ -34,8 +36,8 @@ impl TotalError {
     }
 }
 
-/// Refines the meshes of a scene until the estimate is small enough, or time, memory or meshes end: tetrahedra where the estimate is
-/// large, other elements everywhere.
+/// Refines the meshes of a scene until the estimate is small enough, or time, memory or meshes end: tetrahedra where
+/// the estimate is large, other elements everywhere.
 ///
 /// # Errors
 /// Those of [`solve`] on the first mesh.
@@ -82,7 +84,8 @@ pub(super) fn total_error(given: &Given, reason: String) -> Result<TotalError, E
     Ok(TotalError { status, ended, seconds: given.seconds(), ..now })
 }
 
-/// The cells of a plane mesh, or in space the facets that may touch, seen along the approach direction; empty for a bar.
+/// The cells of a plane mesh, or in space the facets that may touch, seen along the approach direction; empty for a
+/// bar.
 fn cells(model: &Model) -> Vec<Vec<[f64; 2]>> {
     let (mesh, nodes) = (model.mesh(), model.mesh().nodes());
     if mesh.dimension() == 2 {
@@ -252,8 +255,8 @@ impl Search<'_> {
     }
 }
 
-/// The next number of parts of each edge of the scene's mesh: from the convergence rate of the last two meshes, but at most twice the
-/// present number.
+/// The next number of parts of each edge of the scene's mesh: from the convergence rate of the last two meshes, but at
+/// most twice the present number.
 fn finer(levels: &[Level], times: usize, goal: f64, dimension: i32) -> usize {
     let [.., before, last] = levels else { return 2 * times };
     let size = (last.dofs as f64 / before.dofs as f64).ln() / f64::from(dimension);
@@ -279,9 +282,9 @@ mod tests {
         Level { elements: 0, dofs, total_error, contact_force: 0.0, kind, seconds: 0.0 }
     }
 
-    /// A column of height 2 under its weight, its sides on rollers: u_z is quadratic, and the square of its energy norm is b^2 h^3 A /
-    /// 3M. Without contact the square of the norm of the error is this value minus twice the work of the load, plus the square of the
-    /// norm of the answer.
+    /// A column of height 2 under its weight, its sides on rollers: u_z is quadratic, and the square of its energy norm
+    /// is b^2 h^3 A / 3M. Without contact the square of the norm of the error is this value minus twice the work of the
+    /// load, plus the square of the norm of the answer.
     #[test]
     fn the_second_mesh_of_a_column_of_tetrahedra_is_exact_because_it_is_quadratic() {
         let text = r#"{

@@ -23,7 +23,8 @@ pub struct Examined {
     pub force: f64,
     /// The ends `[low, high]`, in force, between which the exact contact force lies.
     pub force_interval: Option<[f64; 2]>,
-    /// The answer w on the scene's own mesh, in the energy norm, whose unit is the root of force times length: `[an upper bound of |u - w|,
+    /// The answer w on the scene's own mesh, in the energy norm, whose unit is the root of force times length: `[an
+    /// upper bound of |u - w|,
     /// |v - w|, |w|]`.
     pub own: [f64; 3],
     /// |v - w| with the answer w of the scene by finite elements on the last mesh; `None` on the others.

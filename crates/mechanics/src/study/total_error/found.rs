@@ -137,12 +137,12 @@ pub struct TotalError {
     pub model: ModelSize,
     /// Wall-clock time of the whole search, in seconds.
     pub seconds: f64,
-    /// The cells of each mesh, by the places of their corners, in length: in space the facets that may touch, along the approach
-    /// direction; without cells for a bar.
+    /// The cells of each mesh, by the places of their corners, in length: in space the facets that may touch, along the
+    /// approach direction; without cells for a bar.
     #[serde(skip)]
     pub meshes: Vec<Vec<Vec<[f64; 2]>>>,
-    /// The answer of `solve` on the last mesh, or the reason for which there is none. With a guarantee its rows are at nodes, while those
-    /// of the bound hold between them as well.
+    /// The answer of `solve` on the last mesh, or the reason for which there is none. With a guarantee its rows are at
+    /// nodes, while those of the bound hold between them as well.
     #[serde(skip)]
     pub last: Result<Box<(Answer, Solution)>, String>,
 }
@@ -152,7 +152,8 @@ pub struct TotalError {
 pub struct Guarantee {
     /// The body for which the bounds hold.
     pub domain: Domain,
-    /// A bound on the distance between the exact displacement and that of the bound in the norm of energy, the root of force times length.
+    /// A bound on the distance between the exact displacement and that of the bound in the norm of energy, the root of
+    /// force times length.
     pub distance: f64,
     /// |sigma - tau_m| / |v|: tau_m the mean of the stress of v and of the stress in balance.
     pub mean_stress_error: Bound,
@@ -162,7 +163,8 @@ pub struct Guarantee {
     pub contact_force: f64,
     /// The part of the body that carries the force, as "per metre".
     pub force_basis: String,
-    /// The interval `[low, high]` that contains the exact contact force, in force; `None` if obstacles come from several directions.
+    /// The interval `[low, high]` that contains the exact contact force, in force; `None` if obstacles come from
+    /// several directions.
     pub force_interval: Option<[f64; 2]>,
     /// The largest relative defect found by the check of balance, signs and distances: rounding.
     pub defect: f64,

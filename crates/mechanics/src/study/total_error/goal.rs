@@ -76,7 +76,8 @@ impl Answering {
         Answering { refined: MARKED, before: None }
     }
 
-    /// The share to refine at this error: [`MARKED`], or the share that by the response of the last step just meets the goal.
+    /// The share to refine at this error: [`MARKED`], or the share that by the response of the last step just meets the
+    /// goal.
     pub fn share(&mut self, error: f64, goal: f64) -> f64 {
         let removed = |before: f64, after: f64| 1.0 - (after / before).powi(2);
         let wanted = removed(error, AIM * goal);
@@ -146,7 +147,8 @@ mod tests {
     fn the_last_mesh_is_no_finer_than_the_goal_asks() {
         let mut answering = Answering::new();
         assert_eq!(answering.share(0.4, 0.095), MARKED);
-        // Half of the square was refined, and three quarters of the square were removed: to reach 0.1 / 0.95, less than that is needed.
+        // Half of the square was refined, and three quarters of the square were removed: to reach 0.1 / 0.95, less than
+        // that is needed.
         let goal = 0.1 / AIM;
         let share = answering.share(0.2, goal);
         assert_eq!(share, MARKED);

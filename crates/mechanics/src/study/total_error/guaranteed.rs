@@ -1,4 +1,5 @@
-//! The total error with a guaranteed bound: a mesh refined where the elements contribute most to the bound, until it is small enough.
+//! The total error with a guaranteed bound: a mesh refined where the elements contribute most to the bound, until it is
+//! small enough.
 
 use std::sync::Arc;
 
@@ -18,18 +19,19 @@ use crate::study::{AnswerWarning, ModelSize, Status};
 /// The seconds of the next mesh over those of this one, approximately.
 const GROWTH: f64 = 2.2;
 
-/// Times that the simplices at obstacles are refined before a body counts as held by nothing. On a coarse mesh the rows of the stress
-/// problem, whose gaps are means, may stay open where the body touches.
+/// Times that the simplices at obstacles are refined before a body counts as held by nothing. On a coarse mesh the rows
+/// of the stress problem, whose gaps are means, may stay open where the body touches.
 const COARSE: usize = 6;
 
-/// The error of the solver over that of the goal. A hundred times as much would not be seen in the bound, but the interval of the force needs
-/// the distances near the edge of the contact.
+/// The error of the solver over that of the goal. A hundred times as much would not be seen in the bound, but the
+/// interval of the force needs the distances near the edge of the contact.
 const OF_SOLVER: f64 = 1e-4;
 
 /// Refines the mesh of a problem until its total error is small enough, or time or memory end.
 ///
 /// # Errors
-/// Those of [`signorini_qp::solve`] on the first mesh; [`Error::Scene`] for a bound of the force with obstacles from several directions.
+/// Those of [`signorini_qp::solve`] on the first mesh; [`Error::Scene`] for a bound of the force with obstacles from
+/// several directions.
 pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
     if given.goal.force_error.is_some() && !problem.has_one_direction() {
         let message = "the contact force has a guaranteed interval only if all obstacles stand still, in one direction from the body";
@@ -55,8 +57,8 @@ pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: Simpl
     Ok(TotalError { seconds: given.seconds(), ..found })
 }
 
-/// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the bound, which is at most
-/// `distance`, plus the one from that displacement.
+/// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the
+/// bound, which is at most `distance`, plus the one from that displacement.
 fn on_last_mesh(
     given: &Given,
     of_bound: &ContinuumAnswer,
@@ -70,7 +72,8 @@ fn on_last_mesh(
     Ok(((answer, solution), judged))
 }
 
-/// The distance of an answer on the last mesh from the displacement of the bound, and its own length, in the energy norm of the body.
+/// The distance of an answer on the last mesh from the displacement of the bound, and its own length, in the energy
+/// norm of the body.
 ///
 /// # Errors
 /// None for an answer on that mesh.
@@ -188,7 +191,8 @@ impl Search<'_> {
         seen.collect()
     }
 
-    /// The settings with a deadline that leaves the time for the answer on the last mesh, which takes as long as its displacement.
+    /// The settings with a deadline that leaves the time for the answer on the last mesh, which takes as long as its
+    /// displacement.
     fn keeping(&self, displacement_seconds: f64) -> Settings {
         self.settings.clone().watched(&self.settings.watch.keeping(GROWTH * displacement_seconds))
     }

@@ -1,4 +1,5 @@
-//! The mesh refined until the error against the continuum is small enough: guaranteed if the scene has a guarantee, else estimated.
+//! The mesh refined until the error against the continuum is small enough: guaranteed if the scene has a guarantee,
+//! else estimated.
 
 mod estimated;
 mod examined;
@@ -42,20 +43,21 @@ use found::Search;
 /// ```
 ///
 /// # Errors
-/// [`signorini_qp::Error::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in the continuum; those
-/// of [`Scene::build`] and of [`signorini_qp::solve`] on the first mesh.
+/// [`signorini_qp::Error::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in the
+/// continuum; those of [`Scene::build`] and of [`signorini_qp::solve`] on the first mesh.
 pub fn total_error(scene: &Scene, goal: impl Into<TotalErrorGoal>) -> Result<TotalError, Error> {
     let model = Arc::new(scene.build()?);
     TotalError::search(scene, &model, goal.into(), &Settings::default(), &|_| {}).map_err(|error| model.explain(error))
 }
 
 impl TotalError {
-    /// Refines the mesh of a scene, given with its model, until its total error is small enough, or time or memory end. `keep` is called
-    /// with what was found after each mesh but the last.
+    /// Refines the mesh of a scene, given with its model, until its total error is small enough, or time or memory end.
+    /// `keep` is called with what was found after each mesh but the last.
     ///
     /// # Errors
-    /// [`signorini_qp::Error::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in the continuum and
-    /// for an error of the force without a guarantee; those of [`signorini_qp::solve`] on the first mesh.
+    /// [`signorini_qp::Error::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in
+    /// the continuum and for an error of the force without a guarantee; those of [`signorini_qp::solve`] on the first
+    /// mesh.
     pub fn search(
         scene: &Scene,
         model: &Arc<Model>,

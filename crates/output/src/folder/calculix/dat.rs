@@ -69,7 +69,8 @@ impl Table {
     }
 }
 
-/// The tables that the deck asks for and that the file has, in the order of CalculiX: of nodes, of points, of elements, of contacts.
+/// The tables that the deck asks for and that the file has, in the order of CalculiX: of nodes, of points, of elements,
+/// of contacts.
 pub(super) fn tables(content: &Content) -> Result<Vec<Table>, Error> {
     let mut wanted: Vec<&RequestedTable> = content.requests.tables.iter().filter(|table| is_given(table)).collect();
     let rank = |table: &&RequestedTable| match table.label.as_str() {
@@ -164,7 +165,8 @@ impl Content<'_> {
         for row in self.answer.contact_set() {
             let (row, size) = (&model.rows()[row], share * self.answer.multiplier()[row]);
             let obstacle = &model.obstacles()[row.obstacle];
-            // The rows stand on the finer surface, which may be the master: the force on the slave is then the opposite one.
+            // The rows stand on the finer surface, which may be the master: the force on the slave is then the opposite
+            // one.
             let Some((other, _)) = obstacle.other_body() else { continue };
             let is_between = |one: &str, two: &str| is_named(obstacle.boundary(), one) && is_named(other, two);
             let sense = match () {
@@ -227,7 +229,8 @@ fn placed(numbers: &[usize], all: &[(usize, usize)]) -> Vec<(usize, usize)> {
     found
 }
 
-/// Returns `true` for a boundary of the scene that is a surface of the deck: that of a further body begins with the name of the body.
+/// Returns `true` for a boundary of the scene that is a surface of the deck: that of a further body begins with the
+/// name of the body.
 fn is_named(boundary: &str, surface: &str) -> bool {
     let own =
         boundary.len().checked_sub(surface.len()).and_then(|start| Some((boundary.get(..start)?, &boundary[start..])));

@@ -57,7 +57,8 @@ pub(super) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The fields in the order of CalculiX: displacement and stress, contact if there is a row, and the others if the deck asks for them.
+    /// The fields in the order of CalculiX: displacement and stress, contact if there is a row, and the others if the
+    /// deck asks for them.
     ///
     /// # Errors
     /// Those of the recovery of stresses, and of values without room.

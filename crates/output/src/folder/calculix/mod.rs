@@ -1,8 +1,9 @@
-//! The files of an answer to a deck, in the form of CalculiX: `NAME.frd` with fields, `NAME.dat` with tables, `NAME.sta` with the steps.
+//! The files of an answer to a deck, in the form of CalculiX: `NAME.frd` with fields, `NAME.dat` with tables,
+//! `NAME.sta` with the steps.
 //!
 //! # Source
-//! G. Dhondt, *CalculiX CrunchiX User's Manual*, and K. Wittig, *CalculiX GraphiX User's Manual*, version 2.20, chapter "Result Format";
-//! files that CalculiX 2.20 wrote of the same decks.
+//! G. Dhondt, *CalculiX CrunchiX User's Manual*, and K. Wittig, *CalculiX GraphiX User's Manual*, version 2.20, chapter
+//! "Result Format"; files that CalculiX 2.20 wrote of the same decks.
 
 mod content;
 mod dat;
@@ -50,11 +51,13 @@ impl<'a> CalculixFiles<'a> {
         remove_files(folder, &names.each_ref().map(String::as_str))
     }
 
-    /// Writes `NAME.dat`, `NAME.sta` and at last `NAME.frd`, each as a whole or not at all; `stem` is NAME with its folder.
+    /// Writes `NAME.dat`, `NAME.sta` and at last `NAME.frd`, each as a whole or not at all; `stem` is NAME with its
+    /// folder.
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File) if the system refuses, [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) for a
-    /// value that the form cannot hold, and those of the recovery of stresses.
+    /// [`qp::Error::File`](signorini_qp::Error::File) if the system refuses,
+    /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) for a value that the form cannot hold, and those of the
+    /// recovery of stresses.
     pub fn write(&self, stem: &Path) -> Result<(), Error> {
         let mut tables = Vec::with_capacity(self.0.len());
         let mut fields = Vec::with_capacity(self.0.len());
@@ -78,7 +81,8 @@ impl<'a> CalculixFiles<'a> {
         })
     }
 
-    /// What the deck asks for and the files do not have, each with its place if it is known: `PEEQ`, `*SECTION PRINT (line 7)`.
+    /// What the deck asks for and the files do not have, each with its place if it is known: `PEEQ`,
+    /// `*SECTION PRINT (line 7)`.
     pub fn not_given(requests: &Requests) -> Vec<String> {
         let fields = requests.fields.iter().filter(|label| !frd::GIVEN.contains(&label.as_str())).cloned();
         let tables = requests.tables.iter().filter(|table| !dat::is_given(table));

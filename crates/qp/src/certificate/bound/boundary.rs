@@ -1,10 +1,10 @@
 //! The bound if the energy norm knows the contact boundary: the answer is repaired in energy, all rows together.
 //!
-//! The sweep of a force `alpha r + B' x` through the factor differs from that of `alpha r` on the boundary only; r is swept
-//! once. With Z = L_tt^-1 B_t' multipliers eta move the rows by c Z'Z eta. Two repairs are tried:
+//! The sweep of a force `alpha r + B' x` through the factor differs from that of `alpha r` on the boundary only; r is
+//! swept once. With Z = L_tt^-1 B_t' multipliers eta move the rows by c Z'Z eta. Two repairs are tried:
 //!
-//! * v is the equilibrium of the rows that look closed. If all these rows push, v is the exact answer, and the bound is the
-//!   error itself;
+//! * v is the equilibrium of the rows that look closed. If all these rows push, v is the exact answer, and the bound is
+//!   the error itself;
 //! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
 use super::repair::{Repair, Witness};
@@ -27,15 +27,16 @@ const SMALL: f64 = 1e-3;
 const LOST_WITH_SPRINGS: f64 = 1e4;
 
 impl ContactProblem {
-    /// The bound from the repair on the boundary; `None` if there is no boundary, or if the rows that look closed cannot be met
-    /// together.
+    /// The bound from the repair on the boundary; `None` if there is no boundary, or if the rows that look closed
+    /// cannot be met together.
     pub(super) fn bound_on_boundary(&self, norm: &EnergyNorm, answer: &Answer, closed: &[bool]) -> Option<ErrorBound> {
         let own = self.beside_springs(norm, answer);
         let first = FirstRepair::new(self, norm, &own, closed)?;
         if first.is_sharp { Some(first.bound) } else { self.repeated(first, answer).0 }
     }
 
-    /// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not known.
+    /// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not
+    /// known.
     pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
         let answer = self.answer(u, lambda);
         let own = self.beside_springs(norm, &answer);
@@ -53,11 +54,12 @@ impl ContactProblem {
         Answer { residual, violation: answer.violation.clone(), ..*answer }
     }
 
-    /// Repairs that start from the witness of the previous one: the best bound, if there is one, with the answer moved to its witness.
+    /// Repairs that start from the witness of the previous one: the best bound, if there is one, with the answer moved
+    /// to its witness.
     ///
-    /// The rounding of a large shift may be a large distance between rows that follow from others, and forces that cancel each
-    /// other leave what the factor has rounded. A repair from the witness itself has small shifts, forces and changes of force;
-    /// the distance of the answer from there needs no factor.
+    /// The rounding of a large shift may be a large distance between rows that follow from others, and forces that
+    /// cancel each other leave what the factor has rounded. A repair from the witness itself has small shifts, forces
+    /// and changes of force; the distance of the answer from there needs no factor.
     fn repeated(&self, first: FirstRepair, answer: &Answer) -> (Option<ErrorBound>, Moved) {
         let FirstRepair { repair, mut witness, .. } = first;
         let norm = repair.norm;
@@ -66,7 +68,8 @@ impl ContactProblem {
         let mut best: (Option<ErrorBound>, Moved) = (None, next.0.clone());
         for _ in 0..MOST_NEAR {
             let ((moved, multiplier), change) = next;
-            // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no stiffness.
+            // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no
+            // stiffness.
             let rounded = |row: usize| if multiplier[row] != 0.0 { 1.0 } else { 0.0 };
             multipliers.iter_mut().flat_map(|part| part.iter_mut().enumerate()).for_each(|(row, x)| *x *= rounded(row));
             multipliers.push(change);
@@ -123,8 +126,9 @@ impl<'a> FirstRepair<'a> {
     }
 }
 
-/// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, the bound
-/// without the way to the witness, is at most half of the `bound`, or the last one has gained little on the `best` before.
+/// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, the
+/// bound without the way to the witness, is at most half of the `bound`, or the last one has gained little on the
+/// `best` before.
 fn gains_nothing(rest: f64, bound: f64, best: f64) -> bool {
     rest <= FAR * bound || bound >= GAINS * best
 }
@@ -138,8 +142,8 @@ mod tests {
 
     #[test]
     fn an_answer_is_repaired_to_the_equilibrium_of_the_rows_that_look_closed() {
-        // K = (2, -1; -1, 2) under forces of 3 and 1, a wall before the first dof at 1, and one far from the second. At the wall
-        // the second dof is at 1, and a force of 2 is left on the first.
+        // K = (2, -1; -1, 2) under forces of 3 and 1, a wall before the first dof at 1, and one far from the second. At
+        // the wall the second dof is at 1, and a force of 2 is left on the first.
         let (stiffness, walls) = ([(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)], [(0, 0, 1.0), (1, 1, 1.0)]);
         let problem = ContactProblem::of_entries(&stiffness, &[3.0, 1.0], &walls, &[1.0, 9.0]);
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();

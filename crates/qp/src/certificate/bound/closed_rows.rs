@@ -1,8 +1,8 @@
 //! Closed rows together: the shift that puts them at their gaps, and the forces on them that balance the body.
 //!
-//! With the closed rows C, D the diagonal of K and `S = B_C D^-1 B_C'`, the shift of least energy in D that moves the rows by s is
-//! `D^-1 B_C' S^-1 s`, and `S^-1 B_C D^-1 r` are the forces that leave least of a force r. If no two rows share a dof, S is
-//! diagonal and one step of the iteration is exact.
+//! With the closed rows C, D the diagonal of K and `S = B_C D^-1 B_C'`, the shift of least energy in D that moves the
+//! rows by s is `D^-1 B_C' S^-1 s`, and `S^-1 B_C D^-1 r` are the forces that leave least of a force r. If no two rows
+//! share a dof, S is diagonal and one step of the iteration is exact.
 
 use crate::certificate::conditions::Distances;
 use crate::linear::{SparseMatrix, dot, largest, norm};
@@ -30,7 +30,8 @@ const STEPS_FOR_A_ROW: usize = 4;
 /// Steps of a solve that are taken although the time is over: rows with few dofs in common need no more.
 const STEPS_WHEN_OVER: usize = 50;
 
-/// A row is at its gap if its distance is below this share of the terms, far above the rounding of twice the working precision.
+/// A row is at its gap if its distance is below this share of the terms, far above the rounding of twice the working
+/// precision.
 const AT_GAP: f64 = 1e-26;
 
 /// The contact rows, each a column, with the compliance `D^-1` of each dof alone, and the watch over the work on them.
@@ -44,7 +45,8 @@ pub(super) struct WatchedRows<'a> {
 pub(super) struct Placed {
     /// The shift d, rounded.
     pub shift: Vec<f64>,
-    /// An upper bound on the energy norm, in each part, of what is missing in d: its rounding, and the last digits of the way.
+    /// An upper bound on the energy norm, in each part, of what is missing in d: its rounding, and the last digits of
+    /// the way.
     pub rest: Vec<f64>,
     /// The rows that are exactly at their gaps after both.
     pub closed: Vec<bool>,
@@ -91,8 +93,8 @@ impl<'a> ClosedRows<'a> {
     /// `S^-1 b` for scaled rows: by conjugate residuals, which end with the least residual if rows follow from others.
     ///
     /// # Source
-    /// E. Stiefel, *Relaxationsmethoden bester Strategie zur Lösung linearer Gleichungssysteme*, Comment. Math. Helv. 29 (1955)
-    /// 157-179.
+    /// E. Stiefel, *Relaxationsmethoden bester Strategie zur Lösung linearer Gleichungssysteme*, Comment. Math. Helv.
+    /// 29 (1955) 157-179.
     fn solve(&self, b: Vec<f64>) -> Vec<f64> {
         let product = |x: &[f64]| self.along(&self.shift(self.forces(x)));
         let (mut x, mut rest) = (vec![0.0; b.len()], b);
@@ -131,8 +133,9 @@ impl ContactProblem {
         WatchedRows { by_row: self.contact.transposed(), compliance, watch }
     }
 
-    /// A shift of u that puts rows at their gaps, and all others within theirs. Of closed rows that follow from others only the
-    /// tightest stay closed. `None` if rows contradict each other, or if the time ends before long chains are solved.
+    /// A shift of u that puts rows at their gaps, and all others within theirs. Of closed rows that follow from others
+    /// only the tightest stay closed. `None` if rows contradict each other, or if the time ends before long chains are
+    /// solved.
     pub(super) fn placed(&self, watched: &WatchedRows, displacement: &[f64], mut closed: Vec<bool>) -> Option<Placed> {
         let terms = self.contact.mul_abs(displacement);
         for _ in 0..EXCHANGES {

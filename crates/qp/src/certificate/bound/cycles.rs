@@ -6,14 +6,15 @@
 //! |u - u*|_K <= |u - v|_K + |f + B' mu - K v|_{K^-1}
 //! ```
 //!
-//! v is the answer with the rows that press or penetrate moved to their gaps together. For an answer of MPRGP this move is
-//! rounding, because its rows are bounds that it keeps. The dual norm comes from the cycles of the hierarchy.
+//! v is the answer with the rows that press or penetrate moved to their gaps together. For an answer of MPRGP this move
+//! is rounding, because its rows are bounds that it keeps. The dual norm comes from the cycles of the hierarchy.
 //!
-//! A dof without stiffness, such as the travel of an obstacle, has no energy. K is definite on the others, and the inequality holds for
-//! these if the forces on the dof balance: the multipliers of its rows are enlarged by the share that its residual lacks.
+//! A dof without stiffness, such as the travel of an obstacle, has no energy. K is definite on the others, and the
+//! inequality holds for these if the forces on the dof balance: the multipliers of its rows are enlarged by the share
+//! that its residual lacks.
 //!
-//! Parts that no coupling joins are blocks of K, and the inequality holds for each by itself. If a coupling is too weak to join
-//! two parts into one, the parts have no bound of their own.
+//! Parts that no coupling joins are blocks of K, and the inequality holds for each by itself. If a coupling is too weak
+//! to join two parts into one, the parts have no bound of their own.
 
 use super::{Answer, ErrorBound, Measured};
 use crate::certificate::energy_norm::ROUNDED_BOUND;
@@ -23,8 +24,8 @@ use crate::problem::ContactProblem;
 use crate::watch::Watch;
 
 impl ContactProblem {
-    /// An upper bound on `|u - u*|_K`, as far as the cycles find the least eigenvalues; `None` if they find none,
-    /// or if `watch` is over before that. A stiffness that the hierarchy has found singular gets springs on the rows that
+    /// An upper bound on `|u - u*|_K`, as far as the cycles find the least eigenvalues; `None` if they find none, or if
+    /// `watch` is over before that. A stiffness that the hierarchy has found singular gets springs on the rows that
     /// press, but only if no direction of negative energy is found, because springs would hide it.
     pub(in super::super) fn energy_error_bound_by(
         &self,
@@ -90,8 +91,8 @@ impl ContactProblem {
         Some((ErrorBound { whole, of_parts }, measured))
     }
 
-    /// Turns the `residual` of multipliers into that of others which balance every dof without stiffness: those of its rows times one
-    /// factor. Returns `false` if there is no factor that keeps their signs.
+    /// Turns the `residual` of multipliers into that of others which balance every dof without stiffness: those of its
+    /// rows times one factor. Returns `false` if there is no factor that keeps their signs.
     fn balance_travels(&self, by_row: &SparseMatrix, multiplier: &[f64], residual: &mut [f64]) -> bool {
         let travels = self.without_stiffness();
         let mut enlarged = vec![0.0; self.rows()];
@@ -117,8 +118,8 @@ impl ContactProblem {
         true
     }
 
-    /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding and `watch`
-    /// is not over before they end.
+    /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding and
+    /// `watch` is not over before they end.
     fn is_semidefinite_by(&self, multigrid: &Multigrid, watch: &Watch) -> bool {
         match multigrid.preconditioning(&self.stiffness).negative_direction(watch) {
             Some(direction) => self.not_convex_along(&direction).is_none(),
@@ -138,7 +139,8 @@ mod tests {
     /// Rounding of sums over all points.
     const ROUNDING: f64 = 1e-9;
 
-    /// Five points on a square: 4 on the diagonal, -1 to each neighbour, and `more` on the diagonal. The walls are at one.
+    /// Five points on a square: 4 on the diagonal, -1 to each neighbour, and `more` on the diagonal. The walls are at
+    /// one.
     fn square(more: f64, walls: &[(usize, usize, f64)]) -> ContactProblem {
         let dofs = SIDE * SIDE;
         let mut entries: Vec<_> = (0..dofs).map(|own| (own, own, 4.0 + more)).collect();
@@ -165,7 +167,8 @@ mod tests {
 
     #[test]
     fn rows_that_press_over_an_open_gap_are_moved_to_it_at_the_cost_of_their_shifts() {
-        // Five points on a square, a wall before each at 1, and the load under which they press there by 1 - 0.1 K 1 or more.
+        // Five points on a square, a wall before each at 1, and the load under which they press there by 1 - 0.1 K 1 or
+        // more.
         let dofs = SIDE * SIDE;
         let problem = square(0.0, &(0..dofs).map(|dof| (dof, dof, 1.0)).collect::<Vec<_>>());
         let load = problem.stiffness().mul(&vec![0.9; dofs]).iter().map(|force| force + 1.0).collect();
@@ -179,8 +182,8 @@ mod tests {
             problem.energy_error_bound_by(&multigrid, &answer, &Watch::default()).unwrap()
         };
         let (bound, measured) = bound_of(&lambda);
-        // The exact answer is one everywhere: K 1 is one at each edge, so that the error is 0.1 sqrt(1'K 1), once for the answer
-        // and once for its residual.
+        // The exact answer is one everywhere: K 1 is one at each edge, so that the error is 0.1 sqrt(1'K 1), once for
+        // the answer and once for its residual.
         let of_shift = 0.1 * (4.0 * SIDE as f64).sqrt();
         assert!((bound.whole / (2.0 * of_shift) - 1.0).abs() < 1e-5, "{bound:?}");
         assert!(measured.unwrap().of_residual < 1e-10);

@@ -6,17 +6,18 @@
 //! 1/2 |v - u*|_K^2 <= J(v) - D(mu) = 1/2 r' K^-1 r + mu' (B v - g)
 //! ```
 //!
-//! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the rows
-//! that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
+//! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the
+//! rows that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
 //!
-//! If K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which equals the norm of K on shifts
-//! that do not move these rows. With s = g - B u* on C and a = |r| in the dual norm of K_D,
+//! If K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which equals the norm of K on
+//! shifts that do not move these rows. With s = g - B u* on C and a = |r| in the dual norm of K_D,
 //!
 //! ```text
 //! |v - u*|_K^2 + sum |mu_i| s_i <= a |v - u*|_{K_D},     |v - u*|_{K_D}^2 = |v - u*|_K^2 + sum D_i s_i^2
 //! ```
 //!
-//! and therefore `|v - u*|_K <= a` as long as a is below every `|mu_i| / sqrt(D_i)`; [`Springs::hold`] asks for half of that.
+//! and therefore `|v - u*|_K <= a` as long as a is below every `|mu_i| / sqrt(D_i)`; [`Springs::hold`] asks for half of
+//! that.
 
 mod boundary;
 mod closed_rows;
@@ -132,8 +133,8 @@ impl ContactProblem {
         }
     }
 
-    /// Rounding, in twice the working precision, of loads and contact forces that cancel each other: by parts, in the energy
-    /// norm of dofs that stand alone.
+    /// Rounding, in twice the working precision, of loads and contact forces that cancel each other: by parts, in the
+    /// energy norm of dofs that stand alone.
     fn rounding_of_residual(&self, answer: &Answer) -> Vec<f64> {
         let roots = &self.diagonal().roots;
         let contact = self.contact.mul_abs_transposed(answer.multiplier);
@@ -143,8 +144,8 @@ impl ContactProblem {
         })
     }
 
-    /// The energy of displacements that are too small for their squares to be kept in double precision, or beside the forces; 0
-    /// if no displacement is so small.
+    /// The energy of displacements that are too small for their squares to be kept in double precision, or beside the
+    /// forces; 0 if no displacement is so small.
     fn underflow(&self, answer: &Answer) -> f64 {
         let roots = &self.diagonal().roots;
         let contact = self.contact.mul_transposed(answer.multiplier);
@@ -187,9 +188,9 @@ impl ContactProblem {
 const PRESSING: f64 = 1e-8;
 
 impl ContactProblem {
-    /// The energy norm of K; if K is semidefinite, that of K with springs on the rows that press, without the dofs that have
-    /// neither stiffness nor a force. `None` if the springs do not hold the body, or if K has a negative eigenvalue, which
-    /// springs would hide.
+    /// The energy norm of K; if K is semidefinite, that of K with springs on the rows that press, without the dofs that
+    /// have neither stiffness nor a force. `None` if the springs do not hold the body, or if K has a negative
+    /// eigenvalue, which springs would hide.
     ///
     /// # Errors
     /// As [`EnergyNorm::of`].
@@ -269,7 +270,8 @@ impl ContactProblem {
 mod tests {
     use super::*;
 
-    /// Two dofs of stiffness 4 and 16 that nothing couples, and one without stiffness; a row `3 u_0 + 5 u_1 <= 1` and one of zeros.
+    /// Two dofs of stiffness 4 and 16 that nothing couples, and one without stiffness; a row `3 u_0 + 5 u_1 <= 1` and
+    /// one of zeros.
     fn apart() -> ContactProblem {
         let (stiffness, contact) = ([(0, 0, 4.0), (1, 1, 16.0)], [(0, 0, 3.0), (0, 1, 5.0)]);
         ContactProblem::of_entries(&stiffness, &[8.0, 0.0, 7.0], &contact, &[1.0, 1.0])
@@ -317,7 +319,8 @@ mod tests {
 
     #[test]
     fn a_row_on_dofs_without_stiffness_has_a_spring_that_its_force_stretches_by_the_energy_norm() {
-        // A row joins the first dof, of stiffness 4, to the third, of stiffness 0. The second row acts on the third alone.
+        // A row joins the first dof, of stiffness 4, to the third, of stiffness 0. The second row acts on the third
+        // alone.
         let rows = SparseMatrix::from_triplets(2, 3, &[(0, 0, 3.0), (0, 2, 5.0), (1, 2, 1.0)]).unwrap();
         let apart = apart();
         let problem = ContactProblem::new(apart.stiffness, apart.load, rows, vec![9.0, 1.0]).unwrap();

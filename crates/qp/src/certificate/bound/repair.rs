@@ -19,8 +19,8 @@ pub(super) enum Multipliers {
 /// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
-/// The way of rows to their gaps counts three times: as a shift of the answer, as the residual of that shift, and for the
-/// rounding of its length.
+/// The way of rows to their gaps counts three times: as a shift of the answer, as the residual of that shift, and for
+/// the rounding of its length.
 const COUNTS: f64 = 3.0;
 
 /// Number of rows that a sweep of the repair takes at once.
@@ -60,8 +60,8 @@ pub(super) struct Witness {
     pub multiplier: Vec<f64>,
     pub change: Vec<f64>,
     pub closed: Vec<bool>,
-    /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap and leaves the other
-    /// closed rows there.
+    /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap and leaves
+    /// the other closed rows there.
     pub rest: Vec<f64>,
     /// `true` if a row counts as met by rounding: a closed row that follows from others, or an open one at its gap.
     pub is_rounded: bool,
@@ -208,8 +208,8 @@ impl<'a> Repair<'a> {
         if springs.is_some_and(|springs| !springs.hold(closed, |row| force[row], |_| of_left)) {
             return ErrorBound::none();
         }
-        // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each other
-        // leave their rounding.
+        // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each
+        // other leave their rounding.
         let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();
         let of_error = match springs {
             // The energy of the springs is no error, but it adds rounding.
@@ -241,8 +241,8 @@ impl<'a> Repair<'a> {
         (0..self.count()).map(|row| self.cancelled_on(witness, row)).fold(of_residual, |sum, of_row| sum + of_row)
     }
 
-    /// The part of a bound that another repair can make smaller: rounding of forces that cancel each other, and of the way to the
-    /// gaps.
+    /// The part of a bound that another repair can make smaller: rounding of forces that cancel each other, and of the
+    /// way to the gaps.
     pub fn vague(&self, witness: &Witness) -> f64 {
         self.cancelled(witness) + COUNTS * witness.rest.iter().sum::<f64>()
     }
@@ -262,7 +262,8 @@ mod tests {
 
     #[test]
     fn a_spring_behind_its_wall_is_repaired_by_its_penetration() {
-        // K = 4, f = 8, g = 1; u = 3/2 under a force of 3 leaves -1 out of balance. The repair is u = 1 under a force of 4.
+        // K = 4, f = 8, g = 1; u = 3/2 under a force of 3 leaves -1 out of balance. The repair is u = 1 under a force
+        // of 4.
         let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0)], &[1.0]);
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
         let answer = problem.answer(&[1.5], &[-3.0]);

@@ -27,8 +27,8 @@ impl ContactProblem {
         self.contact.mul_abs(&magnitude)
     }
 
-    /// The bound from a displacement with the `closed` rows moved to their gaps, and all others out of their obstacles. Only the closed
-    /// rows keep their forces, or all if none are named.
+    /// The bound from a displacement with the `closed` rows moved to their gaps, and all others out of their obstacles.
+    /// Only the closed rows keep their forces, or all if none are named.
     pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, closed: Option<Vec<bool>>) -> ErrorBound {
         let watched = self.watched_rows(&norm.watch);
         let negligible = self.negligible(answer.displacement);
@@ -154,7 +154,8 @@ mod tests {
 
     #[test]
     fn the_rest_of_the_body_follows_a_force_to_its_equilibrium() {
-        // A chain of four springs between two walls: K = tridiag(-1, 2, -1) has (n - i) / n of a force on the first dof at dof i.
+        // A chain of four springs between two walls: K = tridiag(-1, 2, -1) has (n - i) / n of a force on the first dof
+        // at dof i.
         let entries: Vec<_> = (0..4).map(|i| (i, i, 2.0)).chain((1..4).map(|i| (i, i - 1, -1.0))).collect();
         let problem = ContactProblem::of_entries(&entries, &[0.0; 4], &[], &[]);
         for (last_is_held, exact) in [(false, [0.8, 0.6, 0.4, 0.2]), (true, [0.75, 0.5, 0.25, 0.0])] {

@@ -21,8 +21,8 @@ const DEPENDENT: f64 = 64.0 * f64::EPSILON;
 /// Number of times that a row is made orthogonal to others: the second removes the rounding of the first.
 const TURNS: usize = 2;
 
-/// R from the products of the columns of Z. If some are nearly parallel, such as rows on a part much softer than the others,
-/// the products have lost their difference, and the columns themselves are made orthogonal.
+/// R from the products of the columns of Z. If some are nearly parallel, such as rows on a part much softer than the
+/// others, the products have lost their difference, and the columns themselves are made orthogonal.
 ///
 /// `product` gives the product of two of the columns. `None` if it `is_over` before R is found.
 pub(super) fn triangle_of(
@@ -76,8 +76,9 @@ fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Triangl
 }
 
 impl Triangle {
-    /// Takes in the next column of Z, which has these entries in R. `diagonal` gives its diagonal entry, or `None` if it follows
-    /// from the columns of R, from the lengths of all terms, which cancel in the remainder. Returns `true` if R has it.
+    /// Takes in the next column of Z, which has these entries in R. `diagonal` gives its diagonal entry, or `None` if
+    /// it follows from the columns of R, from the lengths of all terms, which cancel in the remainder. Returns `true`
+    /// if R has it.
     fn take(&mut self, entries: Vec<f64>, lengths: &[f64], diagonal: impl Fn(f64) -> Option<f64>) -> bool {
         let place = self.weights.len();
         let weights = self.r.solve_upper(entries.clone());

@@ -6,7 +6,8 @@ use super::triangle::{Triangle, triangle_of};
 /// Number of corrections of the set of rows that look closed; after these, rows are only added.
 const EXCHANGES: usize = 10;
 
-/// Corrections of the multipliers that put rows at their gaps; each gains as many digits as the dependence of rows leaves.
+/// Corrections of the multipliers that put rows at their gaps; each gains as many digits as the dependence of rows
+/// leaves.
 const CORRECTIONS: usize = 4;
 
 /// After a fit, rows that follow from others are off by their own rounding and by that of their distances.
@@ -115,13 +116,13 @@ impl Repair<'_> {
         Witness { error, left, multiplier, change, closed, rest: Vec::new(), is_rounded: false }
     }
 
-    /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to its gap
-    /// and does not move the others of the set; zero for rows that follow from others.
+    /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to
+    /// its gap and does not move the others of the set; zero for rows that follow from others.
     ///
-    /// The shifts of all rows together put every row at its gap, so the sum of their lengths bounds the way to such a point,
-    /// for all signs of the rounding errors in the distances. The part of a row that is orthogonal to the rows before it is at
-    /// least 64 units in the last place if the triangle keeps the row: rounding of its column changes the lengths by a small
-    /// share.
+    /// The shifts of all rows together put every row at its gap, so the sum of their lengths bounds the way to such a
+    /// point, for all signs of the rounding errors in the distances. The part of a row that is orthogonal to the rows
+    /// before it is at least 64 units in the last place if the triangle keeps the row: rounding of its column changes
+    /// the lengths by a small share.
     fn rest(&self, set: &[usize], fitted: &Fitted) -> Vec<f64> {
         let mut rest = vec![0.0; self.count()];
         for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_inverse()) {
@@ -162,7 +163,8 @@ impl Repair<'_> {
             let mut added = vec![0.0; self.count()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
-            // The shifts are those of the forces, except for the rounding of each step, even if the steps cancel each other.
+            // The shifts are those of the forces, except for the rounding of each step, even if the steps cancel each
+            // other.
             steps.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step.abs());
             for ((sum, most), step) in moved.iter_mut().zip(&mut magnitude).zip(self.backward(self.spread(&added))) {
                 *sum += step;
@@ -172,7 +174,8 @@ impl Repair<'_> {
     }
 }
 
-/// Rows after a fit: the change of each multiplier, the distances and their rounding, and the triangle of the rows of the set.
+/// Rows after a fit: the change of each multiplier, the distances and their rounding, and the triangle of the rows of
+/// the set.
 struct Fitted {
     change: Vec<f64>,
     /// The force that puts them there, which includes the change of the multipliers and the magnitudes of its steps.

@@ -11,15 +11,17 @@ use super::super::{Analysis, FactorError, SymmetricMatrix, call, largest, par};
 use super::random::random;
 use crate::error::Error;
 
-/// A solution with the factor leaves at most this share of its load, if the pivots are those of the matrix and not of rounding.
+/// A solution with the factor leaves at most this share of its load, if the pivots are those of the matrix and not of
+/// rounding.
 const ACCURATE: f64 = 1e-6;
 
-/// Number of negative eigenvalues of `matrix`, whose pattern `analysis` has in block columns; `None` if rounding hides it.
+/// Number of negative eigenvalues of `matrix`, whose pattern `analysis` has in block columns; `None` if rounding hides
+/// it.
 ///
-/// By Sylvester's law of inertia a factorisation L D L' has as many negative eigenvalues in D. Nothing is exchanged, so that a small pivot
-/// may spoil it. The pivots are exactly those of a matrix A + E. A random load b excites the eigenvector of A + E that is nearest to
-/// singular by the inverse of its eigenvalue; if the solution leaves little of b, E is small beside that eigenvalue, and no sign is that of
-/// rounding.
+/// By Sylvester's law of inertia a factorisation L D L' has as many negative eigenvalues in D. Nothing is exchanged, so
+/// that a small pivot may spoil it. The pivots are exactly those of a matrix A + E. A random load b excites the
+/// eigenvector of A + E that is nearest to singular by the inverse of its eigenvalue; if the solution leaves little of
+/// b, E is small beside that eigenvalue, and no sign is that of rounding.
 ///
 /// # Errors
 /// [`Error::Numerical`] for lack of memory.

@@ -1,4 +1,5 @@
-//! The largest eigenvalues of a symmetric positive semidefinite operator, in a block Krylov space that is extended until they converge.
+//! The largest eigenvalues of a symmetric positive semidefinite operator, in a block Krylov space that is extended
+//! until they converge.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
@@ -10,13 +11,15 @@ use crate::error::Error;
 /// Number of columns that are added at once: eigenvalues of up to this multiplicity converge together.
 const WIDTH: usize = 8;
 
-/// A pair has converged if its residual is at most this share of its eigenvalue: the eigenvalue then has about twice as many digits.
+/// A pair has converged if its residual is at most this share of its eigenvalue: the eigenvalue then has about twice as
+/// many digits.
 const CONVERGED: f64 = 1e-8;
 
 /// Residuals below this share of the largest eigenvalue are rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// A column of which less than this share of the largest eigenvalue is left lies in the space: another direction takes its place.
+/// A column of which less than this share of the largest eigenvalue is left lies in the space: another direction takes
+/// its place.
 const DEPENDENT: f64 = 1e-13;
 
 /// The space is extended by at least this share of itself between two looks at its pairs.
@@ -25,7 +28,8 @@ const BETWEEN: usize = 8;
 /// A column that loses less than this share of its length to the others is orthogonal to them after one pass.
 const ORTHOGONAL: f64 = 0.5;
 
-/// A column that keeps less than this share of its length beside the others of its block has lost digits towards the basis.
+/// A column that keeps less than this share of its length beside the others of its block has lost digits towards the
+/// basis.
 const SMALL: f64 = 1e-2;
 
 /// Passes after which a column is orthogonal to the working precision, even if the first leaves little of it.
@@ -142,8 +146,8 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
         shares
     }
 
-    /// `count` orthonormal columns that span those given, and the coordinates of each given column in them. A column that lies in the span
-    /// of those before it is replaced by a random one.
+    /// `count` orthonormal columns that span those given, and the coordinates of each given column in them. A column
+    /// that lies in the span of those before it is replaced by a random one.
     fn orthonormal(&mut self, mut columns: Vec<f64>, count: usize, scale: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
         let (mut found, mut coordinates): (Vec<f64>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
         let mut missing = 0;

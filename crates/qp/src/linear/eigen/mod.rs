@@ -1,4 +1,5 @@
-//! Parts of the search for eigenvalues: a Krylov space, sweeps of several columns, and the count of negative eigenvalues.
+//! Parts of the search for eigenvalues: a Krylov space, sweeps of several columns, and the count of negative
+//! eigenvalues.
 
 mod inertia;
 mod krylov;

@@ -22,9 +22,9 @@ impl Graph {
 
 /// The aggregate of each node, and their number.
 ///
-/// Two nodes are strongly connected if `|A_ij|^2 > threshold^2 |A_ii| |A_jj|` in the Frobenius norm. A node and its strong
-/// neighbours become an aggregate if none of these nodes is in one yet; each remaining node joins the aggregate to which it is
-/// connected most strongly.
+/// Two nodes are strongly connected if `|A_ij|^2 > threshold^2 |A_ii| |A_jj|` in the Frobenius norm. A node and its
+/// strong neighbours become an aggregate if none of these nodes is in one yet; each remaining node joins the aggregate
+/// to which it is connected most strongly.
 ///
 /// # Source
 /// P. Vaněk, J. Mandel, M. Brezina, *Algebraic multigrid by smoothed aggregation for second and fourth order elliptic

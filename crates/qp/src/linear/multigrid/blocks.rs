@@ -29,11 +29,13 @@ pub struct BlockMatrix<T> {
     pub columns: usize,
     /// Start of each block row in `indices`, length block rows + 1; if rows are shared, only the differences count.
     pub starts: Vec<usize>,
-    /// Block column of each block, increasing within a row; if rows are shared, how far it lies after its row, modulo 2^32.
+    /// Block column of each block, increasing within a row; if rows are shared, how far it lies after its row, modulo
+    /// 2^32.
     pub indices: Vec<u32>,
     /// Values, `height * width` for each block.
     pub values: Vec<T>,
-    /// The first block of each row among `indices`, if rows are shared: several rows then have the same. Empty otherwise.
+    /// The first block of each row among `indices`, if rows are shared: several rows then have the same. Empty
+    /// otherwise.
     pub shared_rows: Vec<u32>,
     /// `true` if only the blocks up to the diagonal of a symmetric matrix are stored: see [`BlockMatrix::keep_half`].
     pub is_half: bool,
@@ -311,7 +313,8 @@ impl<T: Real> BlockMatrix<T> {
         BlockMatrix { starts, indices, values, ..Self::empty(0, self.rows(), (self.width, self.height)) }
     }
 
-    /// `y = A' x`. The sums run over parts of the rows that depend on the matrix alone, so that the result does not depend on the threads.
+    /// `y = A' x`. The sums run over parts of the rows that depend on the matrix alone, so that the result does not
+    /// depend on the threads.
     pub fn transposed_mul(&self, x: &[T], threads: usize, spare: &Spare<T>) -> Vec<T> {
         let parts = SharedRows { starts: &self.starts, threads: MOST_PARTS }.runs();
         let of_part = |rows: Range<usize>| {
@@ -335,8 +338,8 @@ impl<T: Real> BlockMatrix<T> {
         self.transposed_rows(other.filled_rows()).product(other, threads)
     }
 
-    /// The product P' A P of this matrix P and a symmetric one, `A = H + H'` with half of the diagonal blocks in H: `P' H P` and its
-    /// transposed. By slabs of rows, so that H P is never there as a whole.
+    /// The product P' A P of this matrix P and a symmetric one, `A = H + H'` with half of the diagonal blocks in H:
+    /// `P' H P` and its transposed. By slabs of rows, so that H P is never there as a whole.
     pub fn galerkin_product(&self, matrix: &Self, threads: usize) -> Self {
         let slabs = SharedRows { starts: &matrix.starts, threads: MOST_SLABS }.runs_of(SLAB);
         let mut sum: Option<Self> = None;

@@ -1,4 +1,5 @@
-//! The smoother: Chebyshev polynomials of the fourth kind in D^-1 A, D the diagonal blocks, or D^-1 the sum of the inverses on patches.
+//! The smoother: Chebyshev polynomials of the fourth kind in D^-1 A, D the diagonal blocks, or D^-1 the sum of the
+//! inverses on patches.
 
 use std::sync::Arc;
 
@@ -66,8 +67,8 @@ impl<T: Real> Chebyshev<T> {
         self.patches.is_some()
     }
 
-    /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet: that saves a
-    /// product if it is not used any more.
+    /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet:
+    /// that saves a product if it is not used any more.
     pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T]) -> Vec<T> {
         let mut step = operator.spare.zeros(x.len());
         for k in 1..=self.degree {
@@ -94,7 +95,8 @@ impl<T: Real> Chebyshev<T> {
         operator.project(result);
     }
 
-    /// The same smoother for the matrix minus `change`; blocks and patches in which `change` has no diagonal block are kept.
+    /// The same smoother for the matrix minus `change`; blocks and patches in which `change` has no diagonal block are
+    /// kept.
     pub fn changed(&self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Self {
         let largest = CHANGED * self.largest;
         if let Some(patches) = &self.patches {

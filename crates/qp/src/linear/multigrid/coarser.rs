@@ -1,7 +1,7 @@
 //! The second level of a hierarchy as a separate problem, for unknowns that have bounds.
 //!
-//! The weights of the bounds and the share of closed parents were chosen by measurement on obstacle problems: unweighted means
-//! cost a few cycles more, and every share from 0.5 to 0.99 works.
+//! The weights of the bounds and the share of closed parents were chosen by measurement on obstacle problems:
+//! unweighted means cost a few cycles more, and every share from 0.5 to 0.99 works.
 
 use super::coarsest::lower_part;
 use super::hierarchy::{Hierarchy, Level};
@@ -9,14 +9,15 @@ use super::{Levels, Multigrid};
 use crate::linear::factor::Real;
 use crate::linear::{Spare, SymmetricMatrix, ldexp};
 
-/// An unknown starts at its bound if more than this share of the unknowns that it is interpolated from is at their bounds.
+/// An unknown starts at its bound if more than this share of the unknowns that it is interpolated from is at their
+/// bounds.
 const CLOSED_SHARE: f64 = 0.7;
 
 /// Lower and upper bound of an unknown, infinite without a bound.
 pub type Interval = [f64; 2];
 
-/// The second level of a hierarchy with one unknown for each node: matrix, hierarchy, and the transfer from and to the first, by the
-/// first prolongator P.
+/// The second level of a hierarchy with one unknown for each node: matrix, hierarchy, and the transfer from and to the
+/// first, by the first prolongator P.
 #[derive(Debug)]
 pub struct Coarser {
     /// The Galerkin matrix.
@@ -36,8 +37,8 @@ pub struct Coarser {
 }
 
 impl Multigrid {
-    /// The second level as a separate problem; `None` if no second level exists, or if its unknowns are no nodal values, such
-    /// as the rigid-body modes of a body's aggregates.
+    /// The second level as a separate problem; `None` if no second level exists, or if its unknowns are no nodal
+    /// values, such as the rigid-body modes of a body's aggregates.
     pub fn coarser(&self) -> Option<Coarser> {
         match &self.levels {
             Levels::Single(hierarchy) => coarser_of(hierarchy, Levels::Single),
@@ -77,8 +78,8 @@ impl Coarser {
         coarse
     }
 
-    /// The bounds of the second level: for each unknown the mean of the bounds of the first-level unknowns that it reaches,
-    /// weighted by the fourth power of P, relative to the near-null vector.
+    /// The bounds of the second level: for each unknown the mean of the bounds of the first-level unknowns that it
+    /// reaches, weighted by the fourth power of P, relative to the near-null vector.
     pub fn bounds(&self, bounds: &[Interval]) -> Vec<Interval> {
         let count = self.near_null.len();
         let (mut sums, mut bounded, mut all) = (vec![[0.0; 2]; count], vec![[0.0; 2]; count], vec![0.0; count]);

@@ -8,8 +8,8 @@ use crate::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, Symmetri
 /// diagonal of the matrix is of order one.
 const LEAST_PIVOT: f64 = 1000.0;
 
-/// A diagonal entry reduced below this many units in the last place has lost its digits, because the face reduces it on this
-/// level and on those above.
+/// A diagonal entry reduced below this many units in the last place has lost its digits, because the face reduces it on
+/// this level and on those above.
 pub(super) const LOST_DIAGONAL: f64 = 3000.0;
 
 /// Shift that then holds the body, on a diagonal of order one: about as stiff as a coarse cell, as its contact will be.
@@ -45,8 +45,8 @@ impl Coarsest {
         }
     }
 
-    /// Factorises a coarsest `matrix` minus `change`, the reduction by a face. Unknowns with a diagonal entry that is only
-    /// rounding do not move.
+    /// Factorises a coarsest `matrix` minus `change`, the reduction by a face. Unknowns with a diagonal entry that is
+    /// only rounding do not move.
     ///
     /// # Errors
     /// As [`Coarsest::of`].

@@ -1,7 +1,8 @@
 //! The degree of a smoother on patches, from the measured convergence of the cycle.
 //!
-//! The stiffer the volume is, the slower are the motions without change of volume that no aggregate can make. The slowest parts of an error
-//! are left after a few cycles: what the next one takes of their energy says how much more smoothing a cycle needs.
+//! The stiffer the volume is, the slower are the motions without change of volume that no aggregate can make. The
+//! slowest parts of an error are left after a few cycles: what the next one takes of their energy says how much more
+//! smoothing a cycle needs.
 
 use std::sync::Arc;
 
@@ -13,11 +14,13 @@ use crate::linear::power_iteration::power_iteration;
 /// Cycles of a quick measurement, and of the one that gives the degree.
 const CYCLES: (usize, usize) = (5, 10);
 
-/// A cycle is good enough if the last one of a quick measurement takes this share of the energy: 0.75 at nu = 0.3, below 0.2 at nu = 0.499.
+/// A cycle is good enough if the last one of a quick measurement takes this share of the energy: 0.75 at nu = 0.3,
+/// below 0.2 at nu = 0.499.
 const GOOD_SHARE: f64 = 0.4;
 
-/// The degree for the share s of the energy that the last cycle takes, at degree 3, is this number over s^(3/2). Measured: s is about 0.09 at
-/// nu = 0.499, where half the degree takes half as many cycles more in about the same time, and 0.03 at nu = 0.4999.
+/// The degree for the share s of the energy that the last cycle takes, at degree 3, is this number over s^(3/2).
+/// Measured: s is about 0.09 at nu = 0.499, where half the degree takes half as many cycles more in about the same
+/// time, and 0.03 at nu = 0.4999.
 const DEGREE: f64 = 0.35;
 
 /// The largest degree: beyond it a cycle costs more than it saves.

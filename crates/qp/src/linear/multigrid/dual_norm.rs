@@ -6,9 +6,10 @@
 //! r' A^-1 r = z' (r + s) + s' A^-1 s,     s' A^-1 s <= s' M s / mu,     mu <= the least eigenvalue of M A
 //! ```
 //!
-//! with the cycle M of the hierarchy. A few steps of conjugate gradients give z: the first part is then most of the sum. Both
-//! lines are exact. It is measured, not proven, that mu is below the least eigenvalue: the Lanczos coefficients of the same
-//! conjugate gradients give the least Ritz value, which approaches the eigenvalue from above; mu is a share of that value.
+//! with the cycle M of the hierarchy. A few steps of conjugate gradients give z: the first part is then most of the
+//! sum. Both lines are exact. It is measured, not proven, that mu is below the least eigenvalue: the Lanczos
+//! coefficients of the same conjugate gradients give the least Ritz value, which approaches the eigenvalue from above;
+//! mu is a share of that value.
 //!
 //! # Source
 //! G. H. Golub, G. Meurant, *Matrices, Moments and Quadrature with Applications*, Princeton (2010), chapter 12;
@@ -48,15 +49,16 @@ pub struct DualNorm {
 }
 
 impl Preconditioned<'_> {
-    /// Bounds `sqrt(r' A^-1 r)` of a force r for a definite A, by conjugate gradients; `None` if the cycles do not settle, or if `watch`
-    /// is over before they do.
+    /// Bounds `sqrt(r' A^-1 r)` of a force r for a definite A, by conjugate gradients; `None` if the cycles do not
+    /// settle, or if `watch` is over before they do.
     pub fn dual_norm(&self, force: &[f64], watch: &Watch) -> Option<DualNorm> {
         self.dual_norms(force, &[], 1, watch)?.pop()
     }
 
     /// The same for the force on each of the blocks of A.
     ///
-    /// One cycle serves all blocks, but each block has its own conjugate gradients. So a soft block is not lost beside a stiff one.
+    /// One cycle serves all blocks, but each block has its own conjugate gradients. So a soft block is not lost beside
+    /// a stiff one.
     pub fn dual_norms(
         &self,
         force: &[f64],
@@ -145,8 +147,8 @@ impl Lanczos {
     }
 }
 
-/// The least eigenvalue of the Lanczos matrix of conjugate gradients with these step lengths and these coefficients of the
-/// previous directions, by counting signs.
+/// The least eigenvalue of the Lanczos matrix of conjugate gradients with these step lengths and these coefficients of
+/// the previous directions, by counting signs.
 fn least_eigenvalue(lengths: &[f64], shares: &[f64]) -> f64 {
     let entries = || {
         (0..lengths.len()).map(|k| {

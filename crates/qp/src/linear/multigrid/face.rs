@@ -1,21 +1,21 @@
 //! The hierarchy in a face: the subspace in which single displacements are held, such as those of closed contact rows.
 //!
-//! With a projection N that takes what is held away, `E = I - N`, the first prolongator becomes E P. Where the held displacements are
-//! orthonormal N is a symmetric matrix Q; where a pivot gives way instead, `N = sum of d r'` with the ways d and the rows r, `r'd = 1`, and
-//! the pivot follows the other dofs of its row. Every coarse matrix A changes by a matrix C, only near the held dofs: nothing else is built
-//! again.
+//! With a projection N that takes what is held away, `E = I - N`, the first prolongator becomes E P. Where the held
+//! displacements are orthonormal N is a symmetric matrix Q; where a pivot gives way instead, `N = sum of d r'` with the
+//! ways d and the rows r, `r'd = 1`, and the pivot follows the other dofs of its row. Every coarse matrix A changes by
+//! a matrix C, only near the held dofs: nothing else is built again.
 //!
 //! ```text
 //! A_1 - C_1 = P' E' A E P,     C_1 = S + S' - P' (N' A N) P  with S = P' (N' A) P,     C_k+1 = P' C_k P
 //! ```
 //!
-//! From the face of N to that of N + D, C_1 grows by `S + S' - P' (D' A D) P` with `S = P' D' A (I - N) P`: the work depends on
-//! the change, not on the number of held displacements.
+//! From the face of N to that of N + D, C_1 grows by `S + S' - P' (D' A D) P` with `S = P' D' A (I - N) P`: the work
+//! depends on the change, not on the number of held displacements.
 //!
 //! # Source
 //! R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994) 167-184:
-//! truncated basis functions. B. I. Wohlmuth, R. H. Krause, *Monotone multigrid methods on nonmatching grids for nonlinear multibody
-//! contact problems*, SIAM J. Sci. Comput. 25 (2003) 324-347: pivots that follow the other body.
+//! truncated basis functions. B. I. Wohlmuth, R. H. Krause, *Monotone multigrid methods on nonmatching grids for
+//! nonlinear multibody contact problems*, SIAM J. Sci. Comput. 25 (2003) 324-347: pivots that follow the other body.
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;

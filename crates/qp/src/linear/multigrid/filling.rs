@@ -36,8 +36,8 @@ struct Rows {
 }
 
 impl Filling<'_> {
-    /// The matrix in blocks, where places that nothing touches get the diagonal entry one, and, if nearly all rows repeat, the matrix as it
-    /// is, without these entries and not rounded.
+    /// The matrix in blocks, where places that nothing touches get the diagonal entry one, and, if nearly all rows
+    /// repeat, the matrix as it is, without these entries and not rounded.
     pub fn blocks<T: Real>(&self, threads: usize) -> (BlockMatrix<T>, Option<BlockMatrix<f64>>) {
         let (groups, block) = (self.graph.count(), self.size * self.size);
         let mut matrix = RowByRow::new(self.size, self.exponents.len());
@@ -69,7 +69,8 @@ impl Filling<'_> {
         (matrix.finished(), exact.map(RowByRow::finished).filter(|exact| !exact.shared_rows.is_empty()))
     }
 
-    /// The rows of the nodes of some groups. `next` is for each column, how far its next entry is thought to lie from its first.
+    /// The rows of the nodes of some groups. `next` is for each column, how far its next entry is thought to lie from
+    /// its first.
     fn rows(&self, groups: Range<usize>, next: &mut [u32]) -> Rows {
         let (size, mut met, mut rows) = (self.size, Vec::new(), Rows::default());
         for group in groups.start as u32..groups.end as u32 {

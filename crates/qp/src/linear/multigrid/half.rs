@@ -1,4 +1,5 @@
-//! Symmetric matrices of which the blocks up to the diagonal alone are stored: half the memory, and half of what a product reads.
+//! Symmetric matrices of which the blocks up to the diagonal alone are stored: half the memory, and half of what a
+//! product reads.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -37,7 +38,8 @@ impl<T: Real> BlockMatrix<T> {
         }
         let mut is_asked = vec![false; self.rows()];
         rows.for_each(|row| is_asked[row] = true);
-        // The blocks of the rows, and where they are stored; those after the diagonal follow those up to it, in increasing columns.
+        // The blocks of the rows, and where they are stored; those after the diagonal follow those up to it, in
+        // increasing columns.
         let mut found: Vec<(u32, u32, usize)> = Vec::new();
         for row in 0..self.rows() {
             for place in self.starts[row]..self.starts[row + 1] {
@@ -66,8 +68,8 @@ impl<T: Real> BlockMatrix<T> {
     }
 }
 
-/// `A x`, as `product` says, for a matrix of which half is stored. The sums run over parts of the rows that depend on the matrix alone, so
-/// that the result does not depend on the threads.
+/// `A x`, as `product` says, for a matrix of which half is stored. The sums run over parts of the rows that depend on
+/// the matrix alone, so that the result does not depend on the threads.
 pub fn multiply<T: Real>(
     matrix: &BlockMatrix<T>,
     x: &[T],

@@ -7,8 +7,8 @@ use crate::linear::factor::Real;
 /// A vector of few dofs: dofs and coefficients, in the units of the nodes.
 pub type Direction = Vec<(usize, f64)>;
 
-/// A held displacement: `row'v = 0`, because v gives way along `way`, with `row'way = 1`. The row has nothing along the ways of the other
-/// holds of a face. For an orthonormal system both are the same.
+/// A held displacement: `row'v = 0`, because v gives way along `way`, with `row'way = 1`. The row has nothing along the
+/// ways of the other holds of a face. For an orthonormal system both are the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hold {
     /// The displacement that gives way, a unit vector.
@@ -81,7 +81,8 @@ impl<T: Real> Held<T> {
     }
 }
 
-/// W, the sum of `d d'` over the ways d of `holds`: what is held has a stiffness of its own in `E' A E + W`, which is definite.
+/// W, the sum of `d d'` over the ways d of `holds`: what is held has a stiffness of its own in `E' A E + W`, which is
+/// definite.
 pub fn ways<T: Real>(nodes: &Nodes, holds: &[Hold]) -> BlockMatrix<T> {
     sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.way)))
 }

@@ -25,19 +25,20 @@ const LEAST_THRESHOLD: f64 = 1e-3;
 /// Degree of the smoothing polynomial, before and after the coarse correction.
 const DEGREE: usize = 3;
 
-/// The diagonal blocks smooth too slowly beyond this largest eigenvalue of D^-1 A. At nu = 0.3 it is 3 for linear elements and for
-/// tetrahedra of ten nodes, and 5.4 for bricks of twenty; near nu = 0.5 it is 4.6 for linear elements, 5 to 6 for tetrahedra of ten nodes,
-/// and 8.5 for bricks of twenty.
+/// The diagonal blocks smooth too slowly beyond this largest eigenvalue of D^-1 A. At nu = 0.3 it is 3 for linear
+/// elements and for tetrahedra of ten nodes, and 5.4 for bricks of twenty; near nu = 0.5 it is 4.6 for linear elements,
+/// 5 to 6 for tetrahedra of ten nodes, and 8.5 for bricks of twenty.
 const SLOW: f64 = 4.8;
 
-/// Steps of a smoother on patches that smooth the prolongator if one is too few. Measured at nu = 0.4999: three take a fifth more cycles,
-/// eight a tenth fewer, with twice the memory.
+/// Steps of a smoother on patches that smooth the prolongator if one is too few. Measured at nu = 0.4999: three take a
+/// fifth more cycles, eight a tenth fewer, with twice the memory.
 const MOST_STEPS: usize = 4;
 
 /// Largest number of unknowns of a patch.
 const MOST_IN_PATCH: usize = 120;
 
-/// Largest number of patches as a share of the nodes: if there are more, most nodes are alone, and patches gain nothing.
+/// Largest number of patches as a share of the nodes: if there are more, most nodes are alone, and patches gain
+/// nothing.
 const PATCHES: f64 = 0.5;
 
 /// Largest number of unknowns that are factorised directly.
@@ -72,8 +73,8 @@ pub(super) struct Level<T> {
     pub near_null: Candidates,
 }
 
-/// The aggregate of each node and the number of aggregates; `None` if they are too many. The threshold falls until they are
-/// few.
+/// The aggregate of each node and the number of aggregates; `None` if they are too many. The threshold falls until they
+/// are few.
 fn gathered<T: Real>(blocks: &BlockMatrix<T>, count: usize, threshold: &mut f64) -> Option<(Vec<u32>, usize)> {
     let most = (LEAST_COARSENING * (blocks.rows() * blocks.height) as f64) as usize;
     loop {
@@ -169,8 +170,8 @@ impl<T: Real> Hierarchy<T> {
         Ok(Hierarchy { nodes, shift, exact, levels, coarsest_matrix, coarsest, threads, spare })
     }
 
-    /// The product of the matrix of which the hierarchy was built with the displacements `u` of the dofs, in double precision; a vector
-    /// of `work`. `None` if the matrix is better read entry by entry.
+    /// The product of the matrix of which the hierarchy was built with the displacements `u` of the dofs, in double
+    /// precision; a vector of `work`. `None` if the matrix is better read entry by entry.
     pub fn product(&self, u: &[f64], work: &Spare<f64>) -> Option<Vec<f64>> {
         let exact = self.exact.as_ref()?;
         let places = || self.nodes.place.iter().map(|&place| (place as usize, self.nodes.exponent(place)));

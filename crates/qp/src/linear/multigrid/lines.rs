@@ -1,9 +1,10 @@
 //! Aggregates and prolongators along the lines of stretched cells.
 //!
-//! Bilinear elements connect nodes across such lines too, up to half as strongly as along them, although the smoother does not
-//! damp errors that vary across the lines. Aggregates across lines do not help it; and a prolongator that is smoothed across
-//! lines makes the next matrices dense. Here both stay on the line: the move of a weak neighbour is taken as the mode of the
-//! node's own aggregate, continued to that neighbour, so that the near-null vectors stay exact.
+//! Bilinear elements connect nodes across such lines too, up to half as strongly as along them, although the smoother
+//! does not damp errors that vary across the lines. Aggregates across lines do not help it; and a prolongator that is
+//! smoothed across lines makes the next matrices dense. Here both stay on the line: the move of a weak neighbour is
+//! taken as the mode of the node's own aggregate, continued to that neighbour, so that the near-null vectors stay
+//! exact.
 
 use super::aggregation::{Graph, aggregate, strong_connections};
 use super::blocks::BlockMatrix;
@@ -13,7 +14,8 @@ use crate::linear::factor::Real;
 /// Strength of the connections along a line, on every level.
 const ALONG_LINES: f64 = 0.4;
 
-/// Nodes lie on lines if the number of aggregates is at most this share of the nodes: three nodes of a line make one third.
+/// Nodes lie on lines if the number of aggregates is at most this share of the nodes: three nodes of a line make one
+/// third.
 const LINES: f64 = 0.36;
 
 /// The connections along the lines of a matrix.
@@ -34,8 +36,9 @@ impl Lines {
         has_lines.then_some(Lines { graph, of_node, aggregates })
     }
 
-    /// `A T` of the tentative prolongator T of these aggregates, without the couplings across lines: its columns stay those of
-    /// the aggregates of strong neighbours. `fine` and `coarse` are the near-null vectors of the level and of the next one.
+    /// `A T` of the tentative prolongator T of these aggregates, without the couplings across lines: its columns stay
+    /// those of the aggregates of strong neighbours. `fine` and `coarse` are the near-null vectors of the level and of
+    /// the next one.
     pub fn product<T: Real>(
         &self,
         matrix: &BlockMatrix<T>,
@@ -84,8 +87,8 @@ impl Lines {
     }
 }
 
-/// The modes of an aggregate, continued to a node outside: X with `X R = B`; B are the near-null vectors at the node, `of_node`, R those
-/// in the columns of the aggregate. Returns `false` if the aggregate lacks one of these vectors.
+/// The modes of an aggregate, continued to a node outside: X with `X R = B`; B are the near-null vectors at the node,
+/// `of_node`, R those in the columns of the aggregate. Returns `false` if the aggregate lacks one of these vectors.
 fn continued(of_node: &[f64], coarse: &Candidates, aggregate: u32, moved: &mut Vec<f64>) -> bool {
     let count = coarse.count;
     let triangle = &coarse.values[aggregate as usize * count * count..][..count * count];
@@ -107,8 +110,8 @@ mod tests {
     use super::super::prolongator::tentative;
     use super::*;
 
-    /// The stiffness of bilinear elements for a membrane of `nx` x `ny` nodes, cells `stretch` times as high as wide, without
-    /// supports.
+    /// The stiffness of bilinear elements for a membrane of `nx` x `ny` nodes, cells `stretch` times as high as wide,
+    /// without supports.
     fn membrane(nx: usize, ny: usize, stretch: f64) -> BlockMatrix<f64> {
         let mut entries = vec![vec![0.0; nx * ny]; nx * ny];
         for (i, j) in (0..nx - 1).flat_map(|i| (0..ny - 1).map(move |j| (i, j))) {
@@ -132,7 +135,8 @@ mod tests {
         matrix
     }
 
-    /// GOAL: aggregates of stretched cells stay on their lines, their prolongator too, and `A T` keeps A of the near-null vectors.
+    /// GOAL: aggregates of stretched cells stay on their lines, their prolongator too, and `A T` keeps A of the
+    /// near-null vectors.
     #[test]
     fn aggregates_and_prolongators_stay_on_the_lines_of_stretched_cells() {
         let (nx, ny) = (31, 7);

@@ -1,9 +1,9 @@
 //! Smoothed-aggregation multigrid for symmetric matrices with a known near-null space, such as the stiffness of a body.
 //!
 //! Nodes are gathered into aggregates along strong connections. The near-null vectors, cut into aggregates and made
-//! orthonormal, are the tentative prolongator; one step of damped Jacobi smooths it. The next matrix is the Galerkin product.
-//! One cycle smooths by a Chebyshev polynomial, corrects on the next level, and smooths again; the coarsest matrix is
-//! factorised. The cycle is a symmetric positive definite preconditioner.
+//! orthonormal, are the tentative prolongator; one step of damped Jacobi smooths it. The next matrix is the Galerkin
+//! product. One cycle smooths by a Chebyshev polynomial, corrects on the next level, and smooths again; the coarsest
+//! matrix is factorised. The cycle is a symmetric positive definite preconditioner.
 //!
 //! # Source
 //! P. Vaněk, M. Brezina, J. Mandel, *Convergence of algebraic multigrid based on smoothed aggregation*, Numer. Math. 88
@@ -72,12 +72,13 @@ macro_rules! by_precision {
 }
 
 impl Multigrid {
-    /// Builds the hierarchy of `matrix` (n x n) in single precision, or in double if rounding to single makes the matrix
-    /// indefinite.
+    /// Builds the hierarchy of `matrix` (n x n) in single precision, or in double if rounding to single makes the
+    /// matrix indefinite.
     ///
     /// # Errors
-    /// [`Error::Length`] for a near-null space of other than n dofs, [`Error::NotConvex`] for a diagonal entry that is negative,
-    /// or zero beside a coupling, and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`] for lack of memory.
+    /// [`Error::Length`] for a near-null space of other than n dofs, [`Error::NotConvex`] for a diagonal entry that is
+    /// negative, or zero beside a coupling, and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`]
+    /// for lack of memory.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, Error> {
         match Self::with_precision(matrix, near_null, threads, Width::Single) {
             Err(Error::NotConvex { .. }) => Self::with_precision(matrix, near_null, threads, Width::Double),
@@ -117,7 +118,8 @@ impl Multigrid {
         by_precision!(self.levels, hierarchy => hierarchy.nodes.units())
     }
 
-    /// The hierarchy in the face of `holds`, in the unknowns v of `Units`; `last` is a face of the same hierarchy that may be close.
+    /// The hierarchy in the face of `holds`, in the unknowns v of `Units`; `last` is a face of the same hierarchy that
+    /// may be close.
     ///
     /// # Errors
     /// As [`Multigrid::new`].
@@ -137,8 +139,8 @@ impl Multigrid {
         Ok(Face { levels: levels.map_err(located)?, work: &self.work })
     }
 
-    /// The product of `matrix` with `u`, length n; one of the work vectors. It is fast if this is the matrix of the hierarchy, and nearly
-    /// all its rows of blocks repeat.
+    /// The product of `matrix` with `u`, length n; one of the work vectors. It is fast if this is the matrix of the
+    /// hierarchy, and nearly all its rows of blocks repeat.
     pub(crate) fn product(&self, matrix: &SymmetricMatrix, u: &[f64]) -> Vec<f64> {
         let of_blocks = || by_precision!(self.levels, hierarchy => hierarchy.product(u, &self.work));
         let is_own = matrix.lower().is_shared_with(self.matrix.lower());
@@ -193,8 +195,8 @@ impl Face<'_> {
         }
     }
 
-    /// Returns `true` if the matrix in the face is singular to the precision of its levels, so that the coarsest one was
-    /// shifted.
+    /// Returns `true` if the matrix in the face is singular to the precision of its levels, so that the coarsest one
+    /// was shifted.
     pub fn is_shifted(&self) -> bool {
         match &self.levels {
             LevelsInFace::Single(_, face) => face.coarsest.is_shifted,
@@ -237,8 +239,8 @@ mod tests {
     use super::*;
     use crate::linear::{SparseMatrix, generic};
 
-    /// Bars along the lines of a square lattice of nodes with two dofs, which resist shear a little; the upper half is softer by
-    /// `2^-40`, and each node is held by springs. `factor(node)` multiplies the springs of a node.
+    /// Bars along the lines of a square lattice of nodes with two dofs, which resist shear a little; the upper half is
+    /// softer by `2^-40`, and each node is held by springs. `factor(node)` multiplies the springs of a node.
     fn lattice(nodes: usize, factor: impl Fn(usize) -> f64) -> SymmetricMatrix {
         let dofs = 2 * nodes * nodes;
         let mut entries = Vec::new();

@@ -4,13 +4,14 @@ use super::nodes::Nodes;
 use crate::error::Error;
 use crate::linear::{SymmetricMatrix, check_vector, largest, norm, take_out};
 
-/// A vector follows from those before it if less than this share of its length is left after their components are removed.
+/// A vector follows from those before it if less than this share of its length is left after their components are
+/// removed.
 const DEPENDENT_VECTOR: f64 = 1e-8;
 
 /// The near-null space of a stiffness: for a body its rigid-body modes, for a scalar problem the constants.
 ///
-/// One vector for each mode, one entry per free dof, linearly independent. Bodies that share no dof can share the same vectors,
-/// such as the rigid-body modes of all space.
+/// One vector for each mode, one entry per free dof, linearly independent. Bodies that share no dof can share the same
+/// vectors, such as the rigid-body modes of all space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearNullSpace {
     vectors: Vec<Vec<f64>>,
@@ -44,8 +45,8 @@ impl NearNullSpace {
         }
     }
 
-    /// From vectors, one entry per dof each, that are known to be finite; a vector that follows from others, such as a mode that supports suppress, does
-    /// no harm. `None` without vectors.
+    /// From vectors, one entry per dof each, that are known to be finite; a vector that follows from others, such as a
+    /// mode that supports suppress, does no harm. `None` without vectors.
     pub fn of_modes(vectors: Vec<Vec<f64>>) -> Option<Self> {
         let dofs = vectors.first().map_or(0, Vec::len);
         (dofs > 0 && vectors.iter().all(|vector| vector.len() == dofs)).then_some(NearNullSpace { vectors })
@@ -56,8 +57,8 @@ impl NearNullSpace {
     /// its length is the number of nodes.
     ///
     /// # Errors
-    /// As [`NearNullSpace::new`]; [`Error::Setting`] for another number of axes, [`Error::Length`] for axes that do not fit each
-    /// other, [`Error::NotFinite`] for a coordinate, named by node and axis.
+    /// As [`NearNullSpace::new`]; [`Error::Setting`] for another number of axes, [`Error::Length`] for axes that do not
+    /// fit each other, [`Error::NotFinite`] for a coordinate, named by node and axis.
     pub fn of_nodes(axes: &[Vec<f64>]) -> Result<Self, Error> {
         let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
         if !(1..=3).contains(&dimension) {

@@ -9,8 +9,8 @@ use crate::linear::factor::Real;
 /// Largest number of dofs of a node; if more have the same neighbours, they count as dofs of several nodes.
 const MOST_DOFS: usize = 3;
 
-/// The nodes of a problem, with the places of its dofs in them. Nodes with fewer dofs than others, such as nodes at a roller, are filled up
-/// with dofs that nothing touches.
+/// The nodes of a problem, with the places of its dofs in them. Nodes with fewer dofs than others, such as nodes at a
+/// roller, are filled up with dofs that nothing touches.
 #[derive(Clone, Debug)]
 pub struct Nodes {
     /// Number of places of each node, at least its number of dofs.
@@ -19,16 +19,18 @@ pub struct Nodes {
     pub count: usize,
     /// The place `size * node + component` of each dof.
     pub place: Vec<u32>,
-    /// The exponent of the unit of each node, `>= 0`: its displacement is `2^exponent` times the unknown of the hierarchy. With these
-    /// units, nodes of stiff and of soft bodies have diagonal entries of the same order. Those of the stiffest nodes are zero.
+    /// The exponent of the unit of each node, `>= 0`: its displacement is `2^exponent` times the unknown of the
+    /// hierarchy. With these units, nodes of stiff and of soft bodies have diagonal entries of the same order. Those of
+    /// the stiffest nodes are zero.
     exponents: Vec<i32>,
 }
 
-/// The group of each dof, which is its node, and the exponent of its unit: `u = 2^exponent v`. All dofs of a node have the same one.
+/// The group of each dof, which is its node, and the exponent of its unit: `u = 2^exponent v`. All dofs of a node have
+/// the same one.
 ///
-/// In the unknowns v, nodes of stiff and of soft bodies have diagonal entries of the same order. A projection that is orthogonal
-/// in v then moves soft and stiff nodes of a row by what their stiffness allows; one that is orthogonal in u does not, and the
-/// smoother diverges.
+/// In the unknowns v, nodes of stiff and of soft bodies have diagonal entries of the same order. A projection that is
+/// orthogonal in v then moves soft and stiff nodes of a row by what their stiffness allows; one that is orthogonal in u
+/// does not, and the smoother diverges.
 #[derive(Clone, Debug)]
 pub struct Units {
     pub groups: Vec<u32>,
@@ -56,8 +58,8 @@ impl Units {
 }
 
 impl Nodes {
-    /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, in the unit of each node, times
-    /// `2^exponent` so that its diagonal is of order one; not rounded as well, if nearly all its rows repeat.
+    /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, in the unit of each node,
+    /// times `2^exponent` so that its diagonal is of order one; not rounded as well, if nearly all its rows repeat.
     pub fn of<T: Real>(
         matrix: &SymmetricMatrix,
         threads: usize,
@@ -109,8 +111,8 @@ impl Nodes {
         self.exponents[place as usize / self.size]
     }
 
-    /// Puts the forces on the dofs into their places in `gathered`, in the units of the nodes, times `2^exponent`. Returns that
-    /// exponent: they are then of order one, because single precision has a small range.
+    /// Puts the forces on the dofs into their places in `gathered`, in the units of the nodes, times `2^exponent`.
+    /// Returns that exponent: they are then of order one, because single precision has a small range.
     pub fn gather<T: Real>(&self, forces: &[f64], gathered: &mut [T]) -> i32 {
         let exponents = || self.place.iter().map(|&place| self.exponent(place)).zip(forces);
         let largest = exponents().filter(|entry| *entry.1 != 0.0).map(|(unit, &force)| exponent(force) + unit).max();
@@ -121,7 +123,8 @@ impl Nodes {
         scale
     }
 
-    /// Puts the displacements of the dofs, of unknowns in the units of the nodes, times `2^exponent`, into `displacements`.
+    /// Puts the displacements of the dofs, of unknowns in the units of the nodes, times `2^exponent`, into
+    /// `displacements`.
     pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32, displacements: &mut [f64]) {
         for (&place, displacement) in self.place.iter().zip(displacements) {
             *displacement = ldexp(gathered[place as usize].double(), exponent + self.exponent(place));
@@ -129,8 +132,8 @@ impl Nodes {
     }
 }
 
-/// The exponent of the unit of each of `count` nodes, from the largest diagonal entry there, and the exponent that then makes all
-/// diagonal entries of order one. A node without stiffness has the unit of the stiffest.
+/// The exponent of the unit of each of `count` nodes, from the largest diagonal entry there, and the exponent that then
+/// makes all diagonal entries of order one. A node without stiffness has the unit of the stiffest.
 fn units(diagonal: &[f64], node_of: impl Fn(usize) -> usize, count: usize) -> (Vec<i32>, i32) {
     let mut of_node = vec![0.0_f64; count];
     diagonal.iter().enumerate().for_each(|(dof, &own)| of_node[node_of(dof)] = of_node[node_of(dof)].max(own));

@@ -7,7 +7,8 @@ use super::repeated;
 use crate::linear::Spare;
 use crate::linear::factor::Real;
 
-/// A matrix A minus the change by a face: on the finest level the face is the range of E = I - N, on coarser ones A becomes A - C.
+/// A matrix A minus the change by a face: on the finest level the face is the range of E = I - N, on coarser ones A
+/// becomes A - C.
 #[derive(Clone, Copy, Debug)]
 pub struct Operator<'a, T> {
     /// A.

@@ -1,13 +1,13 @@
 //! Overlapping patches of nodes, and the sum of the inverses of a matrix on them.
 //!
-//! A stiff volume couples a node with those around it so strongly that no node can move alone: a motion that keeps the volume moves several
-//! nodes at once. With quadratic elements the smallest of these motions belong to the corners of elements: a corner moves with the middles
-//! of its edges. These are found from the pattern alone: the middle of an edge is connected only with nodes to which both corners of that edge
-//! are connected as well.
+//! A stiff volume couples a node with those around it so strongly that no node can move alone: a motion that keeps the
+//! volume moves several nodes at once. With quadratic elements the smallest of these motions belong to the corners of
+//! elements: a corner moves with the middles of its edges. These are found from the pattern alone: the middle of an
+//! edge is connected only with nodes to which both corners of that edge are connected as well.
 //!
 //! # Source
-//! J. Schöberl, *Multigrid methods for a parameter dependent problem in primal variables*, Numer. Math. 84 (1999) 97-119: local
-//! solves on patches that contain the local motions without change of volume.
+//! J. Schöberl, *Multigrid methods for a parameter dependent problem in primal variables*, Numer. Math. 84 (1999)
+//! 97-119: local solves on patches that contain the local motions without change of volume.
 
 use super::blocks::BlockMatrix;
 use super::inverse::invert;
@@ -28,9 +28,10 @@ pub struct Patches {
 }
 
 impl Patches {
-    /// The patches of the pattern of `matrix`. The centre of a patch is a node whose neighbours are not all neighbours of another node that has
-    /// more of them; the other nodes of the patch have no neighbour that the centre lacks. A patch with more than `most_unknowns` consists of
-    /// its centre alone, and each node that is then in no patch is one by itself.
+    /// The patches of the pattern of `matrix`. The centre of a patch is a node whose neighbours are not all neighbours
+    /// of another node that has more of them; the other nodes of the patch have no neighbour that the centre lacks. A
+    /// patch with more than `most_unknowns` consists of its centre alone, and each node that is then in no patch is one
+    /// by itself.
     pub fn of<T: Real>(matrix: &BlockMatrix<T>, most_unknowns: usize) -> Self {
         let rows = matrix.rows();
         let around = |node: usize| matrix.columns_of(node);
@@ -112,8 +113,8 @@ impl Patches {
         self.sum(&starts, &of_patches.concat(), matrix.rows(), matrix.height)
     }
 
-    /// The sum of dense matrices on the patches, as a matrix of `rows` nodes with `size` unknowns each; `starts` are their starts in `values`, in
-    /// blocks.
+    /// The sum of dense matrices on the patches, as a matrix of `rows` nodes with `size` unknowns each; `starts` are
+    /// their starts in `values`, in blocks.
     fn sum<T: Real>(&self, starts: &[usize], values: &[T], rows: usize, size: usize) -> BlockMatrix<T> {
         // The patches of each node, with its place in them.
         let first = group_starts(rows, self.members.iter().map(|&node| node as usize));
@@ -154,7 +155,8 @@ impl Patches {
     }
 }
 
-/// The inverse of `matrix`, minus `change` if there is one, on the nodes `members`, row by row. `places` is all [`NONE`] before and after.
+/// The inverse of `matrix`, minus `change` if there is one, on the nodes `members`, row by row. `places` is all
+/// [`NONE`] before and after.
 fn inverse_on<T: Real>(
     members: &[u32],
     matrix: &BlockMatrix<T>,
@@ -186,8 +188,8 @@ fn inverse_on<T: Real>(
 mod tests {
     use super::*;
 
-    /// A line of quadratic elements, whose corners are the even nodes: each element couples its three nodes. The diagonal is 4, other
-    /// entries are -1.
+    /// A line of quadratic elements, whose corners are the even nodes: each element couples its three nodes. The
+    /// diagonal is 4, other entries are -1.
     fn line(elements: usize) -> BlockMatrix<f64> {
         let nodes = 2 * elements + 1;
         let mut matrix = BlockMatrix::empty(0, nodes, (1, 1));
@@ -220,7 +222,8 @@ mod tests {
         let (matrix, patches) = (line(4), Patches::of(&line(4), 10));
         let inverse = patches.inverse(&matrix, None, 1);
         assert_eq!(inverse.transposed().values, inverse.values);
-        // On its own part of the only patch of node 1 the sum is the inverse of [4 -1 -1 0; -1 4 -1 0; -1 -1 4 -1; 0 0 -1 4].
+        // On its own part of the only patch of node 1 the sum is the inverse of [4 -1 -1 0; -1 4 -1 0; -1 -1 4 -1; 0 0
+        // -1 4].
         let product: f64 = [(0, 4.0), (1, -1.0), (2, -1.0)]
             .iter()
             .map(|&(k, a)| a * inverse.row(1).find(|entry| entry.0 == k).map_or(0.0, |entry| entry.1[0]))

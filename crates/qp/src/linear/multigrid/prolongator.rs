@@ -6,8 +6,8 @@ use crate::linear::factor::Real;
 use crate::linear::grouped::grouped;
 use crate::linear::threads::SharedRows;
 
-/// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after those
-/// before it are removed: two nodes do not turn about the line through them.
+/// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after
+/// those before it are removed: two nodes do not turn about the line through them.
 const DEPENDENT_IN_AGGREGATE: f64 = 1e-8;
 
 /// Factor on the inverse of the largest eigenvalue in the smoothing of the prolongator.
@@ -62,7 +62,8 @@ pub fn tentative<T: Real>(
     (BlockMatrix { starts, indices, values, ..BlockMatrix::empty(0, aggregates, (size, count)) }, coarse)
 }
 
-/// Q R of the rows of `local`, `count` values each, in place: modified Gram-Schmidt, done twice. `triangle` is R, row by row.
+/// Q R of the rows of `local`, `count` values each, in place: modified Gram-Schmidt, done twice. `triangle` is R, row
+/// by row.
 fn orthonormalise(local: &mut [f64], count: usize, triangle: &mut [f64]) {
     for column in 0..count {
         let length = |local: &[f64]| local.iter().skip(column).step_by(count).map(|v| v * v).sum::<f64>().sqrt();
@@ -81,8 +82,8 @@ fn orthonormalise(local: &mut [f64], count: usize, triangle: &mut [f64]) {
     }
 }
 
-/// The tentative prolongator T after the first `steps` of a smoother on patches, which take away the energy at the ends of the aggregates.
-/// `moved` is A T of the `matrix` A.
+/// The tentative prolongator T after the first `steps` of a smoother on patches, which take away the energy at the ends
+/// of the aggregates. `moved` is A T of the `matrix` A.
 pub fn smoothed_in_steps<T: Real>(
     tentative: BlockMatrix<T>,
     moved: BlockMatrix<T>,

@@ -1,5 +1,5 @@
-//! Rows of blocks that repeat, as those of a lattice do: each is stored once, and nodes with the same row that follow each other are
-//! multiplied together.
+//! Rows of blocks that repeat, as those of a lattice do: each is stored once, and nodes with the same row that follow
+//! each other are multiplied together.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -226,8 +226,8 @@ impl<T: Real, const H: usize> WithSimd for Run<'_, T, H> {
 mod tests {
     use super::*;
 
-    /// The rows of a lattice of `lines` lines of `length` nodes: each node is coupled with those beside it and with those on the lines beside its
-    /// own. `blocks(a, b)` are the values of a block.
+    /// The rows of a lattice of `lines` lines of `length` nodes: each node is coupled with those beside it and with
+    /// those on the lines beside its own. `blocks(a, b)` are the values of a block.
     fn lattice(length: usize, lines: usize, blocks: impl Fn(usize, usize) -> [f32; 9]) -> Vec<(Vec<u32>, Vec<f32>)> {
         let is_near = |a: usize, b: usize| a.abs_diff(b) <= 1;
         let row = |node: usize| {

@@ -10,8 +10,8 @@ use crate::linear::{SparseMatrix, ldexp};
 /// Entries of a unit vector below this are rounding of the reflections.
 const TURNING_ROUNDING: f64 = 1e-12;
 
-/// A row is left out if less than this share of its length is beyond the span of other rows: 3 degrees. The pivot of a mean has at least
-/// this share of it.
+/// A row is left out if less than this share of its length is beyond the span of other rows: 3 degrees. The pivot of a
+/// mean has at least this share of it.
 const LEAST_BEYOND: f64 = 0.05;
 
 /// The same for a row that is needed. The bounds of rows with a small angle between them take more steps.
@@ -42,12 +42,13 @@ struct Making<'a> {
 }
 
 impl Bounds {
-    /// The bounds that rows B (m x n) and gaps g give if the dofs have these `units` and `travels` have no stiffness. The rows are taken
-    /// in the order that is preferred, means last. Those without entries or with an infinite gap give no bounds.
+    /// The bounds that rows B (m x n) and gaps g give if the dofs have these `units` and `travels` have no stiffness.
+    /// The rows are taken in the order that is preferred, means last. Those without entries or with an infinite gap
+    /// give no bounds.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for rows that share dofs with too many others; for a row of several travels, and for an unknown whose rows
-    /// have different travels.
+    /// [`Error::Numerical`] for rows that share dofs with too many others; for a row of several travels, and for an
+    /// unknown whose rows have different travels.
     pub fn of(
         (contact, gap): (&SparseMatrix, &[f64]),
         order: &Preferred,
@@ -73,7 +74,8 @@ impl Rows<'_> {
         self.by_row.column(row).filter(|entry| entry.1 != 0.0)
     }
 
-    /// The rows of more nodes than a pair. First come those whose heaviest node most others touch: it can be a pivot only before them.
+    /// The rows of more nodes than a pair. First come those whose heaviest node most others touch: it can be a pivot
+    /// only before them.
     fn means(&self, travels: &[usize]) -> Vec<usize> {
         let (mut heaviest, mut touched) = (Vec::new(), HashMap::<u32, usize>::new());
         for row in (0..self.gap.len()).filter(|&row| self.gap[row].is_finite()) {
@@ -181,7 +183,8 @@ impl Making<'_> {
         Ok(())
     }
 
-    /// Makes a mean a bound on its pivot: the direction at one node of what no other row has. Returns `false` if there is none.
+    /// Makes a mean a bound on its pivot: the direction at one node of what no other row has. Returns `false` if there
+    /// is none.
     fn pivot(&mut self, row: usize) -> Result<bool, Error> {
         let (length, turned, moving) = self.turned(row)?;
         let Some(group) = self.group_of_pivot(&turned) else { return Ok(false) };
@@ -206,7 +209,8 @@ impl Making<'_> {
         self.bound_of[place].is_none() && !self.carried.contains(&place)
     }
 
-    /// The node with most of what may be a pivot, in displacements, so that a soft node does not count more than a stiff one.
+    /// The node with most of what may be a pivot, in displacements, so that a soft node does not count more than a
+    /// stiff one.
     fn group_of_pivot(&self, turned: &Direction) -> Option<u32> {
         let (mut of_group, mut whole) = (BTreeMap::<u32, f64>::new(), 0.0_f64);
         for &(place, c) in turned {
@@ -237,7 +241,8 @@ impl Making<'_> {
 }
 
 impl Bounds {
-    /// Turns a unit vector onto the coordinate of its largest entry: that coordinate, and its sign there. `None` without entries.
+    /// Turns a unit vector onto the coordinate of its largest entry: that coordinate, and its sign there. `None`
+    /// without entries.
     fn onto_one(&mut self, unit: Direction) -> Option<(usize, f64)> {
         let &(first, value) = unit.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
         Some((first, if unit.len() == 1 { value.signum() } else { self.reflect(unit, first) }))

@@ -1,16 +1,17 @@
 //! Rows as bounds: reflections and shears that turn every row into one unknown of its own.
 //!
-//! A reflection turns what a row has beyond the rows before it onto a coordinate v of its own; a shear adds the rest, the coordinates of
-//! those rows: `w = v + sum of s_j v_j`. This is a QR factorisation of the rows, so that independent rows of a node become bounds
-//! whatever their angles are. Rows that depend on others, or nearly so, are *left out*: the caller must look whether the answer meets
-//! them, and prefer those that it violates the next time.
+//! A reflection turns what a row has beyond the rows before it onto a coordinate v of its own; a shear adds the rest,
+//! the coordinates of those rows: `w = v + sum of s_j v_j`. This is a QR factorisation of the rows, so that independent
+//! rows of a node become bounds whatever their angles are. Rows that depend on others, or nearly so, are *left out*:
+//! the caller must look whether the answer meets them, and prefer those that it violates the next time.
 //!
-//! The rows between two meshes that do not match are *means*: each joins one node of its own with many that it shares with others. There a
-//! reflection would fill up. A mean becomes the unknown of a *pivot*, the direction in which it moves its own node, and a shear adds all
-//! the rest: `w = v_pivot + sum of s_k v_k`. No pivot stands in the shear of a mean before it.
+//! The rows between two meshes that do not match are *means*: each joins one node of its own with many that it shares
+//! with others. There a reflection would fill up. A mean becomes the unknown of a *pivot*, the direction in which it
+//! moves its own node, and a shear adds all the rest: `w = v_pivot + sum of s_k v_k`. No pivot stands in the shear of a
+//! mean before it.
 //!
-//! Rows may share a *travel*, a dof t without stiffness: `n'u + c t <= g`. It is a coordinate of its own, and a shear adds it in the same
-//! way. Forces along t then add up those of all its rows.
+//! Rows may share a *travel*, a dof t without stiffness: `n'u + c t <= g`. It is a coordinate of its own, and a shear
+//! adds it in the same way. Forces along t then add up those of all its rows.
 
 mod making;
 
@@ -68,8 +69,9 @@ fn reflect(w: &Direction, v: &mut [f64]) {
     w.iter().for_each(|&(place, w)| v[place] -= 2.0 * along * w);
 }
 
-/// Rows B u <= g as bounds on unknowns w = S H U^-1 u. U are the units of the dofs, powers of two. H is orthogonal: a product of one
-/// reflection for each row that has more than one entry beyond the rows before it and travels. S are the shears.
+/// Rows B u <= g as bounds on unknowns w = S H U^-1 u. U are the units of the dofs, powers of two. H is orthogonal: a
+/// product of one reflection for each row that has more than one entry beyond the rows before it and travels. S are the
+/// shears.
 #[derive(Clone, Debug)]
 pub struct Bounds {
     /// The exponent of the unit of each dof.
@@ -97,8 +99,8 @@ enum Order {
 }
 
 impl Bounds {
-    /// The rows that contradict a row of those left out, which is violated, with weights; `None` if one of the bounds on which it
-    /// depends is open.
+    /// The rows that contradict a row of those left out, which is violated, with weights; `None` if one of the bounds
+    /// on which it depends is open.
     pub fn contradicting(&self, left: &LeftOut, multiplier: &[f64]) -> Option<Vec<(usize, f64)>> {
         let of_share = |&(index, share): &(usize, f64)| {
             let pressed = self.bounds[index].sides.iter().flatten().find(|side| multiplier[side.row] < 0.0)?;
@@ -111,7 +113,8 @@ impl Bounds {
         Some(all)
     }
 
-    /// The rows under pressure that a row takes force from if it presses itself, with the force of it that leaves them none.
+    /// The rows under pressure that a row takes force from if it presses itself, with the force of it that leaves them
+    /// none.
     pub fn relieved<'a>(&'a self, by: &'a LeftOut, multiplier: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
         by.shares.iter().flat_map(move |&(index, share)| {
             let of_side = move |side: &Side| (side.row, multiplier[side.row] * side.coefficient / share);
@@ -182,8 +185,9 @@ impl Bounds {
         self.bounds.iter().map(|bound| 1 + bound.shears.len()).max().unwrap_or(1)
     }
 
-    /// What some bounds hold, in the order of all bounds, without their travels, in the units of the dofs: orthonormal vectors H' q that
-    /// span the rows; of a mean its pivot, which gives way, and the row without what the holds before it hold.
+    /// What some bounds hold, in the order of all bounds, without their travels, in the units of the dofs: orthonormal
+    /// vectors H' q that span the rows; of a mean its pivot, which gives way, and the row without what the holds before
+    /// it hold.
     pub fn holds<'a>(&self, of_bounds: impl Iterator<Item = &'a Bound>) -> Vec<Hold> {
         let (mut holds, mut touching) = (Vec::<Hold>::new(), HashMap::<usize, Vec<usize>>::new());
         for bound in of_bounds {
@@ -214,8 +218,8 @@ impl Bounds {
         holds.into_iter().map(back).collect()
     }
 
-    /// The multipliers of the rows if the forces on the unknowns with bounds are `force` (those out of balance there), and the
-    /// rows that are closed.
+    /// The multipliers of the rows if the forces on the unknowns with bounds are `force` (those out of balance there),
+    /// and the rows that are closed.
     pub fn multipliers(&self, force: impl Fn(usize) -> f64) -> (Vec<f64>, ContactSet) {
         let (mut multiplier, mut closed) = (vec![0.0; self.rows], ContactSet::open(self.rows));
         for (index, bound) in self.bounds.iter().enumerate() {
@@ -408,8 +412,8 @@ mod tests {
         (2, 2, -2.0),
     ];
 
-    /// Checks that the unknowns are the rows, that forces and displacements turn there and back, and that every hold gives way to itself
-    /// alone, so that what the ways leave of a displacement moves no row.
+    /// Checks that the unknowns are the rows, that forces and displacements turn there and back, and that every hold
+    /// gives way to itself alone, so that what the ways leave of a displacement moves no row.
     #[track_caller]
     fn check(contact: &SparseMatrix, bounds: &Bounds) {
         let (u, f) = ([0.3, -0.7, 0.2, 9.0, 0.5], [2.0, -1.0, 0.5, 0.25, 3.0]);

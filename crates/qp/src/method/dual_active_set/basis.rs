@@ -1,7 +1,7 @@
 //! The orthonormal basis of the closed rows: `C_A' = Q R`, updated when a row closes or opens.
 //!
-//! A row that closes is orthogonalised against Q until it stays the same; a row that opens is removed by plane rotations. Both
-//! cost `O(n k)` for k closed rows.
+//! A row that closes is orthogonalised against Q until it stays the same; a row that opens is removed by plane
+//! rotations. Both cost `O(n k)` for k closed rows.
 //!
 //! # Source
 //! J. W. Daniel, W. B. Gragg, L. Kaufman, G. W. Stewart, 1976, "Reorthogonalization and stable algorithms for updating
@@ -11,7 +11,8 @@ use crate::linear::{UpperTriangle, dot, largest, norm, subtract, turned};
 use crate::solution::ContactSet;
 
 /// A row depends on the closed ones if its remainder is below this share of the row, times the size of its weights: the
-/// remainder is then rounding. Any value between 1e-15 and 1e-5 gives the same sets on several thousand random problems.
+/// remainder is then rounding. Any value between 1e-15 and 1e-5 gives the same sets on several thousand random
+/// problems.
 pub(super) const DEPENDENT_ROW: f64 = 64.0 * f64::EPSILON;
 
 /// A remainder that keeps this share of its length is orthogonal to Q to working precision.
@@ -97,8 +98,8 @@ impl Basis {
         self.directions.pop();
     }
 
-    /// The point w (length n) nearest to `target` at which each closed row has its value in `values`, and the multipliers y of
-    /// the closed rows with `w = target - C_A' y`.
+    /// The point w (length n) nearest to `target` at which each closed row has its value in `values`, and the
+    /// multipliers y of the closed rows with `w = target - C_A' y`.
     pub fn nearest(&self, target: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut excess = self.along(target);
         let wanted = self.triangle.solve_lower(values.to_vec());

@@ -1,8 +1,9 @@
 //! The dual active-set method for strictly convex problems: the last resort, slow and robust.
 //!
-//! It starts from the free point and repeatedly closes the row that is violated most. A row closes by a step in its pressure;
-//! closed rows with a pressure that falls to zero in the step open. In every set the rows are independent and all push, so that
-//! equal or dependent rows, and rows that are nearly parallel in energy, do no harm, and the dual energy grows from set to set.
+//! It starts from the free point and repeatedly closes the row that is violated most. A row closes by a step in its
+//! pressure; closed rows with a pressure that falls to zero in the step open. In every set the rows are independent and
+//! all push, so that equal or dependent rows, and rows that are nearly parallel in energy, do no harm, and the dual
+//! energy grows from set to set.
 //!
 //! ```text
 //! base (u, y) = 0
@@ -11,8 +12,8 @@
 //! until all rows are met, by their accurate distances
 //! ```
 //!
-//! A semidefinite K is made definite by a proximal term. The corrections and further passes remove it again, because they start
-//! from the last answer.
+//! A semidefinite K is made definite by a proximal term. The corrections and further passes remove it again, because
+//! they start from the last answer.
 //!
 //! # Source
 //! D. Goldfarb and A. Idnani, 1983, "A numerically stable dual method for solving strictly convex quadratic programs",
@@ -31,12 +32,12 @@ use crate::problem::ContactProblem;
 use pass::{Closed, Pass, Passed};
 use polyhedron::{Contradiction, Polyhedron};
 
-/// Largest number of passes: the second corrects errors hidden by the rounding of the first if dofs are of very different
-/// scale.
+/// Largest number of passes: the second corrects errors hidden by the rounding of the first if dofs are of very
+/// different scale.
 const MOST_PASSES: usize = 10;
 
-/// Least number of corrections of one set. The first gains all digits except the last, unless a part is so soft that its energy
-/// is below the rounding of the others.
+/// Least number of corrections of one set. The first gains all digits except the last, unless a part is so soft that
+/// its energy is below the rounding of the others.
 const CORRECTIONS: usize = 3;
 
 /// Largest number of corrections of one set: a proximal term may need more.
@@ -84,8 +85,8 @@ impl<'a> DualActiveSet<'a> {
 impl Solver for DualActiveSet<'_> {
     /// Solves the problem, or finds rows that contradict each other; it always starts from the free point.
     ///
-    /// The answer is not settled if the method was cut short or if its corrections do not converge, for example if rows and
-    /// stiffness do not hold the body: the method makes no claim about that.
+    /// The answer is not settled if the method was cut short or if its corrections do not converge, for example if rows
+    /// and stiffness do not hold the body: the method makes no claim about that.
     ///
     /// # Errors
     /// None.
@@ -163,7 +164,8 @@ impl Search<'_> {
         self.displacement.iter_mut().zip(&moved).for_each(|(u, moved)| *u += moved);
     }
 
-    /// The change of the point that balances the forces with the closed rows at their gaps, and the change of their pressures.
+    /// The change of the point that balances the forces with the closed rows at their gaps, and the change of their
+    /// pressures.
     fn correction(&self, imbalance: &[f64], distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let on_closed: Vec<f64> = self.closed.basis.rows().iter().map(|&row| distances[row]).collect();
         self.closed.basis.nearest(imbalance, &on_closed)
@@ -194,8 +196,8 @@ impl Search<'_> {
         last <= CONVERGED * norm(&self.point)
     }
 
-    /// Returns `true` if an open row is violated beyond rounding. A violation within the rounding of the closed rows does not
-    /// count: otherwise two rows that differ by their scale only would be exchanged without end.
+    /// Returns `true` if an open row is violated beyond rounding. A violation within the rounding of the closed rows
+    /// does not count: otherwise two rows that differ by their scale only would be exchanged without end.
     fn violates(&self) -> bool {
         let problem = &self.polyhedron.problem;
         let distances = negative(&problem.accurate_violation(&self.displacement));

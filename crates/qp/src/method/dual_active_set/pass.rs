@@ -8,12 +8,13 @@ use crate::linear::{dot, largest, norm};
 use crate::solution::Iteration;
 use crate::watch::Watch;
 
-/// A violation below this number of units in the last place of the terms is rounding. The next pass, with accurate distances,
-/// makes any value up to 1e-4 give the same sets.
+/// A violation below this number of units in the last place of the terms is rounding. The next pass, with accurate
+/// distances, makes any value up to 1e-4 give the same sets.
 const VIOLATED: f64 = 16.0 * f64::EPSILON;
 
-/// A contradiction counts if a point that meets the rows would be this many times farther away than the rows and the free point
-/// are. Rows that depend on each other except for the rounding of their entries are met 1e16 times as far away.
+/// A contradiction counts if a point that meets the rows would be this many times farther away than the rows and the
+/// free point are. Rows that depend on each other except for the rounding of their entries are met 1e16 times as far
+/// away.
 const FAR_MEETING: f64 = 1e22;
 
 /// Corrected weights below this share of the largest are zero except for rounding.
@@ -37,8 +38,8 @@ pub(super) struct Closed {
     pub basis: Basis,
     /// Positive on closed rows.
     pub pressures: Vec<f64>,
-    /// The parts of the pressures of closed rows beyond double precision: if large pressures cancel on a soft dof, their
-    /// rounding would exceed all other forces there. A pass does not change them.
+    /// The parts of the pressures of closed rows beyond double precision: if large pressures cancel on a soft dof,
+    /// their rounding would exceed all other forces there. A pass does not change them.
     pub rests: Vec<f64>,
     /// The sets of all passes so far.
     pub history: Vec<Iteration>,
@@ -148,7 +149,8 @@ impl<'a> Pass<'a> {
         (0..moved.len()).filter_map(violated).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Closes `row`; opens other rows if their pressure falls to zero in the step. Returns `false` if the row cannot be met.
+    /// Closes `row`; opens other rows if their pressure falls to zero in the step. Returns `false` if the row cannot be
+    /// met.
     fn close(&mut self, row: usize, mut violation: f64) -> Result<bool, Contradiction> {
         let before = self.closed.basis.rows().to_vec();
         let direction = self.polyhedron.row(row);
@@ -176,7 +178,8 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// The largest step of the new pressure before the pressure of a closed row falls to zero, and the place of that row.
+    /// The largest step of the new pressure before the pressure of a closed row falls to zero, and the place of that
+    /// row.
     fn blocking(&self, weights: &[f64]) -> (f64, Option<usize>) {
         let rounding = DEPENDENT_ROW * (1.0 + largest(weights));
         let mut first = (f64::INFINITY, None);
@@ -196,10 +199,10 @@ impl<'a> Pass<'a> {
         self.balance();
     }
 
-    /// Checks that `row` does not contradict the closed rows. It does if, under the weights y (1 for it, -r for them), the rows
-    /// overlap, `-g'y > 0`, and their combination, `delta = |L^-1 B'y|`, is so small that a point which meets all rows is
-    /// absurdly far away. Rows that depend on each other except for the rounding of their entries are met far away, and do not
-    /// contradict each other: weights in twice the working precision distinguish the two cases.
+    /// Checks that `row` does not contradict the closed rows. It does if, under the weights y (1 for it, -r for them),
+    /// the rows overlap, `-g'y > 0`, and their combination, `delta = |L^-1 B'y|`, is so small that a point which meets
+    /// all rows is absurdly far away. Rows that depend on each other except for the rounding of their entries are met
+    /// far away, and do not contradict each other: weights in twice the working precision distinguish the two cases.
     ///
     /// # Errors
     /// The contradiction, if it does.

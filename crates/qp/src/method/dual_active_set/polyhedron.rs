@@ -1,8 +1,8 @@
 //! The problem as the least distance to a polyhedron.
 //!
 //! With K = L L' and w = L' u the problem is to find the point of `C w <= g`, `C = B L^-T`, nearest to `h = L^-1 f`.
-//! Dofs are scaled by `diag(K)^-1/2` and rows by `1 / |L^-1 b|`, both rounded to powers of two, so that lengths are energies
-//! and the rows have about the same length.
+//! Dofs are scaled by `diag(K)^-1/2` and rows by `1 / |L^-1 b|`, both rounded to powers of two, so that lengths are
+//! energies and the rows have about the same length.
 
 use std::cell::Cell;
 
@@ -13,8 +13,8 @@ use crate::linear::{
 use crate::method::ScaledProblem;
 use crate::problem::ContactProblem;
 
-/// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4, definite.
-/// With 1e-6 the same number of problems is solved, with 1 about half.
+/// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4,
+/// definite. With 1e-6 the same number of problems is solved, with 1 about half.
 const PROXIMAL: f64 = 1e-9;
 
 /// Multiplications that the method may cost: about a minute on one core.

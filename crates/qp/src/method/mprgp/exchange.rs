@@ -1,12 +1,14 @@
-//! Rows that are left out, because they depend on those of other bounds: which ones, and what follows if an answer violates them.
+//! Rows that are left out, because they depend on those of other bounds: which ones, and what follows if an answer
+//! violates them.
 //!
-//! Most are far away, such as those of all obstacles of a node but the nearest. Their multipliers are zero in the answer, which the
-//! certificate checks against all rows. A row that is violated enters. Where a node has no room for it, it takes the force of the rows on
-//! which it depends, until one of them has none left: that one leaves. So each exchange raises the least energy, and none comes twice.
+//! Most are far away, such as those of all obstacles of a node but the nearest. Their multipliers are zero in the
+//! answer, which the certificate checks against all rows. A row that is violated enters. Where a node has no room for
+//! it, it takes the force of the rows on which it depends, until one of them has none left: that one leaves. So each
+//! exchange raises the least energy, and none comes twice.
 //!
 //! # Source
-//! D. Goldfarb, A. Idnani, *A numerically stable dual method for solving strictly convex quadratic programs*, Math. Program. 27 (1983)
-//! 1-33: the ratio test.
+//! D. Goldfarb, A. Idnani, *A numerically stable dual method for solving strictly convex quadratic programs*, Math.
+//! Program. 27 (1983) 1-33: the ratio test.
 
 use std::collections::{HashMap, HashSet};
 
@@ -24,7 +26,8 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// The exchange after an answer; `None` if it violates no row that was left out by more than this share of its largest entry.
+    /// The exchange after an answer; `None` if it violates no row that was left out by more than this share of its
+    /// largest entry.
     pub fn of(problem: &ContactProblem, bounds: &Bounds, answer: &Outcome, share: f64) -> Option<Self> {
         if bounds.left_out.is_empty() {
             return None;

@@ -112,8 +112,9 @@ impl<'a> Iterate<'a> {
         iterate
     }
 
-    /// Moves each travel, of a body at rest, along its load, about as far as that reaches: N closed rows resist like `sqrt(N)` single
-    /// ones, as a circle of that area on a half space does. Too deep or too shallow by half costs a few cycles.
+    /// Moves each travel, of a body at rest, along its load, about as far as that reaches: N closed rows resist like
+    /// `sqrt(N)` single ones, as a circle of that area on a half space does. Too deep or too shallow by half costs a
+    /// few cycles.
     fn travel_along_load(&mut self) {
         for &travel in &self.bounds.travels {
             let (load, way) = (self.problem.load()[travel].abs(), self.problem.load()[travel].signum());
@@ -292,8 +293,8 @@ impl<'a> Iterate<'a> {
         self.bounds.bounds.iter().map(room).fold(f64::INFINITY, f64::min)
     }
 
-    /// The step of length `room`, which the first bounds end. Their unknowns are set exactly to them; otherwise rounding could
-    /// leave them short of the bound in every iteration.
+    /// The step of length `room`, which the first bounds end. Their unknowns are set exactly to them; otherwise
+    /// rounding could leave them short of the bound in every iteration.
     fn step_to_bounds(&mut self, direction: &Conjugate, room: f64) {
         let meets = |bound: &Bound, x: &[f64]| {
             let (value, speed) = (x[bound.unknown], direction.p[bound.unknown]);
@@ -306,9 +307,9 @@ impl<'a> Iterate<'a> {
         self.project();
     }
 
-    /// The CG step or, if it would cross bounds, the expansion: its projection. If that raises the energy, the expansion is the
-    /// least energy on the way there or the step to the first bound, whichever is lower, and a projected gradient step. Returns
-    /// the direction if the next one is conjugate to it.
+    /// The CG step or, if it would cross bounds, the expansion: its projection. If that raises the energy, the
+    /// expansion is the least energy on the way there or the step to the first bound, whichever is lower, and a
+    /// projected gradient step. Returns the direction if the next one is conjugate to it.
     pub fn advance(&mut self, direction: Conjugate) -> Option<Conjugate> {
         let length = direction.slope / direction.energy;
         let room = self.longest_step(&direction.p);
@@ -351,9 +352,9 @@ impl<'a> Iterate<'a> {
         None
     }
 
-    /// The share of the way from `x`, with its `gradient`, to the present unknowns that is to be taken, and the decrease of the
-    /// energy: the whole way if the energy at its end is lower, otherwise the way to the least energy; `None` if the energy
-    /// rises at once.
+    /// The share of the way from `x`, with its `gradient`, to the present unknowns that is to be taken, and the
+    /// decrease of the energy: the whole way if the energy at its end is lower, otherwise the way to the least energy;
+    /// `None` if the energy rises at once.
     fn least_energy_from(&self, x: &[f64], gradient: &[f64]) -> Option<(f64, f64)> {
         let (mut slope, mut curvature) = (0.0, 0.0);
         for ((new, old), (after, before)) in self.x.iter().zip(x).zip(self.gradient.iter().zip(gradient)) {
@@ -367,7 +368,8 @@ impl<'a> Iterate<'a> {
         })
     }
 
-    /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles; shears multiply it at most by the unknowns that they join.
+    /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles; shears multiply it at most by the
+    /// unknowns that they join.
     fn largest_eigenvalue(&self) -> f64 {
         let mut weights: Vec<f64> = self.diagonal.iter().map(|d| 1.0 / d.sqrt()).collect();
         self.bounds.scale(&mut weights, 1);

@@ -1,7 +1,7 @@
 //! MPRGP: modified proportioning with reduced gradient projections, preconditioned in the free face.
 //!
-//! Rows are turned into bounds by reflections and shears. The gradient g = K u - f is split into the free gradient, of unknowns that may
-//! move, and the chopped gradient, of those that want to leave their bound. An iteration is one of
+//! Rows are turned into bounds by reflections and shears. The gradient g = K u - f is split into the free gradient, of
+//! unknowns that may move, and the chopped gradient, of those that want to leave their bound. An iteration is one of
 //!
 //! ```text
 //! proportioning   if the chopped gradient is larger than the free one: a step along it, which opens rows
@@ -11,9 +11,9 @@
 //!                 fixed length
 //! ```
 //!
-//! Each of these steps lowers the energy. The hierarchy is built once, for K; a face is a small change of the hierarchy. Rows that depend
-//! on others, such as those of far obstacles at a node, are left out; those that the answer violates are exchanged for others, and the loop
-//! goes on from there.
+//! Each of these steps lowers the energy. The hierarchy is built once, for K; a face is a small change of the
+//! hierarchy. Rows that depend on others, such as those of far obstacles at a node, are left out; those that the answer
+//! violates are exchanged for others, and the loop goes on from there.
 //!
 //! # Source
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
@@ -35,15 +35,15 @@ use nested::nested_start;
 use travel::Travels;
 pub use travel::takes_travels;
 
-/// The loop has stagnated after this many iterations without a residual half as large as the best before; those that change the
-/// face count only beyond one for each row.
+/// The loop has stagnated after this many iterations without a residual half as large as the best before; those that
+/// change the face count only beyond one for each row.
 const PATIENCE: usize = 60;
 
 /// Cycles on one face after which their rate gives an estimate of all cycles, and the factor by which it may be wrong.
 const TRIAL: (usize, f64) = (16, 1.2);
 
-/// At least the worth divided by this number is spent first: conjugate gradients begin slowly on a stretched mesh, and little
-/// is lost by waiting for the other way. If no more cycles than that are left to go, the answer is near.
+/// At least the worth divided by this number is spent first: conjugate gradients begin slowly on a stretched mesh, and
+/// little is lost by waiting for the other way. If no more cycles than that are left to go, the answer is near.
 const SHARE: usize = 8;
 
 /// The variant of a loop that came no further.
@@ -65,8 +65,8 @@ pub struct Limits {
     pub tolerance: f64,
     /// Largest number of cycles of the hierarchy.
     pub most_cycles: usize,
-    /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or after
-    /// this number unless few are left.
+    /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or
+    /// after this number unless few are left.
     pub worth: usize,
 }
 
@@ -86,12 +86,12 @@ pub struct Mprgp<'a> {
 impl Solver for Mprgp<'_> {
     /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
     ///
-    /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations together do
-    /// not halve the residual; those that change the face count only beyond one for each row.
+    /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations
+    /// together do not halve the residual; those that change the face count only beyond one for each row.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for rows that cannot be bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a negative
-    /// eigenvalue.
+    /// [`Error::Numerical`] for rows that cannot be bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a
+    /// negative eigenvalue.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let Mprgp { problem, multigrid, limits, .. } = *self;
         let (rows, units, mut start) = ((problem.contact(), problem.gap()), multigrid.units(), start);
@@ -248,7 +248,8 @@ impl Progress {
         (is_told && left > unsure * worth) || (cycles >= limits.worth && !is_near)
     }
 
-    /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement is left.
+    /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement
+    /// is left.
     fn has_settled(&mut self, iterate: &mut Iterate) -> bool {
         iterate.refresh_gradient_accurately();
         let checked = iterate.residual();
@@ -273,8 +274,8 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// Takes a proportioning, conjugate gradient or expansion step. Returns `false` at a direction along which nothing is held, or
-    /// along which the energy is negative.
+    /// Takes a proportioning, conjugate gradient or expansion step. Returns `false` at a direction along which nothing
+    /// is held, or along which the energy is negative.
     fn take_one(&mut self, iterate: &mut Iterate) -> Result<bool, Error> {
         if iterate.is_disproportionate() {
             iterate.proportion();

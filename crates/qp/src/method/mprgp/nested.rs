@@ -1,7 +1,7 @@
 //! A start from the second level of the hierarchy: the same problem is solved there, with means as bounds.
 //!
-//! From zero, the first step that the bounds cut off leaves jumps with an energy that grows as the mesh is refined: a fine mesh
-//! is then closed layer by layer. From the answer of the second level a few steps remain, on any mesh.
+//! From zero, the first step that the bounds cut off leaves jumps with an energy that grows as the mesh is refined: a
+//! fine mesh is then closed layer by layer. From the answer of the second level a few steps remain, on any mesh.
 //!
 //! # Source
 //! R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994) 167-184,
@@ -20,8 +20,8 @@ const TOLERANCE: f64 = 1e-3;
 /// Largest number of cycles on the second level.
 const MOST_CYCLES: usize = 40;
 
-/// The start for `problem` with `bounds` that are unknowns without reflections; `None` if the hierarchy has no second level
-/// with nodal values, or if `solve(problem, hierarchy, tolerance, cycles)` finds no answer there.
+/// The start for `problem` with `bounds` that are unknowns without reflections; `None` if the hierarchy has no second
+/// level with nodal values, or if `solve(problem, hierarchy, tolerance, cycles)` finds no answer there.
 pub fn nested_start(
     problem: &ContactProblem,
     bounds: &Bounds,

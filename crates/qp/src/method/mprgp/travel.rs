@@ -1,7 +1,7 @@
 //! The preconditioner of travels: unknowns without stiffness, which only closed rows hold.
 //!
-//! In a face each travel has a displacement z: it travels by one, the unknowns of its closed rows stay at their bounds, and the body
-//! follows nearly in balance. Beside the cycle C, which moves no travel, z is a coarse space of its own:
+//! In a face each travel has a displacement z: it travels by one, the unknowns of its closed rows stay at their bounds,
+//! and the body follows nearly in balance. Beside the cycle C, which moves no travel, z is a coarse space of its own:
 //!
 //! ```text
 //! M r = z z'r / e + (I - z z'K / e) C (I - K z z' / e) r,     e = z'K z
@@ -19,8 +19,8 @@ use crate::problem::ContactProblem;
 /// Rows of at most this number of dofs, a travel among them, become bounds whatever their nodes are.
 const FEW_DOFS: usize = 7;
 
-/// Returns `true` if every dof without stiffness is a travel: the stiffness holds all others, and each row becomes a bound with at
-/// most one travel.
+/// Returns `true` if every dof without stiffness is a travel: the stiffness holds all others, and each row becomes a
+/// bound with at most one travel.
 pub fn takes_travels(problem: &ContactProblem) -> bool {
     let travels = problem.without_stiffness();
     let all = Preferred { rows: (0..problem.rows()).collect(), needed: 0 };
@@ -57,7 +57,8 @@ struct Move {
 }
 
 impl Travels {
-    /// The displacements in another face: they start from those of the last one, and one cycle takes them nearer to balance.
+    /// The displacements in another face: they start from those of the last one, and one cycle takes them nearer to
+    /// balance.
     pub fn in_face(self, iterate: &Iterate, face: &Face) -> Self {
         let (mut before, mut moves) = (self.moves.into_iter(), Vec::<Move>::new());
         for &travel in &iterate.bounds.travels {

@@ -61,7 +61,8 @@ fn orthotropic(formulation: &Formulation) -> Material {
     turned.with_density(1.7).unwrap().with_expansion([0.3, 0.1, 0.2]).unwrap()
 }
 
-/// One distorted element away from the origin and from an axis of revolution, with its first and last faces as boundaries.
+/// One distorted element away from the origin and from an axis of revolution, with its first and last faces as
+/// boundaries.
 fn distorted(kind: ElementKind, formulation: Formulation, material: Material, random: &mut Random) -> ElasticBody {
     let (reference, dimension) = (kind.reference(), kind.dimension());
     let nodes = reference.nodes.iter().map(|node| {
@@ -126,8 +127,9 @@ fn the_work_of_stresses_changes_as_differences_say_for_all_elements_and_formulat
     }
 }
 
-/// GOAL: the energy of temperatures and initial stresses, and its derivatives by places, by moduli and by the temperature. CONDITIONS: every
-/// element in every formulation. REFERENCE: differences, and the work that the stress of the strain `C^-1 sigma_0` does on it.
+/// GOAL: the energy of temperatures and initial stresses, and its derivatives by places, by moduli and by the
+/// temperature. CONDITIONS: every element in every formulation. REFERENCE: differences, and the work that the stress of
+/// the strain `C^-1 sigma_0` does on it.
 #[test]
 fn the_energy_of_own_stress_changes_as_differences_say() {
     let mut random = Random(6);

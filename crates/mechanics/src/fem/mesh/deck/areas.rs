@@ -14,8 +14,8 @@ impl Deck {
         of_faces.chain(surface.bare.iter().copied()).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// The nodes of the faces of a surface, each with the integral of its shape function over them: an area, or a length in the plane. At a
-    /// corner of a quadratic face it may be zero or negative.
+    /// The nodes of the faces of a surface, each with the integral of its shape function over them: an area, or a
+    /// length in the plane. At a corner of a quadratic face it may be zero or negative.
     pub fn areas(&self, surface: &Surface) -> BTreeMap<usize, f64> {
         let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
         for &face in &surface.faces {

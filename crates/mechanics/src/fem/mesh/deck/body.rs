@@ -7,21 +7,22 @@ use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::formulation::positive;
 use crate::fem::mesh::{ElementGroup, Mesh, NodeNames, fail};
 
-/// A node of a deck is outside the plane if it is farther from it than this times the size of the body: far above the rounding of a mesh
-/// generator and far below the size of any cell.
+/// A node of a deck is outside the plane if it is farther from it than this times the size of the body: far above the
+/// rounding of a mesh generator and far below the size of any cell.
 const FLAT: f64 = 1e-9;
 
 impl Deck {
-    /// The mesh of the elements in the groups of these names, element sets or bodies, or, without a name, of all elements. Coordinates are
-    /// multiplied by `scale`.
+    /// The mesh of the elements in the groups of these names, element sets or bodies, or, without a name, of all
+    /// elements. Coordinates are multiplied by `scale`.
     ///
-    /// Nodes of other elements are left out; the others keep the order of the deck. Boundaries are the surfaces, with the facets that are
-    /// on the mesh; nodes have the names of their sets and their numbers.
+    /// Nodes of other elements are left out; the others keep the order of the deck. Boundaries are the surfaces, with
+    /// the facets that are on the mesh; nodes have the names of their sets and their numbers.
     ///
     /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line: for elements of more than one kind, a node outside the
-    /// plane, an element that is inverted or has no volume, a surface within the body. [`Error::Mesh`] for a group that does not exist,
-    /// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a scale that is not positive and finite.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line: for elements of more than one kind, a
+    /// node outside the plane, an element that is inverted or has no volume, a surface within the body. [`Error::Mesh`]
+    /// for a group that does not exist, [`qp::Error::Setting`](signorini_qp::Error::Setting) for a scale that is not
+    /// positive and finite.
     pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;
         let elements = self.elements_of(groups)?;

@@ -22,8 +22,8 @@ impl Deck {
     /// The mesh with the surfaces that have facets on it; `elements` are its elements in the deck, increasing.
     ///
     /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a surface within the body that is loaded, touched or tied;
-    /// another one is left out.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a surface within the body that is
+    /// loaded, touched or tied; another one is left out.
     pub(super) fn with_boundaries(&self, mut mesh: Mesh, elements: &[usize]) -> Result<Mesh, Error> {
         let (facet, faces) = (mesh.kind_of(0).facet(), mesh.kind_of(0).reference().faces);
         let mut boundaries = Vec::new();

@@ -60,13 +60,14 @@ pub(crate) struct DeckElement {
 }
 
 impl Deck {
-    /// Reads a deck up to the end of a step, from 1, or of the last one. The files that it includes must lie in the folder `within` or below
-    /// it; anywhere without one.
+    /// Reads a deck up to the end of a step, from 1, or of the last one. The files that it includes must lie in the
+    /// folder `within` or below it; anywhere without one.
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read;
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a value of the wrong kind, a number that is given twice
-    /// or does not exist, an element that is not read, a deck without elements or without that step.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a value of the wrong kind, a number
+    /// that is given twice or does not exist, an element that is not read, a deck without elements or without that
+    /// step.
     pub fn read(path: &Path, within: Option<&Path>, step: Option<usize>) -> Result<Self, Error> {
         let mut source = Source::read(path, within)?;
         let mut cards = std::mem::take(&mut source.cards);

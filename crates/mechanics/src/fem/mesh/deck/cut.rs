@@ -9,12 +9,13 @@ use crate::error::Error;
 use crate::fem::mesh::MAX_NODES;
 
 impl Deck {
-    /// Cuts a body along the surface of a card: the elements with its faces get nodes of their own, which have numbers after all others,
-    /// and the elements behind the cut keep the nodes of the deck. The faces behind it are a surface as well.
+    /// Cuts a body along the surface of a card: the elements with its faces get nodes of their own, which have numbers
+    /// after all others, and the elements behind the cut keep the nodes of the deck. The faces behind it are a surface
+    /// as well.
     ///
     /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a surface that does not exist, lies on the outside, or
-    /// does not divide its body.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a surface that does not exist, lies
+    /// on the outside, or does not divide its body.
     pub(super) fn cut(&mut self, card: &Card) -> Result<(), Error> {
         let fault = |deck: &Deck, message: String| Err(deck.source.fault(card.place, message));
         let Some(name) = card.value("SURFACE") else {
@@ -31,7 +32,8 @@ impl Deck {
         let around: Vec<usize> = (0..self.elements.len())
             .filter(|&one| self.nodes_of(one).iter().any(|node| is_cut.contains(node)))
             .collect();
-        // The faces of the elements around the cut, each with its nodes in increasing order and the one or two elements that it belongs to.
+        // The faces of the elements around the cut, each with its nodes in increasing order and the one or two elements
+        // that it belongs to.
         let mut sharing: HashMap<Vec<usize>, Vec<(usize, usize)>> = HashMap::new();
         let mut faces_of: HashMap<usize, Vec<Vec<usize>>> = HashMap::new();
         for &element in &around {

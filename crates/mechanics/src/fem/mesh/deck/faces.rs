@@ -105,7 +105,8 @@ impl Deck {
         Ok(faces)
     }
 
-    /// Makes a surface of the faces of each value of a card *DLOAD. A face that occurs again is in a second surface: pressures add up.
+    /// Makes a surface of the faces of each value of a card *DLOAD. A face that occurs again is in a second surface:
+    /// pressures add up.
     pub(super) fn read_pressures(&mut self, index: usize, card: &Card) -> Result<(), Error> {
         let mut groups: Vec<Pressed> = Vec::new();
         for line in &card.lines {
@@ -167,7 +168,8 @@ impl Deck {
     /// Takes the faces of pressures away that a later step presses anew, or frees by OP=NEW.
     ///
     /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line of a load on a surface of which a part is pressed anew.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line of a load on a surface of which a part
+    /// is pressed anew.
     pub(super) fn replace_pressures(&mut self, cards: &[Card]) -> Result<(), Error> {
         let is_distributed = |card: &&Card| card.is("DLOAD") || card.is("DSLOAD");
         let first = cards.iter().filter(is_distributed).filter(|card| card.is_new()).map(|card| card.step).max();

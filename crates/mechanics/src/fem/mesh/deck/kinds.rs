@@ -1,7 +1,8 @@
 //! The elements of decks by name, with the nearest element of this library.
 //!
 //! # Source
-//! G. Dhondt, *CalculiX CrunchiX User's Manual*, chapter "Element types": nodes and faces have the order of this library.
+//! G. Dhondt, *CalculiX CrunchiX User's Manual*, chapter "Element types": nodes and faces have the order of this
+//! library.
 
 use crate::fem::element::ElementKind;
 

@@ -35,8 +35,8 @@ impl Source {
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read,
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) for data without a keyword, an include without a file or outside the
-    /// folder, a file that includes itself.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) for data without a keyword, an include without a file
+    /// or outside the folder, a file that includes itself.
     pub fn read(path: &Path, within: Option<&Path>) -> Result<Self, Error> {
         let mut source = Source::default();
         let content = source.content(path)?;

@@ -8,8 +8,8 @@ use crate::error::{Error, nearly};
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::mesh::{ElementGroup, Mesh, fail};
 
-/// A node of a mesh file is outside the plane if it is farther from it than this times the size of the body: far above the rounding of Gmsh
-/// and far below the size of any cell.
+/// A node of a mesh file is outside the plane if it is farther from it than this times the size of the body: far above
+/// the rounding of Gmsh and far below the size of any cell.
 const FLAT: f64 = 1e-9;
 
 /// The number in the mesh of each node of the file, if it is in the body.
@@ -178,7 +178,8 @@ fn accepted(cell: &CellType) -> Result<ElementKind, String> {
     }
 }
 
-/// Reverses every element if all have the wrong orientation; the right one is along x in a bar, counterclockwise in the plane.
+/// Reverses every element if all have the wrong orientation; the right one is along x in a bar, counterclockwise in the
+/// plane.
 fn turn_if_clockwise(kind: ElementKind, nodes: &[[f64; 3]], connectivity: &mut [usize]) {
     let corners = kind.corners();
     let runs_wrong = |element: &[usize]| {

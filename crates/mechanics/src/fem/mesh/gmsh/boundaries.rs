@@ -8,8 +8,8 @@ use crate::error::Error;
 use crate::fem::mesh::outline::chained;
 use crate::fem::mesh::{Boundary, Mesh};
 
-/// The boundaries of `mesh`, in the order of the file. Facets of a group that are not faces of the body are left out if the body is a
-/// part of the file, and else an error of the file.
+/// The boundaries of `mesh`, in the order of the file. Facets of a group that are not faces of the body are left out if
+/// the body is a part of the file, and else an error of the file.
 pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool) -> Result<Vec<Boundary>, Error> {
     let dimension = mesh.dimension() - 1;
     let mut boundaries = Vec::new();

@@ -14,7 +14,8 @@ pub(crate) struct Glued {
 }
 
 impl GmshFile {
-    /// The groups of elements of the highest dimension, those that share nodes together: each set is a body. Empty without groups.
+    /// The groups of elements of the highest dimension, those that share nodes together: each set is a body. Empty
+    /// without groups.
     pub(crate) fn glued(&self) -> Vec<Glued> {
         let names = self.bodies();
         let Some(highest) = self.blocks.iter().map(|block| block.cell.dimension).max() else { return Vec::new() };

@@ -1,7 +1,7 @@
 //! Meshes written by Gmsh: `.msh` files of version 4.1 and 2.2, in ASCII and in binary form of either byte order.
 //!
-//! Physical groups give the names: the elements of the highest dimension are the body, and every group one dimension below becomes a
-//! boundary. The name of a group without a name is its number.
+//! Physical groups give the names: the elements of the highest dimension are the body, and every group one dimension
+//! below becomes a boundary. The name of a group without a name is its number.
 //!
 //! ```
 //! use signorini_mechanics::fem::GmshFile;
@@ -74,10 +74,11 @@ impl GmshFile {
     /// Reads the content of a file, a text or bytes; `file` is named in errors.
     ///
     /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line; in a binary file with the line in which the section begins, and with the byte, from 0,
-    /// at which the node, element or other record begins: for a version other than 4.1 and 2.2, an unknown byte order or data size, a
-    /// section that is missing or ends early or announces another number of lines than it has, a number of the wrong kind, coordinates
-    /// that are not finite, an unknown element type, an element whose node does not exist, a group without elements.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line; in a binary file with the line in
+    /// which the section begins, and with the byte, from 0, at which the node, element or other record begins: for a
+    /// version other than 4.1 and 2.2, an unknown byte order or data size, a section that is missing or ends early or
+    /// announces another number of lines than it has, a number of the wrong kind, coordinates that are not finite, an
+    /// unknown element type, an element whose node does not exist, a group without elements.
     pub fn parse(content: impl AsRef<[u8]>, file: impl AsRef<Path>) -> Result<Self, Error> {
         sections::read(file.as_ref(), content.as_ref())
     }
@@ -94,18 +95,20 @@ impl GmshFile {
         names.into_iter().filter(|(dimension, _)| Some(*dimension) == highest).map(|(_, name)| name).collect()
     }
 
-    /// The mesh of the body: of the elements in the physical groups of these names, or, without a name, of all elements of the highest
-    /// dimension. Groups that share nodes are glued. Coordinates are multiplied by `scale`.
+    /// The mesh of the body: of the elements in the physical groups of these names, or, without a name, of all elements
+    /// of the highest dimension. Groups that share nodes are glued. Coordinates are multiplied by `scale`.
     ///
-    /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in any plane z =
-    /// const, a bar along x. Elements that run clockwise are turned, if all elements do. Facets of a boundary have one orientation: the
-    /// body is on the left of edges; in space facets are counterclockwise seen from outside. With names, facets of boundaries that
-    /// are not on the body are left out.
+    /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in
+    /// any plane z = const, a bar along x. Elements that run clockwise are turned, if all elements do. Facets of a
+    /// boundary have one orientation: the body is on the left of edges; in space facets are counterclockwise seen from
+    /// outside. With names, facets of boundaries that are not on the body are left out.
     ///
     /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line: for elements of more than one kind, or of a kind without contact, a node outside the plane,
-    /// an element that is inverted or has no volume, a group with facets that are not faces of the body. [`Error::Mesh`] for a
-    /// group that does not exist, and for groups of different dimensions, [`qp::Error::Setting`](signorini_qp::Error::Setting) for a scale that is not positive and finite.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line: for elements of more than one kind, or
+    /// of a kind without contact, a node outside the plane, an element that is inverted or has no volume, a group with
+    /// facets that are not faces of the body. [`Error::Mesh`] for a group that does not exist, and for groups of
+    /// different dimensions, [`qp::Error::Setting`](signorini_qp::Error::Setting) for a scale that is not positive and
+    /// finite.
     pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;
         let body = body::Body::select(self, groups)?;

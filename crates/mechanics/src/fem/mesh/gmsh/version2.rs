@@ -21,8 +21,9 @@ pub(super) fn nodes(source: &mut Source, content: &mut Content) -> Result<(), Er
     source.end("Nodes")
 }
 
-/// The section `$Elements`: a count, which is text in either form, then `tag type number-of-tags physical-group ... node ...`; in binary
-/// form `type number-of-elements number-of-tags` precedes elements of one type.
+/// The section `$Elements`: a count, which is text in either form, then
+/// `tag type number-of-tags physical-group ... node ...`; in binary form `type number-of-elements number-of-tags`
+/// precedes elements of one type.
 pub(super) fn elements(source: &mut Source, content: &mut Content) -> Result<(), Error> {
     let mut line = source.line(|| "the number of elements")?;
     let count = announced(&mut line, "elements")?;

@@ -6,12 +6,14 @@ use crate::fem::geometry::{dot, length};
 use crate::scene::Model;
 use crate::scene::models::rows::ContactRow;
 
-/// The change of the sum of weight times [projected area](ContactRow::projected_area) over all contact rows, one weight for each, with the
-/// place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), in area per length times the unit of the weights.
+/// The change of the sum of weight times [projected area](ContactRow::projected_area) over all contact rows, one weight
+/// for each, with the place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), in area per length
+/// times the unit of the weights.
 ///
-/// The projected area of a row is A (n . o) with the outward normal o of the body, or A where the boundary faces away. A is a sum of
-/// integrals of shape functions N, and o is along the integral s of N^2 times the normal, less its parts along the normals of planes of
-/// symmetry on which the node lies. Thus `n . do = v . ds` with `v = (n - (n . o) o)/|s|`.
+/// The projected area of a row is A (n . o) with the outward normal o of the body, or A where the boundary faces away.
+/// A is a sum of integrals of shape functions N, and o is along the integral s of N^2 times the normal, less its parts
+/// along the normals of planes of symmetry on which the node lies. Thus `n . do = v . ds` with
+/// `v = (n - (n . o) o)/|s|`.
 ///
 /// # Errors
 /// One sentence: what has no derivative, or none yet.

@@ -14,7 +14,8 @@ use crate::scene::input::schema::Place;
 use crate::scene::input::schema::spring::StiffnessOf;
 use crate::scene::models::load::Acting;
 
-/// Adds the change of the work of all loads, `virtual_displacement . load`, both nodal vectors. Forces at nodes do not change.
+/// Adds the change of the work of all loads, `virtual_displacement . load`, both nodal vectors. Forces at nodes do not
+/// change.
 ///
 /// # Errors
 /// As [`Scene::acting`].
@@ -94,9 +95,10 @@ impl Loaded<'_> {
         integral_by_places(self.body, self.boundary, Points::Own, density, gradient);
     }
 
-    /// The traction of a moment m is `omega x r`, r = x - c, with `I omega = m` for the moments of inertia I of the area about its centre
-    /// c. Its virtual work is `omega . q`, q the moment of w, and changes by w . (omega x dr) at each place, by `- eta . dI omega` with
-    /// `I eta = q`, and by `- dc . (W x omega)` with the integral W of w. Because r integrates to zero, dI is that at a fixed centre.
+    /// The traction of a moment m is `omega x r`, r = x - c, with `I omega = m` for the moments of inertia I of the
+    /// area about its centre c. Its virtual work is `omega . q`, q the moment of w, and changes by w . (omega x dr) at
+    /// each place, by `- eta . dI omega` with `I eta = q`, and by `- dc . (W x omega)` with the integral W of w.
+    /// Because r integrates to zero, dI is that at a fixed centre.
     fn add_moment(&self, moment: [f64; 3], gradient: &mut [f64]) {
         let points = Points::Fine(Kinks::NONE);
         let sum = |value: &dyn Fn(&FacetPoint) -> f64| area_and_integral(self.body, self.boundary, points, value);
@@ -123,8 +125,8 @@ impl Loaded<'_> {
     }
 }
 
-/// Adds the change of the work of the forces of all springs at the first of two nodal displacements on the second. Only foundations under
-/// boundaries change.
+/// Adds the change of the work of the forces of all springs at the first of two nodal displacements on the second. Only
+/// foundations under boundaries change.
 ///
 /// # Errors
 /// As [`Scene::springs`].

@@ -1,18 +1,19 @@
 //! The derivative of the conditions of an answer with respect to the places of all nodes.
 //!
-//! Moving a node changes the stiffness K, the load f, the contact rows B and the gaps g. With the displacement u and the multiplier lambda
-//! of an answer, and the solution w, nu of an adjoint problem, a result changes by the change of
+//! Moving a node changes the stiffness K, the load f, the contact rows B and the gaps g. With the displacement u and
+//! the multiplier lambda of an answer, and the solution w, nu of an adjoint problem, a result changes by the change of
 //!
 //! `R = w . (f - K u + B' lambda) - nu . (g - B u)`
 //!
-//! with u, lambda, w and nu kept. In nodal terms, prescribed displacements included, with the forces p of loads and s of springs, the
-//! internal forces q and the rows b_i . u <= g_i:
+//! with u, lambda, w and nu kept. In nodal terms, prescribed displacements included, with the forces p of loads and s
+//! of springs, the internal forces q and the rows b_i . u <= g_i:
 //!
 //! `R = w . (p + s - q(u)) + sum of lambda_i b_i . w + nu_i (b_i . u - g_i)`.
 //!
-//! Supports, frames of inclined supports, forces at points, groups of elements and boundaries stay with their nodes. A plane of symmetry
-//! and the axis of revolution do too: entries along the normal of such a plane mean something only for motions that keep the end flat. A
-//! gap with a corner there counts as that of a symmetric obstacle, which does not change to first order.
+//! Supports, frames of inclined supports, forces at points, groups of elements and boundaries stay with their nodes. A
+//! plane of symmetry and the axis of revolution do too: entries along the normal of such a plane mean something only
+//! for motions that keep the end flat. A gap with a corner there counts as that of a symmetric obstacle, which does not
+//! change to first order.
 
 mod areas;
 mod loads;

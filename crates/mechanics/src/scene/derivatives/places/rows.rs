@@ -63,8 +63,8 @@ fn add_row(
     Ok(())
 }
 
-/// The nodes whose gaps make up the gap of a row of the problem, with their shares: the node alone, or those of its coefficient. A node
-/// that the obstacle does not reach has the gap of the row.
+/// The nodes whose gaps make up the gap of a row of the problem, with their shares: the node alone, or those of its
+/// coefficient. A node that the obstacle does not reach has the gap of the row.
 fn shares_of_gap<'a>(
     pairing: &'a Pairing,
     row: &'a ContactRow,

@@ -89,7 +89,8 @@ impl<'a> Slopes<'a> {
 
     /// The change of the row against a rigid obstacle with the place of its node.
     ///
-    /// Along the approach direction a gap changes by -1, and the gap along a normal by minus the normal; all else is a difference.
+    /// Along the approach direction a gap changes by -1, and the gap along a normal by minus the normal; all else is a
+    /// difference.
     fn of_rigid(&self, node: usize) -> Result<Slope, String> {
         let (nodes, rule) = (self.model.mesh().nodes(), self.obstacle.rule());
         let approach = self.obstacle.approach();

@@ -8,7 +8,8 @@ use crate::scene::derivatives::output::Output;
 use crate::scene::input::obstacle::{Obstacle, ObstacleRow};
 use signorini_qp::{ContactSet, dot};
 
-/// Derivatives of outputs by places agree with differences to within this, relative to the largest entry: rounding over the step.
+/// Derivatives of outputs by places agree with differences to within this, relative to the largest entry: rounding over
+/// the step.
 const CLOSE: f64 = 1e-7;
 
 /// Step of the differences, in length; edges are about 0.5 long.
@@ -108,7 +109,8 @@ impl<'a> Moving<'a> {
         assert_close(&found, &self.differences(areas), 0);
     }
 
-    /// Checks the change of an output at fixed displacement and multipliers. The rows of `closed` press, those in the middle most.
+    /// Checks the change of an output at fixed displacement and multipliers. The rows of `closed` press, those in the
+    /// middle most.
     fn check_output(&self, name: &str, closed: std::ops::Range<usize>, most_skipped: usize) {
         let answer = |model: &Model| {
             let rows = 0..model.rows().len();

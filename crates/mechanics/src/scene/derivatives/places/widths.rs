@@ -7,11 +7,12 @@ use crate::scene::Answer;
 use crate::scene::answers::patch::{Patch, StraightCell};
 use crate::scene::derivatives::differences::derivative;
 
-/// Adds `factor` times the change of the width on an obstacle, dimensionless, to a gradient (length `dim * n_nodes`, order
-/// `[x_0, y_0, x_1, ...]`).
+/// Adds `factor` times the change of the width on an obstacle, dimensionless, to a gradient (length `dim * n_nodes`,
+/// order `[x_0, y_0, x_1, ...]`).
 ///
-/// The width is the sum of L c over the facets: the length L, and the share c of its straight cells that the contact covers. L changes in
-/// closed form. The share changes only at the ends of the contact; it depends on few nodes there, and its change is a difference.
+/// The width is the sum of L c over the facets: the length L, and the share c of its straight cells that the contact
+/// covers. L changes in closed form. The share changes only at the ends of the contact; it depends on few nodes there,
+/// and its change is a difference.
 ///
 /// # Errors
 /// One sentence: where the width has no derivative.

@@ -19,8 +19,8 @@ const CORNERS: [[usize; 3]; 8] =
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
 
-/// The sides: name, axis normal to the side, upper end or not, and the corners of a cell's face seen from outside counterclockwise, the
-/// first one being the lowest or the highest of the face.
+/// The sides: name, axis normal to the side, upper end or not, and the corners of a cell's face seen from outside
+/// counterclockwise, the first one being the lowest or the highest of the face.
 const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
     ("left", 0, false, [0, 4, 7, 3]),
     ("right", 0, true, [1, 2, 6, 5]),
@@ -79,7 +79,8 @@ impl BodyShape for BoxSpec {
 /// outside.
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element of lower dimension, fewer than two lines, lines that do not increase, or more than `MAX_NODES` nodes.
+/// [`Error::Mesh`] for an element of lower dimension, fewer than two lines, lines that do not increase, or more than
+/// `MAX_NODES` nodes.
 pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 3 {
         return fail(format!("a box cannot have a mesh of {}", kind.name()));

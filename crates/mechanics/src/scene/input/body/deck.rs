@@ -11,22 +11,25 @@ use crate::scene::input::entry::{refused, wrong};
 use crate::scene::input::files::Files;
 use crate::scene::input::names;
 
-/// The mesh of an input deck of CalculiX, a `.inp` file: nodes, elements, sets and surfaces. Its other cards are not read.
+/// The mesh of an input deck of CalculiX, a `.inp` file: nodes, elements, sets and surfaces. Its other cards are not
+/// read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DeckSpec {
-    /// The input deck, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
+    /// The input deck, inside the folder of the scene unless reading outside is allowed; a relative name starts in that
+    /// folder.
     pub file: String,
     /// Factor of the coordinates of the deck, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
-    /// The body: `body-1`, `body-2`, ... in the order of their first elements, which are all elements joined by common nodes; or a set of
-    /// elements, or a list of both. May be left out in a deck of one body.
+    /// The body: `body-1`, `body-2`, ... in the order of their first elements, which are all elements joined by common
+    /// nodes; or a set of elements, or a list of both. May be left out in a deck of one body.
     #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
     #[schemars(schema_with = "names::schema")]
     pub group: Vec<String>,
-    /// The step up to which the deck is read, from 1: pressures of its cards are surfaces. The last step if it is left out.
+    /// The step up to which the deck is read, from 1: pressures of its cards are surfaces. The last step if it is left
+    /// out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<usize>,
     /// The integration of the stiffness of the elements of the deck.

@@ -65,7 +65,8 @@ impl BodyShape for DiscSpec {
 /// The disc of `radius` about `centre` ([x, y], in length), of a plane element, graded towards its lowest and its
 /// highest point; with [`Sides::Beyond`] only the part right of the centre, which in an axisymmetric model is a ball.
 ///
-/// The boundaries are `lower` and `upper`, the halves of the circle, and, with [`Sides::Beyond`], `symmetry-x` (x = centre).
+/// The boundaries are `lower` and `upper`, the halves of the circle, and, with [`Sides::Beyond`], `symmetry-x` (x =
+/// centre).
 ///
 /// ```
 /// use signorini_mechanics::fem::{ElementKind, Zone};

@@ -10,21 +10,23 @@ use crate::scene::input::entry::{refused, wrong};
 use crate::scene::input::files::Files;
 use crate::scene::input::names;
 
-/// Approximate bytes of a mesh file for one node and its elements: files of Gmsh of either version, ASCII or binary, have 87 to 237.
+/// Approximate bytes of a mesh file for one node and its elements: files of Gmsh of either version, ASCII or binary,
+/// have 87 to 237.
 const OF_MESH_FILE: f64 = 150.0;
 
 /// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2, ASCII or binary. A bar has the cross-section 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GmshSpec {
-    /// The mesh file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
+    /// The mesh file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that
+    /// folder.
     pub file: String,
     /// Factor of the coordinates of the mesh file, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
-    /// The physical group of the body, or a list of groups, which are glued where they share nodes. May be left out if at most one group has
-    /// elements of the highest dimension, or if `materials` name the groups.
+    /// The physical group of the body, or a list of groups, which are glued where they share nodes. May be left out if
+    /// at most one group has elements of the highest dimension, or if `materials` name the groups.
     #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
     #[schemars(schema_with = "names::schema")]
     pub group: Vec<String>,

@@ -99,12 +99,12 @@ impl BodyShape for HalfBallSpec {
 /// The lower half of the ball of `radius` about `centre` ([x, y, z], in length), of bricks, graded towards its lowest
 /// point; with [`Sides::Beyond`] along x or y a quarter or an eighth of the ball.
 ///
-/// The boundaries are `cut` (the flat side, z = centre), `round` and, with [`Sides::Beyond`], `symmetry-x` (x = centre) and
-/// `symmetry-y` (y = centre).
+/// The boundaries are `cut` (the flat side, z = centre), `round` and, with [`Sides::Beyond`], `symmetry-x` (x = centre)
+/// and `symmetry-y` (y = centre).
 ///
 /// # Errors
-/// [`Error::Mesh`] for a centre that is not finite, more than `MAX_NODES` nodes; [`qp::Error::Setting`](signorini_qp::Error::Setting) for a radius or a
-/// zone out of its range.
+/// [`Error::Mesh`] for a centre that is not finite, more than `MAX_NODES` nodes;
+/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a radius or a zone out of its range.
 pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, sides: [Sides; 2]) -> Result<Mesh, Error> {
     let graded = Grading::new(radius, zone)?;
     let across = sides.map(|sides| sides.lines(&graded.aside));

@@ -68,8 +68,8 @@ impl BodyShape for HalfDiscSpec {
 /// The lower half of the disc of `radius` about `centre` ([x, y], in length), of a plane element, graded towards its
 /// lowest point; with [`Sides::Beyond`] only the part right of the centre.
 ///
-/// The boundaries are `cut` (the flat side, y = centre), `arc` and, with [`Sides::Beyond`], `symmetry-x` (x = centre). Quadratic elements
-/// have their mid-sides on the arc.
+/// The boundaries are `cut` (the flat side, y = centre), `arc` and, with [`Sides::Beyond`], `symmetry-x` (x = centre).
+/// Quadratic elements have their mid-sides on the arc.
 ///
 /// ```
 /// use signorini_mechanics::fem::{ElementKind, Zone};

@@ -34,19 +34,20 @@ use shape::About;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BodySpec {
-    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric model it is the
-    /// section of the body.
+    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric
+    /// model it is the section of the body.
     Rectangle(RectangleSpec),
     /// A bar along x; its boundaries are `left`, `right`.
     Bar(BarSpec),
     /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
     /// `top` (along z).
     Box(BoxSpec),
-    /// A disc, graded towards its lowest and its highest point; its boundaries are `lower`, `upper` and, if only its right part is
-    /// meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is a ball.
+    /// A disc, graded towards its lowest and its highest point; its boundaries are `lower`, `upper` and, if only its
+    /// right part is meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is a ball.
     Disc(DiscSpec),
-    /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, if only its right part is
-    /// meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is half a ball.
+    /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, if only
+    /// its right part is meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is half
+    /// a ball.
     HalfDisc(HalfDiscSpec),
     /// Half of a ball, or a quarter or an eighth of one, graded towards its lowest (highest) point; its boundaries are
     /// `cut` (flat), `round` and the planes `symmetry-x` and `symmetry-y`.
@@ -83,7 +84,8 @@ impl BodySpec {
         self.described().1
     }
 
-    /// What [`about`](Self::about) and [`shape`](Self::shape) return: the only place that distinguishes the kinds of bodies.
+    /// What [`about`](Self::about) and [`shape`](Self::shape) return: the only place that distinguishes the kinds of
+    /// bodies.
     fn described(&self) -> (About, &dyn BodyShape) {
         match self {
             BodySpec::Rectangle(spec) => (rectangle::ABOUT, spec),

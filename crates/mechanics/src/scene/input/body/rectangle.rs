@@ -55,9 +55,9 @@ impl BodyShape for RectangleSpec {
 /// The mesh of the lines `x` and `y` (coordinates, in length, strictly increasing, at least two each), of a plane
 /// element.
 ///
-/// Nodes are numbered along x first; quadratic elements have nodes at mid-sides too. Triangles come from cutting each cell from its lower
-/// left to its upper right corner. The boundaries are `left`, `right`, `bottom` and `top`, their edges in the direction of growing
-/// coordinates.
+/// Nodes are numbered along x first; quadratic elements have nodes at mid-sides too. Triangles come from cutting each
+/// cell from its lower left to its upper right corner. The boundaries are `left`, `right`, `bottom` and `top`, their
+/// edges in the direction of growing coordinates.
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane, fewer than two lines, lines that do not increase, or more than

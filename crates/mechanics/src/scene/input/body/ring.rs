@@ -62,8 +62,8 @@ impl BodyShape for RingSpec {
 /// The mesh of the circles of radius `radii` (in length) and the rays at `angles` (degrees, counterclockwise from x),
 /// both strictly increasing, about `centre` ([x, y], in length), of a plane element, the mid-sides on the circles.
 ///
-/// The boundaries are `inner` and `outer`, and, if the ring is not closed, `start` (first angle) and `end` (last angle). It is closed if
-/// the angles span 360 degrees.
+/// The boundaries are `inner` and `outer`, and, if the ring is not closed, `start` (first angle) and `end` (last
+/// angle). It is closed if the angles span 360 degrees.
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane, fewer than two radii or angles, values that do not increase, an

@@ -148,7 +148,8 @@ impl Block {
     }
 }
 
-/// Estimated cells of a round body: from the lowest point to the corner of its core, from there to the cut, in the shells.
+/// Estimated cells of a round body: from the lowest point to the corner of its core, from there to the cut, in the
+/// shells.
 pub(crate) struct RoundCells {
     pub aside: f64,
     pub down: f64,

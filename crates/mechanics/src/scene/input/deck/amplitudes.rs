@@ -46,8 +46,8 @@ impl Amplitudes {
         Ok(Amplitudes { all, periods })
     }
 
-    /// The factor of a card: 1 without an amplitude. In a later step a load keeps the factor of the end of its own step, unless the times of
-    /// the amplitude go on; temperatures follow the last step.
+    /// The factor of a card: 1 without an amplitude. In a later step a load keeps the factor of the end of its own
+    /// step, unless the times of the amplitude go on; temperatures follow the last step.
     ///
     /// # Errors
     /// An error with the line of the card for an amplitude that does not exist.

@@ -52,7 +52,8 @@ impl Bolts {
         self.all.iter().any(|bolt| bolt.reference == node)
     }
 
-    /// Prescribes the shortening; `false` for a node that is no reference of a bolt. Its other directions may be prescribed as 0.
+    /// Prescribes the shortening; `false` for a node that is no reference of a bolt. Its other directions may be
+    /// prescribed as 0.
     ///
     /// # Errors
     /// A sentence for another direction.

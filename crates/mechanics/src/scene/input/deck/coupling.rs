@@ -1,5 +1,5 @@
-//! Couplings: the cards *COUPLING, each followed by *KINEMATIC or *DISTRIBUTING, as equations between the nodes of a surface and the
-//! displacement U and the rotation R of a reference node.
+//! Couplings: the cards *COUPLING, each followed by *KINEMATIC or *DISTRIBUTING, as equations between the nodes of a
+//! surface and the displacement U and the rotation R of a reference node.
 //!
 //! # Source
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, keywords *COUPLING, *KINEMATIC, *DISTRIBUTING.
@@ -9,7 +9,8 @@ use crate::error::Error;
 use crate::fem::geometry::{COORDINATES, cross, dot, inertia, minus, principal, trace};
 use crate::fem::mesh::deck::{Card, Deck, Line, Place};
 
-/// A determinant of the moments of inertia below this share of the cube of their sum is rounding: the nodes lie on a line.
+/// A determinant of the moments of inertia below this share of the cube of their sum is rounding: the nodes lie on a
+/// line.
 const ON_LINE: f64 = 1e-12;
 
 /// How a coupling joins the nodes of its surface to the reference node.
@@ -149,9 +150,10 @@ impl Coupling {
         Ok(sums)
     }
 
-    /// A force F and a moment M at the reference node become the forces w (F + (T^-1 M') x r) on the nodes, with the share w of a node in
-    /// the area, its distance r from the centre of area, T = sum of w (r.r I - r r'), and the moment M' about the centre. The work of these
-    /// forces is that of F and M, so that U and R are means of the displacements of the nodes.
+    /// A force F and a moment M at the reference node become the forces w (F + (T^-1 M') x r) on the nodes, with the
+    /// share w of a node in the area, its distance r from the centre of area, T = sum of w (r.r I - r r'), and the
+    /// moment M' about the centre. The work of these forces is that of F and M, so that U and R are means of the
+    /// displacements of the nodes.
     fn distributing(&self, deck: &Deck, about: [bool; 3]) -> Result<Vec<Sum>, String> {
         let areas = deck.areas(deck.surface_or(&self.surface)?);
         let whole: f64 = areas.values().sum();

@@ -6,7 +6,8 @@ use crate::error::Error;
 use crate::fem::geometry::COORDINATES;
 use crate::fem::mesh::deck::{Card, Deck};
 
-/// The component that a direction of a node names, from 1, as a sum: of a node of elements the displacement along its local axis.
+/// The component that a direction of a node names, from 1, as a sum: of a node of elements the displacement along its
+/// local axis.
 ///
 /// # Errors
 /// A sentence for a direction that the node does not have, and for a node without local axes.

@@ -1,4 +1,5 @@
-//! The forces of several steps: a later step replaces forces on the same nodes in the same directions, or all by OP=NEW.
+//! The forces of several steps: a later step replaces forces on the same nodes in the same directions, or all by
+//! OP=NEW.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,5 @@
-//! The cards of a deck: those that are read, with their parameters, those that change no answer, and those that are refused by name.
+//! The cards of a deck: those that are read, with their parameters, those that change no answer, and those that are
+//! refused by name.
 
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
@@ -124,10 +125,12 @@ const BARE: [&str; 6] = ["MATERIAL", "STEP", "ENDSTEP", "CLEARANCE", "RIGIDBODY"
 /// The cards that stand only in a step.
 const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC", "ENDSTEP"];
 
-/// Checks every card of a deck and the order of its steps; returns the names of what is passed over, each once with its first place.
+/// Checks every card of a deck and the order of its steps; returns the names of what is passed over, each once with its
+/// first place.
 ///
 /// # Errors
-/// An error with the line for a keyword or a parameter that changes the answer and is not read, and for a deck without a whole step.
+/// An error with the line for a keyword or a parameter that changes the answer and is not read, and for a deck without
+/// a whole step.
 pub(super) fn judged(deck: &Deck) -> Result<Vec<(String, Place)>, Error> {
     let mut passed: Vec<(String, Place)> = Vec::new();
     let mut pass = |name: String, place: Place| {

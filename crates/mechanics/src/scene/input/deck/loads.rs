@@ -70,7 +70,8 @@ impl<'a, 'd> Loads<'a, 'd> {
         loads.end()
     }
 
-    /// Forces on nodes: node, direction, force. A later step replaces them, node by node and direction by direction, or all by OP=NEW.
+    /// Forces on nodes: node, direction, force. A later step replaces them, node by node and direction by direction, or
+    /// all by OP=NEW.
     fn add_nodal(&mut self, card: &Card, factor: f64) -> Result<(), Error> {
         let dimension = self.deck.dimension();
         let mut forces: BTreeMap<String, Vec<f64>> = BTreeMap::new();

@@ -47,8 +47,8 @@ pub(super) struct Sections {
 
 impl Sections {
     /// # Errors
-    /// An error with the line for a material that is not read, a section without a set or a material, elements without a section, sections
-    /// of different thickness.
+    /// An error with the line for a material that is not read, a section without a set or a material, elements without
+    /// a section, sections of different thickness.
     pub fn of(deck: &Deck, space: Space) -> Result<Self, Error> {
         let (materials, orientations) = (materials(deck)?, orientations(deck)?);
         let names: Vec<&str> = materials.keys().map(String::as_str).collect();

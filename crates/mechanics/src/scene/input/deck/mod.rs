@@ -65,8 +65,9 @@ pub(crate) struct DeckScene {
 }
 
 impl DeckScene {
-    /// The scene of the deck `file`, which it calls `named`. Files that the deck includes may lie outside its folder if `permits` has
-    /// `outside`; friction is left out if it has `friction`; small displacements are wanted if it has `linear`.
+    /// The scene of the deck `file`, which it calls `named`. Files that the deck includes may lie outside its folder if
+    /// `permits` has `outside`; friction is left out if it has `friction`; small displacements are wanted if it has
+    /// `linear`.
     ///
     /// # Errors
     /// As [`Deck::read`]; [`qp::Error::FileSyntax`] with the line for what changes the answer and is not read.
@@ -158,13 +159,14 @@ impl DeckScene {
 }
 
 impl Scene {
-    /// Reads a deck of CalculiX as a scene, at the end of a step from 1, or of the last one; relative names of files start in its folder. Files that it includes may lie outside its folder
-    /// if `permits` has `outside`, friction is left out with a warning if it has `friction`, and a step with NLGEOM has an answer with large
-    /// strains or rotations too if it has `linear`.
+    /// Reads a deck of CalculiX as a scene, at the end of a step from 1, or of the last one; relative names of files
+    /// start in its folder. Files that it includes may lie outside its folder if `permits` has `outside`, friction is
+    /// left out with a warning if it has `friction`, and a step with NLGEOM has an answer with large strains or
+    /// rotations too if it has `linear`.
     ///
     /// # Errors
-    /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong, and for what changes
-    /// the answer and is not modelled.
+    /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong,
+    /// and for what changes the answer and is not modelled.
     pub fn read_deck(path: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Scene, Error> {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -173,7 +175,8 @@ impl Scene {
         Ok(Scene { folder: path.parent().map(Path::to_path_buf), noted: deck.warnings, ..scene })
     }
 
-    /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is not built.
+    /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is
+    /// not built.
     ///
     /// # Errors
     /// As [`Scene::read_deck`].
@@ -181,7 +184,8 @@ impl Scene {
         DeckScene::read(file, named, (permits, step)).map(|scene| scene.text)
     }
 
-    /// Returns `true` for the name of an input deck, which ends with `.inp`: such a file is read by [`Scene::read_deck`].
+    /// Returns `true` for the name of an input deck, which ends with `.inp`: such a file is read by
+    /// [`Scene::read_deck`].
     pub fn is_deck(file: impl AsRef<Path>) -> bool {
         is_deck(file.as_ref())
     }
@@ -192,7 +196,8 @@ fn named_line((file, line): (PathBuf, usize)) -> String {
     format!("{}:{line}", file.display())
 }
 
-/// The comments that open the scene of a deck: where it comes from, and which cards are answered otherwise or passed over.
+/// The comments that open the scene of a deck: where it comes from, and which cards are answered otherwise or passed
+/// over.
 fn comments(deck: &Deck, named: &str, noted: &[(Place, String)], passed: &[(String, Place)]) -> Vec<String> {
     let mut comments = vec![format!("The scene of {named}; each entry names the line of the deck that it comes from.")];
     let nonlinear =

@@ -1,4 +1,5 @@
-//! Constraints of the cards *MPC as linear equations, for small displacements: nodes that stay in a plane, on a line, or at a distance.
+//! Constraints of the cards *MPC as linear equations, for small displacements: nodes that stay in a plane, on a line,
+//! or at a distance.
 //!
 //! # Source
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, keyword *MPC.
@@ -10,7 +11,8 @@ use crate::error::Error;
 use crate::fem::geometry::{across, cross, distance, dot, length, minus, unit};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
-/// Nodes farther from their plane or line than this share of its extent lie outside: far above the digits of coordinates in decks.
+/// Nodes farther from their plane or line than this share of its extent lie outside: far above the digits of
+/// coordinates in decks.
 const OUTSIDE: f64 = 1e-4;
 
 /// Constraints that are refused, with the reason.
@@ -88,7 +90,8 @@ fn sums(deck: &Deck, transforms: &Transforms, name: &str, nodes: &[usize]) -> Re
     if extent == 0.0 {
         return Err(format!("the nodes of {name} of *MPC lie at one place"));
     }
-    // The displacement of a node along a vector, less that of a point at its place that moves with others, with their shares.
+    // The displacement of a node along a vector, less that of a point at its place that moves with others, with their
+    // shares.
     let relative = |node: usize, vector: [f64; 3], others: &[(usize, f64)]| {
         let mut sum = along(deck, transforms, node, vector)?;
         for &(other, share) in others {

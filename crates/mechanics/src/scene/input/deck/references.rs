@@ -1,5 +1,6 @@
-//! Reference nodes: components of nodes without elements, which rigid bodies, couplings, equations and springs move. Those that are in
-//! equations are unknowns of the deck only: they are eliminated here, so that the scene has nodes of elements alone.
+//! Reference nodes: components of nodes without elements, which rigid bodies, couplings, equations and springs move.
+//! Those that are in equations are unknowns of the deck only: they are eliminated here, so that the scene has nodes of
+//! elements alone.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -97,8 +98,8 @@ impl<'a> References<'a> {
         Ok(is_loose)
     }
 
-    /// Adds a force or a moment at a direction of a node, from 1; `false` for a component that is left to the elements of the node. A force
-    /// along a prescribed component does nothing.
+    /// Adds a force or a moment at a direction of a node, from 1; `false` for a component that is left to the elements
+    /// of the node. A force along a prescribed component does nothing.
     ///
     /// # Errors
     /// A sentence for a component that nothing follows.
@@ -125,12 +126,13 @@ impl<'a> References<'a> {
         Ok(true)
     }
 
-    /// Eliminates all components without elements. The work of a force on such a component is that of forces on the nodes of the equation
-    /// that gives it. A spring to a prescribed component is one to the ground, with the force of its prescribed elongation.
+    /// Eliminates all components without elements. The work of a force on such a component is that of forces on the
+    /// nodes of the equation that gives it. A spring to a prescribed component is one to the ground, with the force of
+    /// its prescribed elongation.
     ///
     /// # Errors
-    /// An error with the line for equations that the prescribed components contradict, and for a force or a spring on a component that is
-    /// free.
+    /// An error with the line for equations that the prescribed components contradict, and for a force or a spring on a
+    /// component that is free.
     pub fn eliminated(mut self) -> Result<Eliminated, Error> {
         for (node, place) in &self.means {
             if self.prescribed.keys().any(|component| component.0 == *node && self.joined.contains(component)) {
@@ -194,7 +196,8 @@ impl<'a> References<'a> {
         }
     }
 
-    /// Takes the equation in which a component has the largest share, and with it removes the component everywhere else.
+    /// Takes the equation in which a component has the largest share, and with it removes the component everywhere
+    /// else.
     fn eliminate(&mut self, component: Component) {
         let shares = self.equations.iter().map(|equation| equation.sum.share(component)).enumerate();
         let largest = shares.filter(|(_, share)| *share > 0.0).max_by(|one, other| one.1.total_cmp(&other.1));

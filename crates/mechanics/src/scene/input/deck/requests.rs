@@ -1,4 +1,5 @@
-//! What a deck asks for in the files of results: the cards *NODE FILE, *EL FILE, *CONTACT FILE, *NODE PRINT, *EL PRINT, *CONTACT PRINT.
+//! What a deck asks for in the files of results: the cards *NODE FILE, *EL FILE, *CONTACT FILE, *NODE PRINT, *EL PRINT,
+//! *CONTACT PRINT.
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
@@ -17,9 +18,11 @@ pub struct Requests {
     pub fields: BTreeSet<String>,
     /// Tables, in the order of the deck.
     pub tables: Vec<RequestedTable>,
-    /// The places of the cards that ask for a kind of result that has no field and no table here, as `*SECTION PRINT (line 7)`.
+    /// The places of the cards that ask for a kind of result that has no field and no table here, as
+    /// `*SECTION PRINT (line 7)`.
     pub others: Vec<String>,
-    /// The temperature at the end of the step by the number of its node, in the order of the deck; 0 where the deck gives none.
+    /// The temperature at the end of the step by the number of its node, in the order of the deck; 0 where the deck
+    /// gives none.
     pub temperatures: Vec<(usize, f64)>,
     /// The local axes of nodes by their numbers, each of unit length.
     pub axes: HashMap<usize, [[f64; 3]; 3]>,
@@ -74,11 +77,13 @@ const KINDS: [&[&str]; 6] = [
 const OTHERS: [&str; 4] = ["FACEPRINT", "SECTIONPRINT", "SECTIONFILE", "ENERGYPRINT"];
 
 impl Requests {
-    /// Reads what a deck asks for at the end of a step, from 1, or of the last one. Files that it includes may lie outside its folder if `permits` has `outside`.
+    /// Reads what a deck asks for at the end of a step, from 1, or of the last one. Files that it includes may lie
+    /// outside its folder if `permits` has `outside`.
     ///
     /// # Errors
     /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read;
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a set that does not exist, and for what is not read.
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a set that does not exist, and for
+    /// what is not read.
     pub fn of_deck(file: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Self, Error> {
         let file = file.as_ref();
         let deck = Deck::read(file, file.parent().filter(|_| !permits.contains(&"outside")), step)?;

@@ -1,5 +1,5 @@
-//! Rigid bodies: the cards *RIGID BODY, and *KINEMATIC of all displacements, with the displacements, rotations, forces and moments of their
-//! reference nodes.
+//! Rigid bodies: the cards *RIGID BODY, and *KINEMATIC of all displacements, with the displacements, rotations, forces
+//! and moments of their reference nodes.
 
 use std::collections::HashMap;
 
@@ -39,8 +39,8 @@ pub(super) struct RigidBodies {
 
 impl RigidBodies {
     /// # Errors
-    /// An error with the line for a rigid body without a set of nodes of one body, or without a reference node of its own, and for a coupling
-    /// that is not read.
+    /// An error with the line for a rigid body without a set of nodes of one body, or without a reference node of its
+    /// own, and for a coupling that is not read.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
         let dimension = deck.dimension();
         let (couplings, bolts) = (couplings(deck)?, Bolts::of(deck)?);
@@ -77,7 +77,8 @@ impl RigidBodies {
         self.add_body(deck, on, [Some(centre), rotation], card.place)
     }
 
-    /// Makes a coupling a rigid body, if the nodes of its surface belong to one body and all follow in all directions; `false` for another.
+    /// Makes a coupling a rigid body, if the nodes of its surface belong to one body and all follow in all directions;
+    /// `false` for another.
     ///
     /// # Errors
     /// An error with the line for a reference node of two rigid bodies.
@@ -146,7 +147,8 @@ impl RigidBodies {
         }
     }
 
-    /// Prescribes a direction of a node; `false` for a node that is no reference. What a plane model does not have may be prescribed as 0.
+    /// Prescribes a direction of a node; `false` for a node that is no reference. What a plane model does not have may
+    /// be prescribed as 0.
     pub fn prescribe(&mut self, node: usize, direction: usize, value: f64) -> Result<bool, String> {
         if self.bolts.prescribe(node, direction, value)? {
             return Ok(true);

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::fem::mesh::deck::Place;
 
-/// A component of a node: the place of the node in the deck, then 0 to 2 for its displacements along x, y, z and 3 to 5 for its rotations
-/// about them. A node without elements has its displacements along its local axes.
+/// A component of a node: the place of the node in the deck, then 0 to 2 for its displacements along x, y, z and 3 to 5
+/// for its rotations about them. A node without elements has its displacements along its local axes.
 pub(super) type Component = (usize, usize);
 
 /// A coefficient that a difference leaves below this share of its parts is rounding.

@@ -62,7 +62,8 @@ impl Fault {
         Fault { what, path: String::new(), at: Some(at) }
     }
 
-    /// The fault as the object or the array sees it that has the faulty value, or the faulty key, at `step` (`key` or `[3]`).
+    /// The fault as the object or the array sees it that has the faulty value, or the faulty key, at `step` (`key` or
+    /// `[3]`).
     pub fn inside(self, step: &str, at: usize) -> Fault {
         let dot = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
         Fault { path: format!("{step}{dot}{}", self.path), ..self.placed(at) }

@@ -1,4 +1,5 @@
-//! JSON as scenes have it: a text becomes a tree with places, and the tree a typed value; every fault has its path and its place.
+//! JSON as scenes have it: a text becomes a tree with places, and the tree a typed value; every fault has its path and
+//! its place.
 
 mod fault;
 mod place;

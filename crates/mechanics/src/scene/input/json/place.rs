@@ -3,7 +3,8 @@
 use jsonc_parser::ast::Value;
 use jsonc_parser::common::Ranged;
 
-/// The place of the value at `path` as `supports[0].on.boundary`, in bytes; if it is missing, of the value that should contain it.
+/// The place of the value at `path` as `supports[0].on.boundary`, in bytes; if it is missing, of the value that should
+/// contain it.
 pub(crate) fn start_of(scene: &Value, path: &str) -> usize {
     let keys = path.split(['.', '[']).map(|key| key.trim_end_matches(']')).filter(|key| !key.is_empty());
     let found = keys.into_iter().try_fold(scene, |value, key| {

@@ -20,8 +20,8 @@ const DEEPEST: usize = 10;
 const CONTROL_CHARACTER: &str = "a string may contain no line break and no other control character; its closing `\"` is \
                                  missing, or write \\n or \\t";
 
-/// The text without the byte order mark that some editors write at its start, and with empty lines instead of those that begin with `//`,
-/// so that all other lines keep their numbers.
+/// The text without the byte order mark that some editors write at its start, and with empty lines instead of those
+/// that begin with `//`, so that all other lines keep their numbers.
 pub(crate) fn plain(text: &str) -> Cow<'_, str> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_comment = |line: &str| line.trim_start().starts_with("//");
@@ -89,8 +89,8 @@ enum Next {
 }
 
 impl<'a> Trail<'a> {
-    /// The place of the first token from `right` on, or of the token with `right` inside. A control character in a string and an unusual
-    /// space before it, which the parser lets pass, are faults.
+    /// The place of the first token from `right` on, or of the token with `right` inside. A control character in a
+    /// string and an unusual space before it, which the parser lets pass, are faults.
     fn follow_to(&mut self, right: usize) -> Result<usize, Fault> {
         let options = ScannerOptions { allow_extended_string_escapes: false, ..ScannerOptions::default() };
         let mut scanner = Scanner::new(self.text, &options);

@@ -87,7 +87,8 @@ impl<'de> Deserializer<'de> for Typed<'de> {
         }
     }
 
-    /// A field that is left out is absent, and never `null`: some programs write `null` for a number that they could not compute.
+    /// A field that is left out is absent, and never `null`: some programs write `null` for a number that they could
+    /// not compute.
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
         visitor.visit_some(self)
     }
@@ -114,7 +115,8 @@ impl<'de> Deserializer<'de> for Typed<'de> {
     fn deserialize_struct<V: Visitor<'de>>(self, _: &'static str, _: Names, visitor: V) -> Result<V::Value, Fault> {
         let Value::Object(object) = self.0 else { return self.not(OBJECT) };
         let mut fields = Fields { rest: object.properties.iter(), last: None };
-        // A fault without a place is one of a key that has come before, or of one that may stand before the closing bracket.
+        // A fault without a place is one of a key that has come before, or of one that may stand before the closing
+        // bracket.
         visitor.visit_map(&mut fields).map_err(|fault| match (&fault.what, fields.last) {
             (&What::KeyTwice(key), Some(last)) if fault.at.is_none() => fault.inside(key, last.start()),
             _ => fault.placed(self.0.end() - 1),
@@ -183,8 +185,8 @@ fn value_of<'a, T: DeserializeSeed<'a>>(field: &'a ObjectProp<'a>, seed: T) -> R
     read.map_err(|fault| fault.inside(field.name.as_str(), field.value.start()))
 }
 
-/// A word, or the single key of an object, that chooses a variant. Only the variants tell which of both they are: if the name is unknown, or
-/// there is none, the first variant is asked, and refuses the value.
+/// A word, or the single key of an object, that chooses a variant. Only the variants tell which of both they are: if
+/// the name is unknown, or there is none, the first variant is asked, and refuses the value.
 struct Choice<'a> {
     value: Typed<'a>,
     name: &'a str,

@@ -1,4 +1,5 @@
-//! A circle: from outside, the half that faces the body, h(s) = R - sqrt(R^2 - s^2); or from inside, h(s) = sqrt(R^2 - s^2) - R.
+//! A circle: from outside, the half that faces the body, h(s) = R - sqrt(R^2 - s^2); or from inside, h(s) = sqrt(R^2 -
+//! s^2) - R.
 
 use std::sync::Arc;
 
@@ -10,7 +11,8 @@ use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use super::surface::{Foot, Local, Surface};
 use crate::error::Error;
 
-/// A node inside and behind the centre lies beside it if it is farther than this share of the radius from the axis through the centre.
+/// A node inside and behind the centre lies beside it if it is farther than this share of the radius from the axis
+/// through the centre.
 pub(super) const BESIDE: f64 = 0.5;
 
 /// A circle, given by its centre or by its apex.
@@ -20,14 +22,15 @@ pub struct CircleSpec {
     /// The centre of the circle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 2]>,
-    /// The point of the circle nearest to the body: the centre minus the radius along the approach direction; from inside, the centre plus
-    /// the radius.
+    /// The point of the circle nearest to the body: the centre minus the radius along the approach direction; from
+    /// inside, the centre plus the radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 2]>,
     /// Radius of the circle, positive. Nodes beyond its reach have no contact row.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
-    /// The side of the circle on which the body is: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
+    /// The side of the circle on which the body is: `outside`, or `inside`, as a pin in a hole, with the obstacle all
+    /// around.
     #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }
@@ -67,8 +70,8 @@ impl Surface for Circle {
         (along.abs() <= self.radius).then(|| along * (along / (self.radius + rest.max(0.0).sqrt())))
     }
 
-    /// The quadratic function through both ends and the middle, or the tangent in the middle if that is closer: towards a vertical side the
-    /// derivatives grow without limit.
+    /// The quadratic function through both ends and the middle, or the tangent in the middle if that is closer: towards
+    /// a vertical side the derivatives grow without limit.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
         let remainder = self.remainder(from, to);
         match self.tangent(from, to)? {
@@ -88,8 +91,8 @@ impl Surface for Circle {
         Some(([self.height(near)?, self.height(far)?], [below, 0.0]))
     }
 
-    /// Distance to the centre minus the radius. A node behind the centre has no closest point on the facing half; only if it lies inside
-    /// and far from the axis, as a node at the rim of a cup, it is moved out to its side.
+    /// Distance to the centre minus the radius. A node behind the centre has no closest point on the facing half; only
+    /// if it lies inside and far from the axis, as a node at the rim of a cup, it is moved out to its side.
     fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
         let (r, rest) = (self.radius, self.radius - towards);
         let to_centre = along.hypot(rest);
@@ -114,7 +117,8 @@ impl Surface for Circle {
 }
 
 impl Circle {
-    /// The error of the interpolation at both ends and in the middle of a stretch of half length k: at most `|h'''| k^3/(9 sqrt 3)`.
+    /// The error of the interpolation at both ends and in the middle of a stretch of half length k: at most
+    /// `|h'''| k^3/(9 sqrt 3)`.
     fn remainder(&self, from: f64, to: f64) -> f64 {
         let (furthest, half) = (from.abs().max(to.abs()), (to - from).abs() / 2.0);
         let rest = (self.radius - furthest) * (self.radius + furthest);
@@ -122,8 +126,8 @@ impl Circle {
         if half == 0.0 { 0.0 } else { third * half.powi(3) / (9.0 * 3.0_f64.sqrt()) }
     }
 
-    /// The tangent in the middle of a stretch, at its ends and there, and the largest height above it. The circle is convex: it lies
-    /// above each tangent, and farthest from it at an end.
+    /// The tangent in the middle of a stretch, at its ends and there, and the largest height above it. The circle is
+    /// convex: it lies above each tangent, and farthest from it at an end.
     fn tangent(&self, from: f64, to: f64) -> Option<([f64; 3], f64)> {
         let [first, middle, last] = self.heights(from, to)?;
         let place = (from + to) / 2.0;
@@ -133,7 +137,8 @@ impl Circle {
     }
 }
 
-/// The outside of a circle with its apex at the origin and its centre at (0, -R): as a graph, the mirror image of the circle.
+/// The outside of a circle with its apex at the origin and its centre at (0, -R): as a graph, the mirror image of the
+/// circle.
 #[derive(Debug)]
 struct Hollow(Circle);
 

@@ -20,8 +20,8 @@ pub struct CylinderSpec {
     /// Any point of the axis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
-    /// Any point of the axis minus the radius along the approach direction, on the line nearest to the body; from inside, plus the
-    /// radius.
+    /// Any point of the axis minus the radius along the approach direction, on the line nearest to the body; from
+    /// inside, plus the radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Direction of the axis, perpendicular to the approach direction, of any length except zero.
@@ -29,7 +29,8 @@ pub struct CylinderSpec {
     /// Radius of the cylinder, positive. Nodes beyond its reach have no contact row.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: f64,
-    /// The side of the cylinder on which the body is: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
+    /// The side of the cylinder on which the body is: `outside`, or `inside`, as a pin in a hole, with the obstacle all
+    /// around.
     #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }

@@ -1,4 +1,5 @@
-//! The surface of another body: n . (u - u_partner) <= gap for nodes that lie opposite each other, or means over segments.
+//! The surface of another body: n . (u - u_partner) <= gap for nodes that lie opposite each other, or means over
+//! segments.
 
 use std::collections::{HashMap, HashSet};
 
@@ -15,13 +16,13 @@ use crate::fem::{Boundary, FacetKind};
 use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, number, point, refused, wrong};
 use crate::scene::input::schema::approach::Rule;
 
-/// Allowed lateral offset of a partner, in units of its distance: at the end of a curved boundary only the facets on one side give the
-/// normal, which is wrong by half the angle of a facet.
+/// Allowed lateral offset of a partner, in units of its distance: at the end of a curved boundary only the facets on
+/// one side give the normal, which is wrong by half the angle of a facet.
 const ASLANT: f64 = 0.2;
 
-/// Lengths below this share of the shortest edge of the facets at a node are rounding of coordinates: seven digits, as in single precision,
-/// leave 5e-7 of the size of the bodies, which is below this share of a facet if at most 2000 facets lie side by side. A place nearer to an
-/// edge of a facet than this share of the edge counts as on the edge.
+/// Lengths below this share of the shortest edge of the facets at a node are rounding of coordinates: seven digits, as
+/// in single precision, leave 5e-7 of the size of the bodies, which is below this share of a facet if at most 2000
+/// facets lie side by side. A place nearer to an edge of a facet than this share of the edge counts as on the edge.
 const SAME_PLACE: f64 = 1e-3;
 
 /// A boundary of another elastic body as an obstacle, with its rows and its reach.
@@ -62,8 +63,8 @@ pub enum RowsSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SideSpec {
-    /// That of the softer body, if Young's moduli differ by more than a factor of 2; else the one with the smaller facets. All bodies have
-    /// one order.
+    /// That of the softer body, if Young's moduli differ by more than a factor of 2; else the one with the smaller
+    /// facets. All bodies have one order.
     #[default]
     Auto,
     /// The boundary of the obstacle in the scene.
@@ -211,7 +212,8 @@ struct Pair {
     partner: usize,
     /// The normal of the pair, of length 1, from the candidate's body into the other.
     normal: [f64; 3],
-    /// The direction half way between the normals of both surfaces at the pair, from the candidate's body into the other.
+    /// The direction half way between the normals of both surfaces at the pair, from the candidate's body into the
+    /// other.
     mean: [f64; 3],
     /// Distance along the normal from the candidate to its partner, in length.
     distance: f64,
@@ -235,7 +237,8 @@ struct Way {
     pair: Pair,
 }
 
-/// The shortest edge of the facets at each node of the mesh; infinite at nodes outside the boundary, and if facets are points.
+/// The shortest edge of the facets at each node of the mesh; infinite at nodes outside the boundary, and if facets are
+/// points.
 pub(crate) fn shortest_edges(boundary: &Boundary, nodes: &[[f64; 3]]) -> Vec<f64> {
     let mut shortest = vec![f64::INFINITY; nodes.len()];
     for facet in boundary.facets() {
@@ -304,8 +307,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Checks that the nodes opposite to those of a facet are the nodes of a facet: otherwise the areas of a pair would differ, and a
-    /// uniform pressure would not pass.
+    /// Checks that the nodes opposite to those of a facet are the nodes of a facet: otherwise the areas of a pair would
+    /// differ, and a uniform pressure would not pass.
     fn check_facets(&self, pairs: &[Pair]) -> Result<(), Error> {
         let sorted = |mut nodes: Vec<usize>| {
             nodes.sort_unstable();
@@ -326,7 +329,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Checks that no node of the other boundary faces the inside of a facet: it would have no row, and would penetrate.
+    /// Checks that no node of the other boundary faces the inside of a facet: it would have no row, and would
+    /// penetrate.
     fn check_others(&self, pairs: &[Pair]) -> Result<(), Error> {
         let mesh = self.site.body.mesh();
         let nodes = mesh.nodes();
@@ -363,8 +367,8 @@ struct Across {
 }
 
 impl Across {
-    /// The place `at` if it is opposite to the inside of `facet`, at most as far as the distance of its pairs plus the length of the
-    /// facet.
+    /// The place `at` if it is opposite to the inside of `facet`, at most as far as the distance of its pairs plus the
+    /// length of the facet.
     fn of(
         kind: FacetKind,
         facet: &[usize],

@@ -1,5 +1,5 @@
-//! Obstacles as graphs over the coordinates perpendicular to the approach direction: in most cases a curve rotated or extruded. An
-//! obstacle in the plane is a curve extruded along z.
+//! Obstacles as graphs over the coordinates perpendicular to the approach direction: in most cases a curve rotated or
+//! extruded. An obstacle in the plane is a curve extruded along z.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -22,8 +22,8 @@ pub(super) struct Graph {
     axes: [[f64; 3]; 3],
     origin: [f64; 3],
     form: Form,
-    /// Extent of the pictured surface along the first axis, from the origin: beyond the body by its size on each side, so that a wall
-    /// before a slender body does not end in the picture.
+    /// Extent of the pictured surface along the first axis, from the origin: beyond the body by its size on each side,
+    /// so that a wall before a slender body does not end in the picture.
     extent: [f64; 2],
     rounding: f64,
 }
@@ -89,7 +89,8 @@ impl RigidSurface for Graph {
             (Form::Grid(map), Rule::Approach) => along_approach(map.height([t1, t2])),
             (Form::Turned(curve), Rule::ClosestPoint) => {
                 let radius = t1.hypot(t2);
-                // The closest point lies in the half plane of the node; on the axis the normal has no component perpendicular to it.
+                // The closest point lies in the half plane of the node; on the axis the normal has no component
+                // perpendicular to it.
                 let outwards = if radius > 0.0 { [t1 / radius, t2 / radius] } else { [0.0; 2] };
                 let foot = curve.closest([radius, towards], self.rounding)?;
                 foot.map(|foot| {

@@ -14,8 +14,8 @@ use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
 
-/// Feet closer together than this, relative to the body's size, are one point: neighbouring cells share their edges, and the accuracy of
-/// a search is the square root of rounding.
+/// Feet closer together than this, relative to the body's size, are one point: neighbouring cells share their edges,
+/// and the accuracy of a search is the square root of rounding.
 const SAME_FOOT: f64 = 1e-6;
 
 /// Unit normals closer than this belong to one smooth piece.
@@ -25,11 +25,12 @@ const SAME_NORMAL: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeightMapSpec {
-    /// Grid lines of the first coordinate perpendicular to the approach direction (x, or y if that direction is along x): at least two,
-    /// increasing, from the first candidate to the last or beyond.
+    /// Grid lines of the first coordinate perpendicular to the approach direction (x, or y if that direction is along
+    /// x): at least two, increasing, from the first candidate to the last or beyond.
     #[schemars(extend("minItems" = 2))]
     pub x: Vec<f64>,
-    /// Grid lines of the second coordinate perpendicular to it (z, or y if the approach direction is along z), likewise.
+    /// Grid lines of the second coordinate perpendicular to it (z, or y if the approach direction is along z),
+    /// likewise.
     #[schemars(extend("minItems" = 2))]
     pub y: Vec<f64>,
     /// `heights[i][j]`: the surface's coordinate along the axis of the approach direction over `x[i]`, `y[j]`.
@@ -104,7 +105,8 @@ impl HeightMap {
         })
     }
 
-    /// The normal at a foot: of the surface if it is smooth there or the node lies on it, else the direction to the foot.
+    /// The normal at a foot: of the surface if it is smooth there or the node lies on it, else the direction to the
+    /// foot.
     fn normal(&self, node: [f64; 3], foot: &Foot, sense: f64, tolerance: f64) -> [f64; 3] {
         let near = [0, 1].map(|axis| {
             let cell = |at: f64| self.cell_at(axis, at);
@@ -246,7 +248,8 @@ impl Grid for HeightMap {
         let sum = normals.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
         let length = dot(sum, sum).sqrt();
         let normal = sum.map(|part| part / length);
-        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther away.
+        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther
+        // away.
         let (foot, own) = (apart.first()?, *normals.first()?);
         let to_foot = [0, 1, 2].map(|axis| foot.at[axis] - node[axis]);
         Some((normal, dot(own, to_foot) / dot(own, normal)))

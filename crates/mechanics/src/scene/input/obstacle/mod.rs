@@ -112,7 +112,8 @@ impl ShapeSpec {
         self.described().1
     }
 
-    /// What [`about`](Self::about) and [`shape`](Self::shape) return: the only place that distinguishes the kinds of obstacles.
+    /// What [`about`](Self::about) and [`shape`](Self::shape) return: the only place that distinguishes the kinds of
+    /// obstacles.
     fn described(&self) -> (About, &dyn ObstacleShape) {
         match self {
             ShapeSpec::Plane(spec) => (plane::ABOUT, spec),
@@ -130,7 +131,8 @@ impl ShapeSpec {
         }
     }
 
-    /// A message that a model of `dimension` coordinates does not allow the shape, with the allowed shapes; `None` if it does.
+    /// A message that a model of `dimension` coordinates does not allow the shape, with the allowed shapes; `None` if
+    /// it does.
     fn misfit(&self, dimension: usize) -> Option<String> {
         let about = self.about();
         if about.dimensions.contains(&dimension) {

@@ -19,12 +19,12 @@ const COARSE: f64 = 4.0;
 /// A boundary covered by less than this share is only partly covered.
 const COVERED: f64 = 1.0 - 1e-6;
 
-/// The sag of straight facets that counts, in gaps: gaps are those of curves through the nodes, which miss circles by a two-hundredth of the
-/// sag, uneven meshes included.
+/// The sag of straight facets that counts, in gaps: gaps are those of curves through the nodes, which miss circles by a
+/// two-hundredth of the sag, uneven meshes included.
 const SAG: f64 = 5.0;
 
-/// The rows between the boundary of an obstacle and that of another body; `side` is `true` if the other boundary is to carry them, and
-/// `None` to choose.
+/// The rows between the boundary of an obstacle and that of another body; `side` is `true` if the other boundary is to
+/// carry them, and `None` to choose.
 ///
 /// # Errors
 /// [`Error::Scene`] if a surface lies in several layers before the other within reach.
@@ -67,8 +67,8 @@ pub(super) fn between(
     })
 }
 
-/// The means of the first boundary over the second within reach, along a direction or half way between the normals of both, at the nodes
-/// that may carry one.
+/// The means of the first boundary over the second within reach, along a direction or half way between the normals of
+/// both, at the nodes that may carry one.
 ///
 /// # Errors
 /// [`Error::Scene`] at `path` if a surface lies in several layers before the other within reach.
@@ -93,7 +93,8 @@ pub(crate) fn means(
     })
 }
 
-/// The nodes that a row couples, its own first, with their shares: displacements of nodes with coefficients are sums of these.
+/// The nodes that a row couples, its own first, with their shares: displacements of nodes with coefficients are sums of
+/// these.
 pub(crate) fn ends(row: &MortarRow, basis: &PositiveBasis) -> Vec<(usize, f64)> {
     let mut ends = row.slave.clone();
     ends.sort_by_key(|end| end.0 != row.node);

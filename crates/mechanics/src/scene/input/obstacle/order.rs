@@ -6,11 +6,12 @@ use super::pairs::Facing;
 use crate::fem::assembly::facet_sizes;
 use crate::fem::{Boundary, ElasticBody};
 
-/// A body whose Young's modulus exceeds that of the softest one of a class by more than this factor begins the next class.
+/// A body whose Young's modulus exceeds that of the softest one of a class by more than this factor begins the next
+/// class.
 const AS_SOFT: f64 = 2.0;
 
-/// The places of all bodies in one order: soft before stiff, then small facets before large ones, then as in the scene. The body that comes
-/// first carries the rows of a pair, so that rows never lead in a circle.
+/// The places of all bodies in one order: soft before stiff, then small facets before large ones, then as in the scene.
+/// The body that comes first carries the rows of a pair, so that rows never lead in a circle.
 #[derive(Clone, Debug)]
 pub(crate) struct SideOrder {
     places: Vec<usize>,
@@ -45,8 +46,9 @@ impl SideOrder {
         other < own
     }
 
-    /// The first obstacle whose side is against the order, and whose rows lead to nodes that carry rows which lead back: a contact would
-    /// count twice. Rows are given with the numbers of their obstacles. Without sides against the order there is none.
+    /// The first obstacle whose side is against the order, and whose rows lead to nodes that carry rows which lead
+    /// back: a contact would count twice. Rows are given with the numbers of their obstacles. Without sides against the
+    /// order there is none.
     pub fn circle<'a>(&self, body: &ElasticBody, rows: impl Iterator<Item = (usize, &'a Facing)>) -> Option<usize> {
         let mut steps: Vec<(usize, usize, usize)> = Vec::new();
         for (obstacle, row) in rows.filter(|(_, row)| row.area.is_some()) {

@@ -11,7 +11,8 @@ pub(crate) struct Facing {
     pub ends: Vec<(usize, f64)>,
     /// The normal of the row, of length 1, from the candidate's body into the other.
     pub normal: [f64; 3],
-    /// The direction half way between the normals of both surfaces at the row, from the candidate's body into the other.
+    /// The direction half way between the normals of both surfaces at the row, from the candidate's body into the
+    /// other.
     pub mean: [f64; 3],
     /// Distance along the normal to the other body, in length.
     pub distance: f64,
@@ -31,8 +32,8 @@ impl Facing {
 pub(crate) struct Between {
     /// The row of each candidate of the boundary that carries the rows; `None` where nothing faces it.
     pub rows: Vec<Option<Facing>>,
-    /// For nodes of the other body the place that they face, as a row against their own normal: not a row of the problem, but the
-    /// same contact seen from there.
+    /// For nodes of the other body the place that they face, as a row against their own normal: not a row of the
+    /// problem, but the same contact seen from there.
     pub across: Vec<(usize, Facing)>,
     /// Name of the boundary that the rows lead to.
     pub other: String,

@@ -10,8 +10,8 @@ const SECTIONS: usize = 40;
 /// Newton's method reaches eight correct digits in one step and all digits in the next; the third is for safety.
 const NEWTON_STEPS: usize = 3;
 
-/// A longer step, in the cell's own coordinates, does not come from the rounding of a search: the distance has no curvature there, and
-/// the result of the search is used.
+/// A longer step, in the cell's own coordinates, does not come from the rounding of a search: the distance has no
+/// curvature there, and the result of the search is used.
 const LONG_STEP: f64 = 1e-3;
 
 /// A search that ends at an edge is within this distance of the edge, in the cell's own coordinates.
@@ -72,7 +72,8 @@ impl Patch {
         [self.along_segment(node, low, high), v]
     }
 
-    /// The closest place on the straight line on the surface between two places in the cell's coordinates, as a share from 0 to 1.
+    /// The closest place on the straight line on the surface between two places in the cell's coordinates, as a share
+    /// from 0 to 1.
     fn along_segment(&self, node: [f64; 3], from: [f64; 2], to: [f64; 2]) -> f64 {
         let (start, end) = (self.point(from), self.point(to));
         let along = [0, 1, 2].map(|axis| end[axis] - start[axis]);
@@ -88,8 +89,8 @@ impl Patch {
 
     /// The closest points of the four edges, and all points inside the cell that are closer than their neighbourhood.
     ///
-    /// The edges are straight. Inside, the distance to the closest point of each ruling is searched in strips: every local minimum by
-    /// golden section, then by Newton's method.
+    /// The edges are straight. Inside, the distance to the closest point of each ruling is searched in strips: every
+    /// local minimum by golden section, then by Newton's method.
     pub fn feet(&self, node: [f64; 3]) -> Vec<Foot> {
         let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let mut feet: Vec<Foot> = (0..4)
@@ -120,8 +121,8 @@ impl Patch {
         feet
     }
 
-    /// Newton's method on the gradient of half the squared distance, as long as the distance does not grow; `None` if the foot lies on an
-    /// edge.
+    /// Newton's method on the gradient of half the squared distance, as long as the distance does not grow; `None` if
+    /// the foot lies on an edge.
     fn settled(&self, node: [f64; 3], start: [f64; 2]) -> Option<[f64; 2]> {
         let [a, b, c, d] = self.corners;
         let twist = a - b - c + d;

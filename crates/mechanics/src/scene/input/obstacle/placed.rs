@@ -182,8 +182,8 @@ impl PlacedObstacle {
         }
     }
 
-    /// Its whole shift along the approach direction if the scene shifts all obstacles by `gap`, in length, without the travel under a
-    /// force.
+    /// Its whole shift along the approach direction if the scene shifts all obstacles by `gap`, in length, without the
+    /// travel under a force.
     pub fn shift(&self, gap: f64) -> f64 {
         gap + self.gap
     }
@@ -224,9 +224,9 @@ impl PlacedObstacle {
         &self.candidates
     }
 
-    /// The surface as a polyline [x, y] for pictures, in length: over the body's extent and its size beyond, shifted by `gap`
-    /// along the approach direction, in `segments` pieces (10,000 at most), with exact corners. The obstacle lies on
-    /// the side to which [`approach`](Self::approach) points. Empty if the surface does not reach over the body, for
+    /// The surface as a polyline [x, y] for pictures, in length: over the body's extent and its size beyond, shifted by
+    /// `gap` along the approach direction, in `segments` pieces (10,000 at most), with exact corners. The obstacle lies
+    /// on the side to which [`approach`](Self::approach) points. Empty if the surface does not reach over the body, for
     /// another body, and outside the plane.
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         self.rigid().map_or_else(Vec::new, |obstacle| obstacle.outline(gap, segments))
@@ -240,7 +240,8 @@ impl PlacedObstacle {
         }
     }
 
-    /// The row of the candidate of this index against another body; `None` if the obstacle is rigid, or nothing faces the candidate.
+    /// The row of the candidate of this index against another body; `None` if the obstacle is rigid, or nothing faces
+    /// the candidate.
     pub(crate) fn facing(&self, candidate: usize) -> Option<&Facing> {
         match &self.geometry {
             Geometry::Body(between) => between.rows.get(candidate)?.as_ref(),
@@ -261,8 +262,9 @@ impl PlacedObstacle {
         }
     }
 
-    /// The name of the boundary of the other body, if the obstacle is one, and, if the rows are means, the covered shares `[own, other]`,
-    /// dimensionless, from 0 to 1: of the area of [`boundary`](Self::boundary), and of the nodes of the other boundary.
+    /// The name of the boundary of the other body, if the obstacle is one, and, if the rows are means, the covered
+    /// shares `[own, other]`, dimensionless, from 0 to 1: of the area of [`boundary`](Self::boundary), and of the nodes
+    /// of the other boundary.
     pub fn other_body(&self) -> Option<(&str, Option<[f64; 2]>)> {
         match &self.geometry {
             Geometry::Body(between) => Some((&between.other, between.covered)),
@@ -283,8 +285,8 @@ impl PlacedObstacle {
         self.outward.get(candidate).copied().unwrap_or_default()
     }
 
-    /// The unit normal of the surface, into the obstacle, at the point where the row of the candidate of this index meets it; for another
-    /// body the mean of both normals. `None` if it is out of reach.
+    /// The unit normal of the surface, into the obstacle, at the point where the row of the candidate of this index
+    /// meets it; for another body the mean of both normals. `None` if it is out of reach.
     pub(crate) fn surface_normal(&self, candidate: usize, node: [f64; 3], gap: f64) -> Option<[f64; 3]> {
         match &self.geometry {
             Geometry::Rigid(obstacle) => obstacle.surface_normal(node, gap),
@@ -292,7 +294,8 @@ impl PlacedObstacle {
         }
     }
 
-    /// The row of the candidate of this index, at the place `node`, with the surface shifted by `gap`; `None` if it is out of reach.
+    /// The row of the candidate of this index, at the place `node`, with the surface shifted by `gap`; `None` if it is
+    /// out of reach.
     ///
     /// # Errors
     /// A predicate of the node, if no meaningful row exists.

@@ -8,8 +8,8 @@ use super::triangle::NOT_ENCLOSED;
 /// node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObstacleRow {
-    /// Direction of the bounded displacement: a dimensionless vector [x, y, z] of length 1 into the obstacle, zero beyond the dimension of
-    /// the model.
+    /// Direction of the bounded displacement: a dimensionless vector [x, y, z] of length 1 into the obstacle, zero
+    /// beyond the dimension of the model.
     pub normal: [f64; 3],
     /// Signed distance from the undeformed node to the obstacle along `normal`, in length; negative inside.
     pub gap: f64,
@@ -24,7 +24,8 @@ impl ObstacleRow {
 
 /// A rigid obstacle: it gives the node at any point its contact row.
 ///
-/// All rigid shapes of a scene are obstacles. A user-defined obstacle is added by [`Scene::build_with`](crate::Scene::build_with).
+/// All rigid shapes of a scene are obstacles. A user-defined obstacle is added by
+/// [`Scene::build_with`](crate::Scene::build_with).
 ///
 /// ```
 /// use std::sync::Arc;
@@ -69,7 +70,8 @@ pub trait Obstacle: Debug + Send + Sync {
     /// obstacle does not reach there.
     ///
     /// # Errors
-    /// The fault of the node, as it follows "node 7 at (0, 1)" in a message: "lies deeper in the circle than its centre".
+    /// The fault of the node, as it follows "node 7 at (0, 1)" in a message: "lies deeper in the circle than its
+    /// centre".
     fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String>;
 
     /// The same, with the obstacle moved by `shift` along its approach direction, in length.
@@ -88,10 +90,10 @@ pub trait Obstacle: Debug + Send + Sync {
         Some(self.shifted_row(point, shift).ok()??.normal)
     }
 
-    /// The gap along the approach direction on the straight line between two points, with the obstacle moved by `shift`: its values
-    /// `[from, middle, to]`, and its largest distances `[below, above]` from the quadratic function through these, all in length; `above`
-    /// is infinite if the obstacle ends on the line. The guaranteed bound of the total error needs it; `None` if the obstacle does not
-    /// reach there, or cannot give it.
+    /// The gap along the approach direction on the straight line between two points, with the obstacle moved by
+    /// `shift`: its values `[from, middle, to]`, and its largest distances `[below, above]` from the quadratic function
+    /// through these, all in length; `above` is infinite if the obstacle ends on the line. The guaranteed bound of the
+    /// total error needs it; `None` if the obstacle does not reach there, or cannot give it.
     fn gap_along(&self, _from: [f64; 3], _to: [f64; 3], _shift: f64) -> Option<([f64; 3], [f64; 2])> {
         None
     }

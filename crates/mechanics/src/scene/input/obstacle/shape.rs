@@ -157,7 +157,8 @@ impl Site<'_> {
         positive(&self.field(name), value)
     }
 
-    /// The apex of a round shape, given directly or by its centre, which lies `radius` further along the approach direction.
+    /// The apex of a round shape, given directly or by its centre, which lies `radius` further along the approach
+    /// direction.
     pub fn apex<const N: usize>(
         &self,
         centre: Option<[f64; N]>,

@@ -15,8 +15,8 @@ pub struct SphereSpec {
     /// The centre of the sphere that the body may touch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
-    /// The point of the sphere nearest to the body: the centre minus the radius along the approach direction; from inside, the centre plus
-    /// the radius.
+    /// The point of the sphere nearest to the body: the centre minus the radius along the approach direction; from
+    /// inside, the centre plus the radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Radius of the sphere, positive. Nodes beyond its reach have no contact row.

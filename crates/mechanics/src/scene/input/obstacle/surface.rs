@@ -19,8 +19,8 @@ pub(crate) trait Surface: Debug + Send + Sync {
     /// The height towards the obstacle, or `None` beyond the surface's reach.
     fn height(&self, along: f64) -> Option<f64>;
 
-    /// The values of a quadratic function at both ends of a stretch within reach and in its middle, and the largest distances
-    /// `[below, above]` of the surface from it, which are zero for a surface that is quadratic itself.
+    /// The values of a quadratic function at both ends of a stretch within reach and in its middle, and the largest
+    /// distances `[below, above]` of the surface from it, which are zero for a surface that is quadratic itself.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
         Some((self.heights(from, to)?, [0.0; 2]))
     }
@@ -32,7 +32,8 @@ pub(crate) trait Surface: Debug + Send + Sync {
         Some(([self.height(near)?, self.height(far)?], [0.0; 2]))
     }
 
-    /// The foot closest to `node`, or `None` if no part of the surface faces it; lengths below `tolerance` are rounding.
+    /// The foot closest to `node`, or `None` if no part of the surface faces it; lengths below `tolerance` are
+    /// rounding.
     ///
     /// For a node behind a vertex or on an axis, equally close to both sides, the direction is along the axis.
     ///

@@ -16,8 +16,8 @@ use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TableSpec {
-    /// At least two points [x, y], increasing in the coordinate perpendicular to the approach direction, from the first candidate to the
-    /// last or beyond.
+    /// At least two points [x, y], increasing in the coordinate perpendicular to the approach direction, from the first
+    /// candidate to the last or beyond.
     #[schemars(extend("minItems" = 2))]
     pub points: Vec<[f64; 2]>,
 }

@@ -21,8 +21,8 @@ const ALIGNED: f64 = 1e-9;
 pub struct TorusSpec {
     /// The centre of the torus.
     pub centre: [f64; 3],
-    /// Direction of the axis, along the approach direction (the ring lies flat in front of the body) or perpendicular to it (the ring
-    /// stands upright), of any length except zero.
+    /// Direction of the axis, along the approach direction (the ring lies flat in front of the body) or perpendicular
+    /// to it (the ring stands upright), of any length except zero.
     pub axis: [f64; 3],
     /// Radius of the ring in the middle of the tube.
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -105,8 +105,8 @@ impl Torus {
         .map(|height| -height)
     }
 
-    /// Unit normal into the torus at the closest point that faces the body, and the distance along it; `None` if no closest point faces
-    /// the body.
+    /// Unit normal into the torus at the closest point that faces the body, and the distance along it; `None` if no
+    /// closest point faces the body.
     fn closest(&self, from_centre: [f64; 3]) -> Result<Option<([f64; 3], f64)>, String> {
         let along = dot(from_centre, self.axis);
         let aside = minus(from_centre, self.axis.map(|part| along * part));
@@ -117,8 +117,8 @@ impl Torus {
         }
         let distance = to_ring - self.minor;
         if radius <= self.rounding && self.stands == Stands::Flat {
-            // On the axis the ring is equally close all around: go straight on to the point where the planes through the closest points
-            // meet.
+            // On the axis the ring is equally close all around: go straight on to the point where the planes through
+            // the closest points meet.
             return Ok((along < -self.rounding).then(|| (self.approach, distance * to_ring / -along)));
         }
         // On the axis of an upright ring the closest point lies straight ahead.

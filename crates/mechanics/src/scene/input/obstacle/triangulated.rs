@@ -20,13 +20,13 @@ const OF_FILE: f64 = 3.0;
 
 /// A closed surface of triangles from an STL file, binary or ASCII, or an OBJ file; flat triangles, never smoothed.
 ///
-/// Every edge must join two triangles. The order of its corners gives the outside of a triangle: counterclockwise seen from outside; if
-/// all run clockwise, all are reversed.
+/// Every edge must join two triangles. The order of its corners gives the outside of a triangle: counterclockwise seen
+/// from outside; if all run clockwise, all are reversed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceSpec {
-    /// The file, `.stl` or `.obj`, inside the folder of the scene unless reading outside is allowed; a relative name starts in that
-    /// folder.
+    /// The file, `.stl` or `.obj`, inside the folder of the scene unless reading outside is allowed; a relative name
+    /// starts in that folder.
     pub file: String,
     /// Factor of the coordinates of the triangles, positive.
     #[serde(default = "crate::scene::input::schema::cells::one")]
@@ -73,8 +73,8 @@ struct Triangulated {
 }
 
 impl Triangulated {
-    /// The distance along the approach direction from a node to its entry into the obstacle: the first entry ahead, or the last one
-    /// behind for a node in the obstacle; `None` if no entry exists.
+    /// The distance along the approach direction from a node to its entry into the obstacle: the first entry ahead, or
+    /// the last one behind for a node in the obstacle; `None` if no entry exists.
     fn entry(&self, node: [f64; 3]) -> Option<f64> {
         let (axis, sense) = self.approach.axis();
         let mut crossings: Vec<Crossing> = self.surface.crossings(axis, node);

@@ -22,7 +22,8 @@ pub enum AnalysisSpec {
     Modes(ModesSpec),
 }
 
-/// The natural vibrations about the equilibrium: rows that are closed there stay closed. Every material needs a density.
+/// The natural vibrations about the equilibrium: rows that are closed there stay closed. Every material needs a
+/// density.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModesSpec {
@@ -42,15 +43,17 @@ pub struct DynamicSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub step: Option<f64>,
-    /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element, 0.5 if left out.
-    /// With `central-difference`: the step over the largest stable step, at most 1, and 0.9 if left out.
+    /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element,
+    /// 0.5 if left out. With `central-difference`: the step over the largest stable step, at most 1, and 0.9 if left
+    /// out.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub courant: Option<f64>,
     /// The scheme.
     #[serde(default)]
     pub scheme: SchemeSpec,
-    /// The form of the mass. If left out: `averaged` for `fox-goodwin`, `lumped` for `central-difference`, `redistributed` for `midpoint`, `consistent` for the others.
+    /// The form of the mass. If left out: `averaged` for `fox-goodwin`, `lumped` for `central-difference`,
+    /// `redistributed` for `midpoint`, `consistent` for the others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass: Option<MassForm>,
     /// Damping of `hht`: from -1/3 to 0, -0.1 if left out.
@@ -61,13 +64,13 @@ pub struct DynamicSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub penalty: Option<f64>,
-    /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest displacement of
-    /// the body; positive and at most 0.1, 1e-6 if left out.
+    /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest
+    /// displacement of the body; positive and at most 0.1, 1e-6 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.1))]
     pub threshold: Option<f64>,
-    /// Velocity of a node after its impact over that before, in `central-difference`, from 0 to 1; 0 if left out. Above 0 the energy of a
-    /// mesh can grow; smaller steps reduce the growth.
+    /// Velocity of a node after its impact over that before, in `central-difference`, from 0 to 1; 0 if left out. Above
+    /// 0 the energy of a mesh can grow; smaller steps reduce the growth.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     pub restitution: Option<f64>,
@@ -83,7 +86,8 @@ pub struct DynamicSpec {
     /// The change of the loads of the scene with time; a load that is not mentioned is constant.
     #[serde(default)]
     pub loads_in_time: Vec<LoadInTimeSpec>,
-    /// Obstacles that move along their approach direction, with any number of entries for each. Only `fox-goodwin` follows them.
+    /// Obstacles that move along their approach direction, with any number of entries for each. Only `fox-goodwin`
+    /// follows them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub obstacles_in_time: Vec<ObstacleInTimeSpec>,
     /// States of the body that are written and shown, evenly over the duration, besides the first; at most 10000.
@@ -142,7 +146,8 @@ pub struct InitialSpec {
 pub struct FieldSpec {
     /// Value at the origin, one entry for each coordinate.
     pub value: Vec<f64>,
-    /// Rows of the gradient, one row for each component of the field, with one entry for each coordinate; zero if left out.
+    /// Rows of the gradient, one row for each component of the field, with one entry for each coordinate; zero if left
+    /// out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gradient: Vec<Vec<f64>>,
 }
@@ -174,8 +179,8 @@ pub struct LoadInTimeSpec {
 pub struct ObstacleInTimeSpec {
     /// Number of the entry of `obstacles`, from 0.
     pub obstacle: usize,
-    /// Its displacement along its approach direction when the factor has grown by 1 since the start, in length; a negative shift moves it
-    /// towards the body.
+    /// Its displacement along its approach direction when the factor has grown by 1 since the start, in length; a
+    /// negative shift moves it towards the body.
     pub shift: f64,
     /// The factor over time.
     pub factor: FactorSpec,

@@ -30,16 +30,16 @@ pub struct MaterialSpec {
     pub density: Option<f64>,
 }
 
-/// Orthotropic elasticity, along the axes 1, 2, 3 of the material. These are x, y, z unless they are rotated; in an axisymmetric model
-/// the radius, y and the hoop direction. A bar lies along axis 1.
+/// Orthotropic elasticity, along the axes 1, 2, 3 of the material. These are x, y, z unless they are rotated; in an
+/// axisymmetric model the radius, y and the hoop direction. A bar lies along axis 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrthotropicSpec {
     /// Young's moduli `[E1, E2, E3]`, positive, in force per area.
     #[schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0}))]
     pub young: [f64; 3],
-    /// Poisson's ratios `[nu12, nu23, nu13]`: tension along i contracts the material along j by nu_ij times its extension, and nu_ij/E_i =
-    /// nu_ji/E_j. The stiffness must be positive definite.
+    /// Poisson's ratios `[nu12, nu23, nu13]`: tension along i contracts the material along j by nu_ij times its
+    /// extension, and nu_ij/E_i = nu_ji/E_j. The stiffness must be positive definite.
     pub poisson: [f64; 3],
     /// Shear moduli `[G12, G23, G13]`, positive, in force per area.
     #[schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0}))]
@@ -50,7 +50,8 @@ pub struct OrthotropicSpec {
     /// The angle from x to axis 1, counterclockwise, in degrees; only in plane and axisymmetric models.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
-    /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both vectors, at right angles to axis 1.
+    /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both vectors, at right angles to
+    /// axis 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axes: Option<[Vec<f64>; 2]>,
     /// A line around which the axes turn: axis 1 leads away from it, 2 around it, 3 along it.
@@ -69,7 +70,8 @@ pub struct LineSpec {
     pub along: Option<Vec<f64>>,
 }
 
-/// The material of a part of a body: of the elements of a group, of the elements with the centroid in a box, or of the elements in both.
+/// The material of a part of a body: of the elements of a group, of the elements with the centroid in a box, or of the
+/// elements in both.
 ///
 /// If several parts contain an element, the last one counts. The elements are chosen again on every mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -85,8 +87,9 @@ pub struct MaterialPartSpec {
     pub material: MaterialSpec,
 }
 
-/// The temperature of a body above the stress-free one, or of its part in a group, in a box, or in both: `value` plus the gradient times
-/// the position. If several entries contain an element, the last one counts; elements in no entry are stress-free.
+/// The temperature of a body above the stress-free one, or of its part in a group, in a box, or in both: `value` plus
+/// the gradient times the position. If several entries contain an element, the last one counts; elements in no entry
+/// are stress-free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TemperatureSpec {
@@ -103,11 +106,11 @@ pub struct TemperatureSpec {
     pub gradient: Vec<f64>,
 }
 
-/// A stress that acts without strain, in a body or in its part in a group, in a box, or in both, in force per area; tension is positive.
-/// If several entries contain an element, the last one counts.
+/// A stress that acts without strain, in a body or in its part in a group, in a box, or in both, in force per area;
+/// tension is positive. If several entries contain an element, the last one counts.
 ///
-/// Allowed components: xx in a bar; xx, yy, xy in plane stress; also zz in plane strain; also zz, the hoop stress, in an axisymmetric
-/// body; all six in space.
+/// Allowed components: xx in a bar; xx, yy, xy in plane stress; also zz in plane strain; also zz, the hoop stress, in
+/// an axisymmetric body; all six in space.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct InitialStressSpec {

@@ -22,8 +22,8 @@ pub enum Place {
 
 /// A support: a direction that is left out is free; a number is the prescribed displacement.
 ///
-/// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, the components along the
-/// plane are free. In an axisymmetric model the plane is a cone.
+/// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, the
+/// components along the plane are free. In an axisymmetric model the plane is a cone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {

@@ -17,13 +17,15 @@ pub enum LoadSpec {
     Pressure(PressureSpec),
     /// A force at a node, or on a boundary.
     Force(ForceSpec),
-    /// Forces on nodes of a deck: for each name of a set or number of a node the force that each of its nodes carries. They add up.
+    /// Forces on nodes of a deck: for each name of a set or number of a node the force that each of its nodes carries.
+    /// They add up.
     NodalForces(BTreeMap<String, Vec<f64>>),
     /// A moment on a boundary.
     Moment(MomentSpec),
     /// A constant body force, in force per volume.
     BodyForce(Vec<f64>),
-    /// The acceleration of gravity, in length per time squared: a body force of density times acceleration. Needs a density.
+    /// The acceleration of gravity, in length per time squared: a body force of density times acceleration. Needs a
+    /// density.
     Gravity(Vec<f64>),
     /// The centrifugal force of a rotation. Needs a density.
     Centrifugal(CentrifugalSpec),
@@ -77,13 +79,14 @@ pub struct ForceSpec {
     /// The boundary, instead of a point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<String>,
-    /// The force on the whole thickness, or on the full circle of a body of revolution; its radial component is summed around the circle.
+    /// The force on the whole thickness, or on the full circle of a body of revolution; its radial component is summed
+    /// around the circle.
     pub value: Vec<f64>,
 }
 
-/// A moment on a boundary: a traction proportional to the distance from the centre of the boundary, at right angles to the vector from
-/// there and to an axis; on a flat end it is the traction of pure bending. Its force is zero, so that its moment is the same about every
-/// point.
+/// A moment on a boundary: a traction proportional to the distance from the centre of the boundary, at right angles to
+/// the vector from there and to an axis; on a flat end it is the traction of pure bending. Its force is zero, so that
+/// its moment is the same about every point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MomentSpec {
@@ -95,8 +98,8 @@ pub struct MomentSpec {
     #[schemars(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Vec<f64>>,
-    /// The moment, in force times length: `[m]` about z in the plane, on the whole thickness, counterclockwise; three components in
-    /// space.
+    /// The moment, in force times length: `[m]` about z in the plane, on the whole thickness, counterclockwise; three
+    /// components in space.
     pub value: Vec<f64>,
 }
 

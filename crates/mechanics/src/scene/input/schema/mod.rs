@@ -49,11 +49,12 @@ const FORMAT: u32 = 1;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
-    /// Path of the JSON Schema of scenes, for editors: a file that `signorini schema` printed. The program does not read it.
+    /// Path of the JSON Schema of scenes, for editors: a file that `signorini schema` printed. The program does not
+    /// read it.
     #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
-    /// Version of the format of scenes: 1, the only one so far. Later formats will have other numbers, and be refused by programs that do
-    /// not read them.
+    /// Version of the format of scenes: 1, the only one so far. Later formats will have other numbers, and be refused
+    /// by programs that do not read them.
     #[serde(default, deserialize_with = "format", skip_serializing_if = "Option::is_none")]
     #[schemars(extend("const" = 1))]
     pub format: Option<u32>,
@@ -102,8 +103,8 @@ pub struct Scene {
     /// Springs between the bodies and the ground, or between nodes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
-    /// Planes of symmetry: the body is a half, a quarter or an eighth of a whole. Each is supported, and forces and areas in
-    /// reports are those of the whole.
+    /// Planes of symmetry: the body is a half, a quarter or an eighth of a whole. Each is supported, and forces and
+    /// areas in reports are those of the whole.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub symmetry: Vec<SymmetryPlane>,
     /// External loads; they add up.
@@ -179,8 +180,8 @@ impl Units {
         }
     }
 
-    /// Pascals in a unit of force over a unit of length squared, if the length is in millimetres: a scene that names no units has metres,
-    /// which may stand for any consistent system.
+    /// Pascals in a unit of force over a unit of length squared, if the length is in millimetres: a scene that names no
+    /// units has metres, which may stand for any consistent system.
     pub(crate) fn pascals(&self) -> Option<f64> {
         let newtons = match self.force.as_str() {
             "N" => 1.0,

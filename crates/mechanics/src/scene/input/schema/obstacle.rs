@@ -10,7 +10,8 @@ use crate::scene::input::obstacle::ShapeSpec;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactSpec {
-    /// All surfaces of different bodies that face each other within reach are found; those that an obstacle names stay as they are.
+    /// All surfaces of different bodies that face each other within reach are found; those that an obstacle names stay
+    /// as they are.
     Auto,
 }
 
@@ -26,17 +27,19 @@ pub struct ObstacleSpec {
     /// The rule for the contact row of a node.
     #[serde(default)]
     pub rule: Rule,
-    /// Shift of this obstacle along its approach direction, in addition to that of the whole scene; a negative shift moves it towards the
-    /// body.
+    /// Shift of this obstacle along its approach direction, in addition to that of the whole scene; a negative shift
+    /// moves it towards the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
-    /// The force, positive, that presses the obstacle against its approach direction; the obstacle moves only along this direction. In
-    /// force; for a body of revolution that of the full circle. The travel of the obstacle is computed.
+    /// The force, positive, that presses the obstacle against its approach direction; the obstacle moves only along
+    /// this direction. In force; for a body of revolution that of the full circle. The travel of the obstacle is
+    /// computed.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub force: Option<f64>,
-    /// The mass of an obstacle that moves along its approach direction in a motion, positive, as a hammer does; for a body of revolution that
-    /// of the full circle. It starts at its `gap`, with its `speed`, under its `force`, if it has one.
+    /// The mass of an obstacle that moves along its approach direction in a motion, positive, as a hammer does; for a
+    /// body of revolution that of the full circle. It starts at its `gap`, with its `speed`, under its `force`, if it
+    /// has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub mass: Option<f64>,

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A part of a boundary: all its facets with the centroid in the box and in the sphere, and with the outward normal around the direction.
-/// A condition that is left out is always met.
+/// A part of a boundary: all its facets with the centroid in the box and in the sphere, and with the outward normal
+/// around the direction. A condition that is left out is always met.
 ///
 /// The facets are chosen again on every mesh: a part that ends within a facet changes with the mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::input::names;
 
-/// A boundary that moves as a rigid plate: a displacement of its centre and a rotation about it. Components that are not prescribed
-/// follow from the force and the moment.
+/// A boundary that moves as a rigid plate: a displacement of its centre and a rotation about it. Components that are
+/// not prescribed follow from the force and the moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidFaceSpec {

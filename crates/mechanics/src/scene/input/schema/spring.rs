@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::condition::Place;
 use super::tie::TermSpec;
 
-/// Springs, which act in tension and compression: between the body and the ground at a node, or spread over a boundary as an elastic
-/// foundation; or between nodes.
+/// Springs, which act in tension and compression: between the body and the ground at a node, or spread over a boundary
+/// as an elastic foundation; or between nodes.
 ///
 /// A direction that is left out has no spring.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

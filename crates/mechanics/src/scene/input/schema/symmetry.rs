@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A plane of symmetry, given by the axis normal to it. It lies at the flat end of the body, at zero if the body has a flat end there.
+/// A plane of symmetry, given by the axis normal to it. It lies at the flat end of the body, at zero if the body has a
+/// flat end there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SymmetryPlane {

@@ -17,8 +17,8 @@ pub enum TieSpec {
     Preload(PreloadSpec),
 }
 
-/// Two surfaces that stay together, in the mean over the area of each node of one of them. Their meshes need not match. The softer body, or
-/// the one with the smaller facets, takes the means.
+/// Two surfaces that stay together, in the mean over the area of each node of one of them. Their meshes need not match.
+/// The softer body, or the one with the smaller facets, takes the means.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TiedSurfacesSpec {
@@ -32,8 +32,8 @@ pub struct TiedSurfacesSpec {
     pub reach: Option<f64>,
 }
 
-/// The preload of a bolt that is cut across: the two faces of the cut move together along themselves, and towards each other by one
-/// shortening. Their meshes need not match. Give a force or a shortening.
+/// The preload of a bolt that is cut across: the two faces of the cut move together along themselves, and towards each
+/// other by one shortening. Their meshes need not match. Give a force or a shortening.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PreloadSpec {
@@ -47,7 +47,8 @@ pub struct PreloadSpec {
     /// The length by which the bolt is shortened.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortening: Option<f64>,
-    /// The direction from the first part to the other, of any length; the mean outward normal of the face if it is left out.
+    /// The direction from the first part to the other, of any length; the mean outward normal of the face if it is left
+    /// out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<Vec<f64>>,
 }

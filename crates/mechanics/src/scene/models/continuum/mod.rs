@@ -46,8 +46,8 @@ impl Scene {
         }
     }
 
-    /// Asks for a guaranteed bound: the problem of the polygon or polyhedron that the mesh of `model` fills and the initial simplices, or
-    /// why not.
+    /// Asks for a guaranteed bound: the problem of the polygon or polyhedron that the mesh of `model` fills and the
+    /// initial simplices, or why not.
     pub(crate) fn continuum_problem(&self, model: &Model) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
         let body = model.body();
         let formulation = *body.formulation();
@@ -185,7 +185,8 @@ impl Scene {
     }
 }
 
-/// The problem with a mesh on which some facet lies all within the reach of each pressed obstacle; it is refined there if need be.
+/// The problem with a mesh on which some facet lies all within the reach of each pressed obstacle; it is refined there
+/// if need be.
 fn within_reach(problem: ContinuumProblem, mut mesh: SimplexMesh) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
     for round in 0.. {
         let (mut has_facet, mut partly) = (vec![false; problem.obstacles.len()], Vec::new());

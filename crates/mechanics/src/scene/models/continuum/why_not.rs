@@ -11,7 +11,8 @@ pub(crate) struct NoGuarantee {
     pub message: String,
 }
 
-/// Why there is no problem of the continuum: an answer to the question for a guarantee, or a failure, which answers nothing.
+/// Why there is no problem of the continuum: an answer to the question for a guarantee, or a failure, which answers
+/// nothing.
 #[derive(Debug)]
 pub(crate) enum WhyNot {
     /// The scene has no guaranteed bound.

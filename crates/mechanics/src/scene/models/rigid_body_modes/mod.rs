@@ -16,8 +16,8 @@ use crate::fem::geometry::COORDINATES;
 use signorini_qp::dot;
 use unit::{NAMED, Sense, UnitMotions};
 
-/// A motion is held if its singular value exceeds this times the largest. A free motion has zero up to rounding, 1e-16, and any intended
-/// support or normal gives a value far above.
+/// A motion is held if its singular value exceeds this times the largest. A free motion has zero up to rounding, 1e-16,
+/// and any intended support or normal gives a value far above.
 const HELD: f64 = 1e-10;
 
 /// The rigid-body modes of the bodies of a model; each body moves independently.
@@ -54,7 +54,8 @@ impl RigidBodyModes {
         self.bodies.iter().enumerate().flat_map(|entry| of_body(entry).collect::<Vec<_>>()).collect()
     }
 
-    /// The component along `direction` of each unit motion at a place that moves with a node; zero for those of other bodies.
+    /// The component along `direction` of each unit motion at a place that moves with a node; zero for those of other
+    /// bodies.
     fn along(&self, node: usize, at: [f64; 3], direction: [f64; 3]) -> Vec<f64> {
         let of_body = |motions: &UnitMotions| match motions.nodes.contains(&node) {
             true => motions.along(at, direction),
@@ -84,7 +85,8 @@ impl RigidBodyModes {
         components
     }
 
-    /// The component of each unit motion in the equation of a tie: surfaces are tied at one place, whatever their distance.
+    /// The component of each unit motion in the equation of a tie: surfaces are tied at one place, whatever their
+    /// distance.
     fn in_tie(&self, parts: &Parts, row: &TieRow) -> Vec<f64> {
         let nodes = parts.body.mesh().nodes();
         self.in_sum(&row.terms, |node| row.at.unwrap_or_else(|| parts.dofs.basis.place(nodes, node)))
@@ -118,8 +120,8 @@ impl RigidBodyModes {
             if motion.kind < 3 {
                 return self.along(node, face.centre, COORDINATES[motion.kind]);
             }
-            // A rotation is the difference along the second next axis between the motions of the centre and of a place one step along the
-            // next axis.
+            // A rotation is the difference along the second next axis between the motions of the centre and of a place
+            // one step along the next axis.
             let mut beside = face.centre;
             beside[one] += 1.0 / face.unit(motion);
             let [near, far] = [face.centre, beside].map(|place| self.along(node, place, COORDINATES[two]));
@@ -240,8 +242,9 @@ impl RigidBodyModes {
         names.join(" with ")
     }
 
-    /// The largest virtual work of the nodal `forces` (each of length `dim * n_nodes`) on the unit motions of the bodies, relative to the
-    /// sum of the magnitudes of all forces; works on motions that a body does not have are left out.
+    /// The largest virtual work of the nodal `forces` (each of length `dim * n_nodes`) on the unit motions of the
+    /// bodies, relative to the sum of the magnitudes of all forces; works on motions that a body does not have are left
+    /// out.
     pub fn imbalance(&self, nodes: &[[f64; 3]], forces: &[&[f64]]) -> f64 {
         let (mut largest, mut magnitude) = (0.0_f64, 0.0);
         for body in &self.bodies {

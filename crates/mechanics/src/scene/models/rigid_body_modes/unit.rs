@@ -15,8 +15,8 @@ pub(super) const NAMED: f64 = 1e-6;
 /// The names of the axes.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions: a rotation is
-/// measured by the displacement at the distance `size` from the axis.
+/// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions:
+/// a rotation is measured by the displacement at the distance `size` from the axis.
 pub(super) type Amplitudes = [f64; 6];
 
 /// The form of the name of a motion: with or without its sense.
@@ -35,7 +35,8 @@ pub(super) struct UnitMotions {
     centre: [f64; 3],
     size: f64,
     dimension: usize,
-    /// The unit motions without strain energy: one in a bar and in a body of revolution, three in the plane, all six in space.
+    /// The unit motions without strain energy: one in a bar and in a body of revolution, three in the plane, all six in
+    /// space.
     pub modes: &'static [usize],
 }
 

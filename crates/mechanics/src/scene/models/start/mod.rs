@@ -14,20 +14,21 @@ use crate::scene::input::schema::Scene;
 use bodies::Bodies;
 
 impl Scene {
-    /// The sentence that a scene with this unknown name is answered with, if other programs give the name to a thing that is not modelled
-    /// here.
+    /// The sentence that a scene with this unknown name is answered with, if other programs give the name to a thing
+    /// that is not modelled here.
     pub fn not_modelled(name: &str) -> Option<&'static str> {
         absent(name)
     }
 
-    /// The text of a scene for the mesh `file`, with comment lines; `named` is the name of the file in the scene. The scene is built before it is
-    /// returned, so that it is not refused later.
+    /// The text of a scene for the mesh `file`, with comment lines; `named` is the name of the file in the scene. The
+    /// scene is built before it is returned, so that it is not refused later.
     ///
-    /// Groups of elements that share nodes are one body, and the others are further bodies. One is held, one is pressed, and weak springs
-    /// keep those that no support holds.
+    /// Groups of elements that share nodes are one body, and the others are further bodies. One is held, one is
+    /// pressed, and weak springs keep those that no support holds.
     ///
     /// # Errors
-    /// As [`GmshFile::read`] and [`GmshFile::mesh`]; [`Error::Mesh`] for a mesh of which no boundary can be held while another is pressed.
+    /// As [`GmshFile::read`] and [`GmshFile::mesh`]; [`Error::Mesh`] for a mesh of which no boundary can be held while
+    /// another is pressed.
     pub fn start(file: &Path, named: &str) -> Result<String, Error> {
         let bodies = Bodies::of(&GmshFile::read(file)?)?;
         let comments = comments::head(named, &bodies);

@@ -97,7 +97,8 @@ fn described(named: &str, bodies: &Bodies) -> String {
     text
 }
 
-/// The name of what is held or pressed. Facets that face a direction are added to `parts`, with a name that no boundary has.
+/// The name of what is held or pressed. Facets that face a direction are added to `parts`, with a name that no boundary
+/// has.
 fn named_side(chosen: &Chosen, name: &str, mesh: &Mesh, parts: &mut Vec<PartSpec>) -> String {
     let (way, of) = match chosen {
         Chosen::Boundary(name) => return name.clone(),
