@@ -81,8 +81,6 @@ impl Item {
         let has_example = self.documentation.contains("```");
         let first = self.words().into_iter().next().unwrap_or_default();
         let errors = self.documentation.split_once("# Errors").map(|(_, errors)| errors);
-        let is_function = self.declaration.split('(').next().is_some_and(|start| start.contains("fn "));
-        let parameters = if is_function { self.declaration.split("->").next().unwrap_or_default() } else { "" };
         let is_array = ["Vec<f64>", "[f64", "[[f64", "Vec<[f64", "Vec<usize>", "[usize]"];
         let is_array = is_array.iter().any(|array| self.declaration.contains(array));
         // Matrices and vectors of `qp/linear` may have any unit.
@@ -93,7 +91,6 @@ impl Item {
             ("repeats its name", self.further_words().len() < if is_page { 6 } else { 2 } && !has_example),
             ("asks", self.prose().contains('?') || ["What", "Which", "How", "Where", "Why"].contains(&first.as_str())),
             ("has no `# Errors`", self.declaration.contains("-> Result<") && !errors.is_some_and(names_errors)),
-            ("has a truth value as a parameter", parameters.contains(": bool")),
             ("has an array without a length or an order", is_array && !self.has(&SHAPE) && !self.prose().contains('[')),
             ("has an array without a unit", needs_unit && !self.has_unit()),
             ("has an array without a sign", needs_sign && !self.has(&SIGN)),

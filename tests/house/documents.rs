@@ -379,7 +379,9 @@ fn every_source_file_that_a_document_names_exists() {
         let text = read(&page);
         let words = text.split('`').flat_map(str::split_whitespace);
         let is_source = |word: &&str| [".rs", ".py", ".sh"].iter().any(|end| word.ends_with(end)) && word.contains('/');
-        let is_own = |word: &&str| !word.contains("NAME") && !FOREIGN.iter().any(|start| word.starts_with(start));
+        let is_own = |word: &&str| {
+            !word.contains("NAME") && !word.contains("://") && !FOREIGN.iter().any(|start| word.starts_with(start))
+        };
         for word in words.filter(is_source).filter(is_own) {
             let end = format!("/{}", short(word.trim_start_matches("./")));
             assert!(files.iter().any(|file| file.ends_with(&end)), "{page} names {word}, which does not exist");

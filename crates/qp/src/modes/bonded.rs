@@ -102,12 +102,17 @@ impl Bonded {
         Ok(Bonded { lift: SparseMatrix::from_parts(kept, starts, of, values), pivots })
     }
 
+    /// Returns `true` if no row is held, so that Z is the identity.
+    pub fn is_free(&self) -> bool {
+        self.pivots.is_empty()
+    }
+
     /// The matrix `Z'A Z` of a matrix A (n x n).
     ///
     /// # Errors
     /// [`Error::Length`] for a matrix of another size, [`Error::NotFinite`] if its entries overflow.
     pub fn reduced<'a>(&self, matrix: &'a SymmetricMatrix) -> Result<Cow<'a, SymmetricMatrix>, Error> {
-        match self.pivots.is_empty() && matrix.dim() == self.lift.columns() {
+        match self.is_free() && matrix.dim() == self.lift.columns() {
             true => Ok(Cow::Borrowed(matrix)),
             false => matrix.congruent(&self.lift).map(Cow::Owned),
         }

@@ -12,9 +12,11 @@
 
 mod bonded;
 
+use std::f64::consts::SQRT_2;
+
 use crate::error::Error;
 use crate::linear::eigen::{Krylov, LANES, Lanes, Pairs, negative_eigenvalues};
-use crate::linear::{Analysis, Cholesky, Equilibration, SymmetricMatrix, dot, if_definite, in_order, norm, par};
+use crate::linear::{Analysis, Cholesky, Equilibration, SymmetricMatrix, dot, if_definite, in_order, ldexp, norm, par};
 use crate::problem::ContactProblem;
 use crate::watch::Watch;
 use bonded::Bonded;
@@ -112,6 +114,9 @@ impl ContactProblem {
             lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
         let vectors: Vec<Vec<f64>> = vectors.iter().map(|reduced| bonded.lifted(reduced)).collect();
         let multiplier = |(x, value): (&Vec<f64>, &f64)| {
+            if bonded.is_free() {
+                return vec![0.0; self.inequalities()];
+            }
             let (elastic, inertia) = (self.stiffness().mul(x), mass.mul(x));
             let rest: Vec<f64> = elastic.iter().zip(inertia).map(|(k, m)| k - value * m).collect();
             bonded.multiplier(self.inequalities(), &rest)
@@ -141,13 +146,13 @@ fn lowest(
             shifted.lowest(shifted.space(count)?, count)?
         }
     };
+    // Both matrices have the factor c of the scale.
+    let (half, root) = (scale.factor.div_euclid(2), if scale.factor % 2 == 0 { 1.0 } else { SQRT_2 });
     let unscaled = |vector: Vec<f64>| {
-        let mut vector: Vec<f64> =
-            vector.iter().zip(&scale.diagonal).map(|(&value, &by)| crate::linear::ldexp(value, by)).collect();
-        // Both matrices have the factor c of the scale.
+        let entries = vector.iter().zip(&scale.diagonal);
+        let mut vector: Vec<f64> = entries.map(|(value, by)| ldexp(root * value, by + half)).collect();
         let largest = vector.iter().fold(0.0, |most: f64, value| if value.abs() > most.abs() { *value } else { most });
-        let length = dot(&vector, &mass.mul(&vector)).sqrt() * largest.signum();
-        vector.iter_mut().for_each(|value| *value /= length);
+        vector.iter_mut().for_each(|value| *value *= largest.signum());
         vector
     };
     Ok(Found { vectors: found.vectors.into_iter().map(unscaled).collect(), ..found })
