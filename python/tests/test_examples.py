@@ -77,3 +77,12 @@ def test_modulus_and_gap_follow_from_four_forces_within_their_uncertainty() -> N
     off = np.abs(np.array([young - 2.1e6, gap + 0.0004])) / np.sqrt(np.diag(covariance))
     # The forces have errors of up to twice their standard deviation.
     assert np.all(off < 3.0) and steps < 12
+
+
+def test_the_picture_of_the_readme_has_narrower_and_narrower_bounds_of_one_force() -> None:
+    pytest.importorskip("matplotlib")
+    intervals = example("front_picture").main()
+    widths = [high - low for low, high in intervals]
+    assert all(later <= former for former, later in zip(widths, widths[1:])) and widths[-1] < 0.1 * widths[0]
+    # One number lies in all of them: the exact force.
+    assert max(low for low, _ in intervals) < min(high for _, high in intervals)
