@@ -37,7 +37,7 @@ def test_frequencies_are_those_of_scipy_on_exported_matrices(tmp_path: Path) -> 
         scipy.io.mmread(tmp_path / "files" / f"{name}.mtx").tocsc() for name in ["K", "M", "B"]
     )
     # Each closed row holds one dof of the plane.
-    held = rows[found["closed"]].indices
+    held = rows.tocsr()[found["closed"]].indices
     free = np.setdiff1d(np.arange(stiffness.shape[0]), held)
     values = scipy.sparse.linalg.eigsh(
         stiffness[free][:, free], k=6, M=mass[free][:, free], sigma=0, return_eigenvectors=False
