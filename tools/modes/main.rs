@@ -36,8 +36,11 @@ fn main() -> ExitCode {
     }
 }
 
+/// The random scene of a seed.
+type SceneOf = fn(u64) -> Scene;
+
 fn scenes(count: u64) -> usize {
-    let kinds: [(&str, fn(u64) -> Scene); 5] = [
+    let kinds: [(&str, SceneOf); 5] = [
         ("plane", |seed| plane_scenes::scene(seed).0),
         ("axis", |seed| axis_scenes::scene(seed).0),
         ("space", |seed| space_scenes::scene(seed).0),

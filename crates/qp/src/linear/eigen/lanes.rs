@@ -174,8 +174,8 @@ impl<'a> Block<'a> {
 #[inline(always)]
 fn without<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], factor: f64, other: [S::f64s; P]) -> [S::f64s; P] {
     let factor = simd.splat_f64s(factor);
-    for p in 0..P {
-        row[p] = simd.negate_mul_add_e_f64s(factor, other[p], row[p]);
+    for (vector, other) in row.iter_mut().zip(other) {
+        *vector = simd.negate_mul_add_e_f64s(factor, other, *vector);
     }
     row
 }
@@ -184,8 +184,8 @@ fn without<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], factor: f64,
 #[inline(always)]
 fn divided<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], by: f64) -> [S::f64s; P] {
     let by = simd.splat_f64s(by);
-    for p in 0..P {
-        row[p] = simd.div_f64s(row[p], by);
+    for vector in &mut row {
+        *vector = simd.div_f64s(*vector, by);
     }
     row
 }
