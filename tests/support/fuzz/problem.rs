@@ -132,11 +132,9 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
         let touched = if lambda[row] != 0.0 || moved[row] > gap { gap.abs() } else { 0.0 };
         let reach = largest(&moved).max(touched).max(still);
         let distance = moved[row] - gap;
-        let product = if lambda[row] == 0.0 || distance.abs() <= ROUNDING * lengths[row] {
-            0.0
-        } else {
-            (lambda[row] * distance).abs()
-        };
+        // A row that a tiny motion of a dof moves far has a distance in that scale, open or violated.
+        let is_closed = distance.abs() <= (ROUNDING * lengths[row]).max(HOLDS * soft[row]);
+        let product = if lambda[row] == 0.0 || is_closed { 0.0 } else { (lambda[row] * distance).abs() };
         let conditions = [
             ("no penetration", distance <= HOLDS * reach.max(lengths[row]).max(gap.abs()).max(soft[row])),
             ("compression", lambda[row] <= HOLDS * strongest),
