@@ -231,8 +231,8 @@ fn rows_on_dofs_without_stiffness_carry_no_force_in_a_bound() {
     assert!(finding.problem.certify(&u, &lambda).unwrap().meets(1e-9));
 }
 
-/// Only a travel moves such a row. Its gap is a place of the travel, and not the rounding of gaps that are 1e16 times as
-/// large: the nearest row of the travel was taken for open.
+/// Only a travel moves such a row. Its gap is a place of the travel, and not rounding beside gaps that are 1e16 times
+/// as large: the nearest row was taken for open. Rows that are opposite in the body alone were taken for an equality.
 #[test]
 fn the_nearest_row_of_a_travel_is_not_proven_open_if_its_gap_is_tiny() {
     for name in ["pressed_row_with_a_tiny_gap", "row_of_a_travel_beside_a_body"] {

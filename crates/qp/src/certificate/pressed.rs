@@ -62,7 +62,8 @@ impl ContactProblem {
         let evidence = Evidence { residual, violation, error: evidence.error, measured: None, norm: None };
         let of_rows =
             WithEvidence { displacement: &displacement, multiplier: answer.multiplier, evidence: Some(evidence) };
-        Ok(body.prove_by(&Bounding::Factor(norm), of_rows))
+        // Rows that are opposite in the body alone are no equalities of the problem.
+        Ok(body.prove_in(&norm, of_rows).map(|proven| self.with_equalities_closed(proven)))
     }
 
     /// The travels; `None` without any, or if a dof without stiffness is none: all of its rows stop the same sense of

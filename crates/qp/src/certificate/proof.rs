@@ -90,13 +90,13 @@ impl ContactProblem {
     }
 
     /// The same with the rows of equalities, which are closed in every answer.
-    fn with_equalities_closed(&self, mut proven: ProvenSet) -> ProvenSet {
+    pub(super) fn with_equalities_closed(&self, mut proven: ProvenSet) -> ProvenSet {
         self.equalities().iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| proven.closed.insert(row));
         proven
     }
 
     /// As [`ContactProblem::prove`], in an energy norm that is already available.
-    fn prove_in(&self, norm: &EnergyNorm, answer: WithEvidence) -> Option<ProvenSet> {
+    pub(super) fn prove_in(&self, norm: &EnergyNorm, answer: WithEvidence) -> Option<ProvenSet> {
         let WithEvidence { displacement, multiplier, evidence } = answer;
         if let Some(units) = self.far_units(displacement) {
             let (problem, norm) = (self.in_units(&units).ok()?, norm.with_unit(units.stiffness));
