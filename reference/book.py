@@ -5,7 +5,6 @@ a script. A formula that cannot be converted, a link that leads nowhere and a he
 """
 
 import argparse
-import html
 import re
 import shutil
 import subprocess
@@ -42,7 +41,7 @@ def summary() -> str:
         elif row := ROW.match(line):
             if heading:
                 lines += ["", f"# {heading}", ""]
-                heading = ""
+            heading = ""
             lines.append(f"- [{row[1]}](docs/{row[2]})")
     lines += ["", "# For developers", ""]
     for name in FOR_DEVELOPERS:
@@ -139,7 +138,7 @@ def faults_of(site: Path) -> tuple[list[str], int, int]:
     for file, page in pages.items():
         name = file.relative_to(site)
         for link in page.links:
-            path, _, heading = unquote(html.unescape(link)).partition("#")
+            path, _, heading = unquote(link).partition("#")
             if "://" in path or path.startswith(("data:", "mailto:")):
                 continue
             links += 1
