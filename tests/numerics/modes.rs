@@ -57,6 +57,35 @@ fn values_are_those_of_a_dense_solver() {
     }
 }
 
+/// `K x - w M x = B' lambda` with lambda on the held rows alone, `B x = 0` there, and `x'M x = 1`, in any unit of K.
+#[test]
+fn held_rows_carry_what_is_left_and_each_vector_has_mass_one() {
+    let [_, mass] = chains(1, 9, 1.0);
+    let entries = [(0, 0, 1.0), (0, 3, -0.7), (1, 3, 0.4), (1, 8, 1.3), (2, 5, 2.0), (3, 1, 1.0)];
+    let rows = SparseMatrix::from_triplets(4, 9, &entries).unwrap();
+    for unit in [1.0, 2.0, 3e-7, 6e-7, 4e11] {
+        let [stiffness, _] = chains(1, 9, 1.0);
+        let scaled: Vec<_> = stiffness.lower().triplets().map(|(i, j, value)| (i, j, unit * value)).collect();
+        let stiffness = symmetric(9, &scaled);
+        let problem = ContactProblem::new(stiffness.clone(), vec![0.0; 9], rows.clone(), vec![0.0; 4]).unwrap();
+        let found = problem.modes(&mass, (&[0, 1, 3], &[]), 4, 1, &Watch::default()).unwrap();
+        let exact = eigenvalues(&stiffness, &mass, (&rows, &[0, 1, 3]), 4);
+        assert_eq!(found.values.len(), 4);
+        let pairs = found.values.iter().zip(&found.vectors).zip(&found.multipliers).zip(&exact);
+        for (((&value, x), lambda), exact) in pairs {
+            assert!((value / exact - 1.0).abs() < 1e-12, "{value} {exact}");
+            assert!((dot(x, &mass.mul(x)) - 1.0).abs() < 1e-12);
+            assert!(lambda[2] == 0.0 && lambda[0] != 0.0 && lambda[1] != 0.0 && lambda[3] != 0.0, "{lambda:?}");
+            let moved = rows.mul(x);
+            assert!([0, 1, 3].iter().all(|&row| moved[row].abs() < 1e-12), "{moved:?}");
+            let forces = rows.mul_transposed(lambda).into_iter().zip(stiffness.mul(x)).zip(mass.mul(x));
+            // Terms of order of the unit.
+            let left = forces.map(|((force, k), m)| (k - value * m - force).abs()).fold(0.0, f64::max);
+            assert!(left < 1e-10 * unit, "{left}");
+        }
+    }
+}
+
 #[test]
 fn equal_bodies_have_equal_values_and_none_is_missed() {
     // Twelve of each value: more than the width of a block.
