@@ -240,6 +240,19 @@ fn the_nearest_row_of_a_travel_is_not_proven_open_if_its_gap_is_tiny() {
     }
 }
 
+/// Forces of 1e32 lock three rows of which one follows from the others; without them the answer moves by 1e15.
+#[test]
+fn locked_forces_times_the_rounding_of_their_distances_are_in_the_bound() {
+    Finding::read("verify_locked_forces").is_not_verified();
+}
+
+/// A travel of 1e-11 whose bending is the rounding of its doubles; the sum of its energy rounds as much, even in twice
+/// the working precision.
+#[test]
+fn a_travel_that_hardly_bends_has_a_bound_above_the_rounding_of_its_energy() {
+    Finding::read("verify_travel_that_hardly_bends").is_not_verified();
+}
+
 #[test]
 fn a_soft_floating_body_at_the_wrong_place_is_not_certified() {
     Finding::read("verify_soft_floating_body").is_not_verified();

@@ -155,13 +155,29 @@ impl ContactProblem {
 impl ContactProblem {
     /// `w_p' K_pp w_p` of each part p: twice its energy under the displacement w, without couplings to other parts.
     pub(super) fn energies(&self, parts: &Parts, w: &[f64]) -> Vec<f64> {
+        self.rounded_energies(|dof| parts.of_dof(dof), parts.count(), w).0
+    }
+
+    /// The same for `count` groups of dofs, and `|w|' |K| |w|` of each, the scale of its rounding in twice the working
+    /// precision.
+    pub(super) fn rounded_energies(
+        &self,
+        group: impl Fn(usize) -> usize,
+        count: usize,
+        w: &[f64],
+    ) -> (Vec<f64>, Vec<f64>) {
         let within = |column: usize| {
-            let of_part = move |entry: &(usize, f64)| parts.of_dof(entry.0) == parts.of_dof(column);
-            self.stiffness.lower().column(column).filter(of_part)
+            let own = group(column);
+            let group = &group;
+            self.stiffness.lower().column(column).filter(move |entry| group(entry.0) == own)
         };
         let mut sums = Accumulator::new(&vec![0.0; w.len()]);
-        sums.add_matrix_product(within, w);
-        sums.products_by(w, |dof| parts.of_dof(dof), parts.count())
+        let terms = sums.add_matrix_product(within, w);
+        let mut magnitudes = vec![0.0; count];
+        for (dof, (terms, w)) in terms.iter().zip(w).enumerate() {
+            magnitudes[group(dof)] += terms * w.abs();
+        }
+        (sums.products_by(w, &group, count), magnitudes)
     }
 
     /// The forces on each dof by other parts: by their displacements u, and by those that `forces` could give each of

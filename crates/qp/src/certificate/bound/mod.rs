@@ -8,6 +8,8 @@
 //!
 //! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the
 //! rows that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
+//! Rows that follow from others are at their gaps by rounding only: they pass their forces on to the others, and what
+//! they cannot pass on is slack.
 //!
 //! If K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which equals the norm of K on
 //! shifts that do not move these rows. With s = g - B u* on C and a = |r| in the dual norm of K_D,
@@ -31,7 +33,7 @@ use std::sync::Arc;
 
 use super::EnergyNorm;
 use super::energy_norm::Loose;
-use super::springs::Springs;
+use super::springs::{Springs, least_force};
 use crate::error::Error;
 use crate::linear::SparseMatrix;
 use crate::problem::{ContactProblem, Parts};
@@ -172,20 +174,27 @@ impl ContactProblem {
         if self.is_two_sided(row) { multiplier } else { multiplier.min(0.0) }
     }
 
-    /// The energy norm of a shift.
+    /// An upper bound on the energy norm of a shift, with the rounding of its sum.
     fn length(&self, shift: &[f64]) -> f64 {
-        self.accurate_forces(shift).products_by(shift, |_| 0, 1)[0].max(0.0).sqrt()
+        upper_bounds(self.rounded_energies(|_| 0, 1, shift)).sum::<f64>().sqrt()
     }
 
-    /// The energy norms of a shift by parts, added to `sizes`.
+    /// Upper bounds on the squares of the energy norms of a shift by parts.
+    fn squares(&self, parts: &Parts, shift: &[f64]) -> impl Iterator<Item = f64> + use<> {
+        upper_bounds(self.rounded_energies(|dof| parts.of_dof(dof), parts.count(), shift))
+    }
+
+    /// Upper bounds on the energy norms of a shift by parts, added to `sizes`.
     fn add_sizes(&self, parts: &Parts, shift: &[f64], sizes: &mut [f64]) {
-        let energies = self.energies(parts, shift);
-        sizes.iter_mut().zip(energies).for_each(|(size, energy)| *size += energy.max(0.0).sqrt());
+        sizes.iter_mut().zip(self.squares(parts, shift)).for_each(|(size, square)| *size += square.sqrt());
     }
 }
 
-/// A row presses if its force could do more than this share of the energy norm of its part.
-const PRESSING: f64 = 1e-8;
+/// Upper bounds on energies that were summed in twice the working precision, with the magnitudes of their terms. A body
+/// that travels far may bend so little that even this precision leaves only rounding.
+fn upper_bounds((energies, terms): (Vec<f64>, Vec<f64>)) -> impl Iterator<Item = f64> {
+    energies.into_iter().zip(terms).map(|(energy, terms)| energy.max(0.0) + OF_SUMS * terms)
+}
 
 impl ContactProblem {
     /// The energy norm of K; if K is semidefinite, that of K with springs on the rows that press, without the dofs that
@@ -237,12 +246,17 @@ impl ContactProblem {
         (!dofs.is_empty()).then_some(Loose { dofs, rows })
     }
 
+    /// The energy norm of a displacement on each part.
+    fn sizes(&self, displacement: &[f64]) -> Vec<f64> {
+        self.energies(self.parts(), displacement).iter().map(|energy| energy.max(0.0).sqrt()).collect()
+    }
+
     /// Springs on the rows that press and on equalities, each as stiff as the row itself if only its own dofs move.
     pub(super) fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
         let parts = self.parts();
         let of_stiff = |square: f64, stiffness: f64| if stiffness > 0.0 { square / stiffness } else { 0.0 };
         let compliance = self.compliance_of_rows(of_stiff);
-        let sizes: Vec<f64> = self.energies(parts, displacement).iter().map(|energy| energy.max(0.0).sqrt()).collect();
+        let sizes = self.sizes(displacement);
         let violation = self.accurate_violation(displacement);
         let spring = |row: usize| {
             let (force, size) = (-multiplier[row], sizes[parts.of_row(row)]);
@@ -255,7 +269,7 @@ impl ContactProblem {
             if self.is_two_sided(row) {
                 return stiffness;
             }
-            let presses = force > PRESSING * stiffness.sqrt() * size && force * compliance[row] >= -violation[row];
+            let presses = force > least_force(stiffness, size) && force * compliance[row] >= -violation[row];
             if presses { stiffness } else { 0.0 }
         };
         let has_one = |row: usize| multiplier[row] < 0.0 || self.is_two_sided(row);
@@ -289,6 +303,17 @@ mod tests {
     }
 
     #[test]
+    fn a_body_that_travels_and_hardly_bends_is_as_long_as_the_rounding_of_its_energy() {
+        // A spring between two dofs: a travel of 1e16 has no energy, but its terms are 4e32.
+        let spring = ContactProblem::of_entries(&[(0, 0, 1.0), (1, 0, -1.0), (1, 1, 1.0)], &[0.0; 2], &[], &[]);
+        assert_eq!(spring.length(&[1e16, 1e16]), (OF_SUMS * 4e32).sqrt());
+        assert_eq!(spring.length(&[1.0, 4.0]), 3.0);
+        let mut sizes = vec![1.0];
+        spring.add_sizes(spring.parts(), &[1e16, 1e16], &mut sizes);
+        assert_eq!(sizes, [1.0 + (OF_SUMS * 4e32).sqrt()]);
+    }
+
+    #[test]
     fn every_displacement_that_underflows_counts_twice_the_least_length() {
         // Without a multiplier only the first dof is loaded: a share LOST of 8 / sqrt(4).
         let least = LOST * 4.0;
@@ -310,7 +335,7 @@ mod tests {
         assert_eq!(springs(10.0, 1.0), [stiffness, 0.0]);
         assert_eq!(springs(-10.0, 1.0), [0.0, 0.0]);
         // A force below the share that presses, and one that does not cross the gap of a body at rest.
-        let least = PRESSING * stiffness.sqrt() * 2.0;
+        let least = least_force(stiffness, 2.0);
         assert_eq!(springs(0.9 * least, 1.0), [0.0, 0.0]);
         assert_eq!(springs(1.1 * least, 1.0), [stiffness, 0.0]);
         assert_eq!(springs(0.9 * stiffness, 0.0), [0.0, 0.0]);

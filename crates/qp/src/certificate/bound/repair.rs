@@ -46,10 +46,6 @@ impl Force {
         let terms = self.terms.iter().zip(steps).map(|(a, b)| a + b).collect();
         Force { alpha: self.alpha, rows, terms }
     }
-
-    pub fn is_none(&self) -> bool {
-        self.alpha == 0.0 && self.rows.iter().all(|&x| x == 0.0)
-    }
 }
 
 /// A feasible v and multipliers mu: `v - u = K^-1 error`, and the forces left out of balance at (v, mu).
@@ -63,6 +59,10 @@ pub(super) struct Witness {
     /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap and leaves
     /// the other closed rows there.
     pub rest: Vec<f64>,
+    /// For each row that follows from others an upper bound on its force times its distance to its gap.
+    pub slack: Vec<f64>,
+    /// `true` if (v, mu) is the equilibrium of the closed rows and none of them pulls.
+    pub is_equilibrium: bool,
     /// `true` if a row counts as met by rounding: a closed row that follows from others, or an open one at its gap.
     pub is_rounded: bool,
 }
@@ -76,6 +76,8 @@ pub(super) struct Repair<'a> {
     rows: RowsOnBoundary,
     pub violation: Vec<f64>,
     pub multiplier: Vec<f64>,
+    /// The force that each row keeps if other rows take over its force: with a spring, the force with which it presses.
+    pub kept: Vec<f64>,
     /// `L_tt^-1 B_i'` of each row that was used, unless the compliance of all rows is known.
     halves: Vec<OnceCell<Vec<f64>>>,
     /// The sweep of the residual: squares of the interior, and the boundary.
@@ -95,9 +97,13 @@ impl<'a> Repair<'a> {
         };
         let unit = norm.equilibration.factor;
         let (violation, multiplier) = (scaled(&answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
+        let kept = norm.springs.as_deref().map_or_else(
+            || vec![0.0; rows.shift.len()],
+            |springs| scaled(&springs.least_forces(problem.parts(), &problem.sizes(answer.displacement)), -1, 0),
+        );
         let (interior, swept) = norm.sweep(&answer.residual);
         let halves = vec![OnceCell::new(); if rows.compliance.is_some() { 0 } else { rows.shift.len() }];
-        Some(Repair { problem, norm, boundary, answer, rows, violation, multiplier, halves, interior, swept })
+        Some(Repair { problem, norm, boundary, answer, rows, violation, multiplier, kept, halves, interior, swept })
     }
 
     /// Number of rows.
@@ -210,7 +216,8 @@ impl<'a> Repair<'a> {
         }
         // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each
         // other leave their rounding.
-        let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();
+        let put: Vec<f64> =
+            (0..rest.len()).map(|row| self.way_on(witness, row) + self.cancelled_on(witness, row)).collect();
         let of_error = match springs {
             // The energy of the springs is no error, but it adds rounding.
             Some(_) => self.problem.length(&self.shift(error)) + (self.norm.rounding() - 1.0) * self.length(error),
@@ -225,6 +232,12 @@ impl<'a> Repair<'a> {
             sizes
         });
         ErrorBound { whole, of_parts }
+    }
+
+    /// Upper bound, in energy norm, of what the way of this row to its gap adds: of a row that is put there, and of one
+    /// that follows from others.
+    fn way_on(&self, witness: &Witness, row: usize) -> f64 {
+        COUNTS * witness.rest[row] + self.norm.length(2.0 * witness.slack[row])
     }
 
     /// Upper bound, in energy norm, of the rounding of forces that cancel each other on this row.
@@ -244,7 +257,7 @@ impl<'a> Repair<'a> {
     /// The part of a bound that another repair can make smaller: rounding of forces that cancel each other, and of the
     /// way to the gaps.
     pub fn vague(&self, witness: &Witness) -> f64 {
-        self.cancelled(witness) + COUNTS * witness.rest.iter().sum::<f64>()
+        self.cancelled(witness) + (0..self.count()).map(|row| self.way_on(witness, row)).sum::<f64>()
     }
 
     /// Forces on the rows in the units of the problem.
@@ -285,5 +298,28 @@ mod tests {
         // If the force stays 3, a force of 1 is left at the gap; it moves the spring by 1/4, 1/2 in energy norm.
         let kept = repair.settle(&[true], Multipliers::OfTheAnswer).unwrap();
         assert!((repair.bound(&kept).whole - 1.5).abs() < ROUNDING, "{:?}", repair.bound(&kept));
+    }
+
+    #[test]
+    fn a_row_that_follows_from_another_passes_its_force_on_as_far_as_the_other_pushes() {
+        // A spring of stiffness 4 under a force of 8, 1000 behind a wall at 1. The second row, -2 times the first, has
+        // its gap a rounding error away, so that both rows can be closed and lock forces of any size between them.
+        let gap = -2.0 * (1.0 - f64::EPSILON);
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0), (1, 0, -2.0)], &[1.0, gap]);
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        // A force of 4 beside locked forces of 2e6 and 1e6, which go. If the first row does not push enough for that,
+        // half of the force of the second stays.
+        let cases = [([-4.0 - 2e6, -1e6], [-4.0, 0.0], [2e6, 0.0]), ([-1e6, -1e6], [0.0, -5e5], [0.0, 5e5])];
+        for (multiplier, left, change) in cases {
+            let answer = problem.answer(&[1001.0], &multiplier);
+            let repair = Repair::new(&problem, &norm, &answer).unwrap();
+            let witness = repair.settle(&[true, true], Multipliers::OfTheAnswer).unwrap();
+            assert_eq!(repair.expanded(&witness.multiplier), left, "{multiplier:?}");
+            assert_eq!(repair.expanded(&witness.change), change, "{multiplier:?}");
+            // What stays times the rounding of a way of 1000 is slack, and the bound has it.
+            let (slack, rounding) = (norm.length(witness.slack[1]).powi(2), 2e3 * f64::EPSILON * left[1].abs());
+            assert!(rounding <= slack && slack <= 100.0 * rounding, "{slack:e}, {rounding:e}");
+            assert!(repair.bound(&witness).whole >= (2.0 * slack).sqrt());
+        }
     }
 }

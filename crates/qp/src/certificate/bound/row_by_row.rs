@@ -119,11 +119,11 @@ impl ContactProblem {
         let of_parts = (parts.count() > 1).then(|| {
             let mut sizes = rest.iter().map(|cost| 2.0 * cost).collect::<Vec<f64>>();
             self.add_sizes(parts, repair, &mut sizes);
-            let energies = self.energies(parts, &norm.displacement(residual));
+            let squares = self.squares(parts, &norm.displacement(residual));
             sizes
                 .iter_mut()
-                .zip(energies.iter().zip(&slack_work))
-                .for_each(|(size, (&e, &slack))| *size += length(e, slack));
+                .zip(squares.zip(&slack_work))
+                .for_each(|(size, (square, &slack))| *size += length(square, slack));
             sizes
         });
         ErrorBound { whole, of_parts }

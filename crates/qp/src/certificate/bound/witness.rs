@@ -20,7 +20,7 @@ impl Repair<'_> {
     /// The equilibrium of the rows that look closed if all these rows push, otherwise the better of both repairs.
     pub fn best_witness(&self, closed: &[bool]) -> Option<Witness> {
         let settled = self.settle(closed, Multipliers::InEquilibrium);
-        if settled.as_ref().is_some_and(|witness| witness.left.is_none()) {
+        if settled.as_ref().is_some_and(|witness| witness.is_equilibrium) {
             return settled;
         }
         let size = |witness: &Witness| self.bound(witness).size();
@@ -73,8 +73,7 @@ impl Repair<'_> {
                 let is_excused =
                     |row: usize| !closed[row] && tolerance[row] > 0.0 && distance[row].abs() <= tolerance[row];
                 let is_rounded = has_dependent || (0..rows).any(is_excused);
-                let rest = self.rest(&set, &fitted);
-                return Some(Witness { rest, is_rounded, ..self.witness(fitted, closed, multipliers) });
+                return Some(Witness { is_rounded, ..self.witness(&set, fitted, closed, multipliers) });
             }
             // Of copies that differ by rounding the tightest comes first in the end, unless they contradict each other.
             if exchange >= EXCHANGES && deeper.iter().any(|&row| first[row] > 0) {
@@ -95,15 +94,19 @@ impl Repair<'_> {
         None
     }
 
-    /// The witness of closed rows that are at their gaps after a fit, without the way to the gaps that rounding leaves.
-    fn witness(&self, Fitted { change, error, .. }: Fitted, closed: Vec<bool>, multipliers: Multipliers) -> Witness {
+    /// The witness of the closed rows `set` that are at their gaps after a fit.
+    fn witness(&self, set: &[usize], fitted: Fitted, closed: Vec<bool>, multipliers: Multipliers) -> Witness {
+        let rest = self.rest(set, &fitted);
+        let Fitted { change, error, distance, tolerance, triangle } = fitted;
         let in_equilibrium = multipliers == Multipliers::InEquilibrium;
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
         // A force that pulls is no multiplier, and nothing balances one on a loose dof.
         let holds = |row: usize| closed[row] && !self.norm.is_on_loose_dof(row);
-        let multiplier: Vec<f64> = (0..change.len())
+        let mut multiplier: Vec<f64> = (0..change.len())
             .map(|row| if holds(row) { self.problem.allowed(row, balanced(row)) } else { 0.0 })
             .collect();
+        let is_equilibrium = in_equilibrium && set.iter().all(|&row| multiplier[row] == balanced(row));
+        let passed = self.pass_on(set, &triangle, &mut multiplier);
         let left = |row: usize| match in_equilibrium {
             true if closed[row] => multiplier[row] - balanced(row),
             true => 0.0,
@@ -111,9 +114,45 @@ impl Repair<'_> {
         };
         let rows = (0..change.len()).map(left).collect();
         let pushes = |row: usize| multiplier[row] != 0.0;
-        let change = (0..change.len()).map(|row| if in_equilibrium && pushes(row) { change[row] } else { 0.0 });
+        let changed = |row: usize| passed[row] + if in_equilibrium { change[row] } else { 0.0 };
+        let change = (0..change.len()).map(|row| if pushes(row) { changed(row) } else { 0.0 });
         let (change, left) = (change.collect(), Force::new(1.0 - error.alpha, rows));
-        Witness { error, left, multiplier, change, closed, rest: Vec::new(), is_rounded: false }
+        let mut slack = vec![0.0; multiplier.len()];
+        for (&row, _) in set.iter().zip(triangle.independent()).filter(|entry| !entry.1) {
+            slack[row] = multiplier[row].abs() * (distance[row].abs() + tolerance[row]);
+        }
+        Witness { error, left, multiplier, change, closed, rest, slack, is_equilibrium, is_rounded: false }
+    }
+
+    /// Passes the forces of rows that follow from others on to these rows, as far as none of them pulls and each keeps
+    /// [the force that its spring needs](Repair::kept). Returns the change of each multiplier.
+    ///
+    /// A row that follows from others is at its gap by rounding only, and its force times this rounding is slack.
+    fn pass_on(&self, set: &[usize], triangle: &Triangle, multiplier: &mut [f64]) -> Vec<f64> {
+        let mut passed = vec![0.0; multiplier.len()];
+        let can_give = |row: usize, multiplier: &[f64]| match self.problem.is_two_sided(row) {
+            true => f64::INFINITY,
+            false => (-multiplier[row] - self.kept[row]).max(0.0),
+        };
+        for (&row, weights) in set.iter().zip(triangle.weights()) {
+            let taken: Vec<(usize, f64)> =
+                weights.map(|(other, weight)| (set[other], weight * multiplier[row])).collect();
+            let force = multiplier[row].abs();
+            if taken.is_empty() || force == 0.0 {
+                continue;
+            }
+            let share = taken
+                .iter()
+                .filter(|taken| taken.1 > 0.0)
+                .map(|&(other, taken)| can_give(other, multiplier) / taken)
+                .fold((can_give(row, multiplier) / force).min(1.0), f64::min);
+            let given = (row, -multiplier[row]);
+            for (row, step) in taken.into_iter().chain([given]).map(|(row, force)| (row, share * force)) {
+                passed[row] += step;
+                multiplier[row] = self.problem.allowed(row, multiplier[row] + step);
+            }
+        }
+        passed
     }
 
     /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to
