@@ -156,7 +156,7 @@ fn levels_table(found: &TotalError) -> Vec<Vec<String>> {
             error,
             ("mean stress", &|level| format!("{:.2e}", of_bound(level).1)),
             force,
-            ("half width", &|level| level.half_width().map_or("-".into(), |half| format!("{half:.1e}"))),
+            ("force within", &|level| level.half_width().map_or("-".into(), |half| format!("{half:.1e}"))),
             seconds,
         ],
         false => &[

@@ -252,7 +252,7 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
             text += &format!(", moment {}{of_moment}", rounded(&resultant.moment, force_scale * length_scale));
         }
         if let Some(centre) = &resultant.centre {
-            text += &format!(", centre {}{of_length}", place(centre));
+            text += &format!(", through {}{of_length}", place(centre));
         }
         if let Some(motion) = &resultant.motion {
             text += &format!(", moved {}{of_length}", rounded(&motion.displacement, 0.0));
