@@ -2,15 +2,6 @@
 
 use crate::error::Error;
 use crate::linear::{SparseMatrix, SymmetricMatrix, ldexp};
-use crate::problem::Parts;
-
-/// A row presses if its force could do more than this share of the energy norm of its part.
-const PRESSING: f64 = 1e-8;
-
-/// The least force with which a row presses that has this stiffness, on a part with the energy norm `size`.
-pub(super) fn least_force(stiffness: f64, size: f64) -> f64 {
-    PRESSING * stiffness.sqrt() * size
-}
 
 /// Springs D on rows C that press, or that are equalities: with them a singular K becomes `K_D = K + B_C' D B_C`.
 #[derive(Clone, Debug)]
@@ -55,17 +46,6 @@ impl Springs {
         springs
             .into_iter()
             .all(|(row, &stiffness)| closed[row] && (self.are_equalities[row] || presses(row, stiffness)))
-    }
-
-    /// The least force with which each row presses on parts with the energy norms `sizes`: infinite without energy,
-    /// which leaves no scale, and zero on equalities and rows without a spring.
-    pub fn least_forces(&self, parts: &Parts, sizes: &[f64]) -> Vec<f64> {
-        let least = |row: usize| match (self.stiffness[row], sizes[parts.of_row(row)]) {
-            (stiffness, _) if stiffness == 0.0 || self.are_equalities[row] => 0.0,
-            (_, 0.0) => f64::INFINITY,
-            (stiffness, size) => least_force(stiffness, size),
-        };
-        (0..self.stiffness.len()).map(least).collect()
     }
 
     /// The same springs in other units of stiffness, `2^unit`.

@@ -70,7 +70,7 @@ impl ContactProblem {
             let ((moved, multiplier), change) = next;
             // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no
             // stiffness.
-            let rounded = |row: usize| if multiplier[row] != 0.0 { 1.0 } else { 0.0 };
+            let rounded = |row: usize| if multiplier[row] != 0.0 && !witness.passes[row] { 1.0 } else { 0.0 };
             multipliers.iter_mut().flat_map(|part| part.iter_mut().enumerate()).for_each(|(row, x)| *x *= rounded(row));
             multipliers.push(change);
             let parts: Vec<&[f64]> = multipliers.iter().map(Vec::as_slice).collect();

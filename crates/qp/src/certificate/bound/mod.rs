@@ -33,7 +33,7 @@ use std::sync::Arc;
 
 use super::EnergyNorm;
 use super::energy_norm::Loose;
-use super::springs::{Springs, least_force};
+use super::springs::Springs;
 use crate::error::Error;
 use crate::linear::SparseMatrix;
 use crate::problem::{ContactProblem, Parts};
@@ -196,6 +196,9 @@ fn upper_bounds((energies, terms): (Vec<f64>, Vec<f64>)) -> impl Iterator<Item =
     energies.into_iter().zip(terms).map(|(energy, terms)| energy.max(0.0) + OF_SUMS * terms)
 }
 
+/// A row presses if its force could do more than this share of the energy norm of its part.
+const PRESSING: f64 = 1e-8;
+
 impl ContactProblem {
     /// The energy norm of K; if K is semidefinite, that of K with springs on the rows that press, without the dofs that
     /// have neither stiffness nor a force. `None` if the springs do not hold the body, or if K has a negative
@@ -246,17 +249,12 @@ impl ContactProblem {
         (!dofs.is_empty()).then_some(Loose { dofs, rows })
     }
 
-    /// The energy norm of a displacement on each part.
-    fn sizes(&self, displacement: &[f64]) -> Vec<f64> {
-        self.energies(self.parts(), displacement).iter().map(|energy| energy.max(0.0).sqrt()).collect()
-    }
-
     /// Springs on the rows that press and on equalities, each as stiff as the row itself if only its own dofs move.
     pub(super) fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
         let parts = self.parts();
         let of_stiff = |square: f64, stiffness: f64| if stiffness > 0.0 { square / stiffness } else { 0.0 };
         let compliance = self.compliance_of_rows(of_stiff);
-        let sizes = self.sizes(displacement);
+        let sizes: Vec<f64> = self.energies(parts, displacement).iter().map(|energy| energy.max(0.0).sqrt()).collect();
         let violation = self.accurate_violation(displacement);
         let spring = |row: usize| {
             let (force, size) = (-multiplier[row], sizes[parts.of_row(row)]);
@@ -269,7 +267,7 @@ impl ContactProblem {
             if self.is_two_sided(row) {
                 return stiffness;
             }
-            let presses = force > least_force(stiffness, size) && force * compliance[row] >= -violation[row];
+            let presses = force > PRESSING * stiffness.sqrt() * size && force * compliance[row] >= -violation[row];
             if presses { stiffness } else { 0.0 }
         };
         let has_one = |row: usize| multiplier[row] < 0.0 || self.is_two_sided(row);
@@ -335,7 +333,7 @@ mod tests {
         assert_eq!(springs(10.0, 1.0), [stiffness, 0.0]);
         assert_eq!(springs(-10.0, 1.0), [0.0, 0.0]);
         // A force below the share that presses, and one that does not cross the gap of a body at rest.
-        let least = least_force(stiffness, 2.0);
+        let least = PRESSING * stiffness.sqrt() * 2.0;
         assert_eq!(springs(0.9 * least, 1.0), [0.0, 0.0]);
         assert_eq!(springs(1.1 * least, 1.0), [stiffness, 0.0]);
         assert_eq!(springs(0.9 * stiffness, 0.0), [0.0, 0.0]);

@@ -13,6 +13,13 @@ const CORRECTIONS: usize = 4;
 /// After a fit, rows that follow from others are off by their own rounding and by that of their distances.
 const FOLLOWS: f64 = 2.0;
 
+/// A weight is rounding if its part of the row that follows is below this share of the row.
+const NO_WEIGHT: f64 = 64.0 * f64::EPSILON;
+
+/// Share of the largest force, all in energy, that each row keeps where springs hold the body: rounding of the forces
+/// left out of balance is below it, and with it the slack is still rounding.
+const KEPT: f64 = 1024.0 * f64::EPSILON;
+
 /// Rounding of a row's distance after a shift, in units of its terms.
 const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
@@ -105,54 +112,69 @@ impl Repair<'_> {
         let mut multiplier: Vec<f64> = (0..change.len())
             .map(|row| if holds(row) { self.problem.allowed(row, balanced(row)) } else { 0.0 })
             .collect();
-        let is_equilibrium = in_equilibrium && set.iter().all(|&row| multiplier[row] == balanced(row));
-        let passed = self.pass_on(set, &triangle, &mut multiplier);
+        let is_balanced = |row: usize| multiplier[row] == balanced(row) && multiplier[row].is_finite();
+        let is_equilibrium = in_equilibrium && set.iter().all(|&row| is_balanced(row));
+        let passes = self.pass_on(set, &triangle, &mut multiplier);
         let left = |row: usize| match in_equilibrium {
             true if closed[row] => multiplier[row] - balanced(row),
             true => 0.0,
             false => multiplier[row] - self.multiplier[row] - change[row],
         };
         let rows = (0..change.len()).map(left).collect();
-        let pushes = |row: usize| multiplier[row] != 0.0;
-        let changed = |row: usize| passed[row] + if in_equilibrium { change[row] } else { 0.0 };
-        let change = (0..change.len()).map(|row| if pushes(row) { changed(row) } else { 0.0 });
-        let (change, left) = (change.collect(), Force::new(1.0 - error.alpha, rows));
+        let changed = |row: usize| match passes[row] {
+            true => multiplier[row],
+            false if in_equilibrium && multiplier[row] != 0.0 => change[row],
+            false => 0.0,
+        };
+        let (change, left) = ((0..change.len()).map(changed).collect(), Force::new(1.0 - error.alpha, rows));
         let mut slack = vec![0.0; multiplier.len()];
-        for (&row, _) in set.iter().zip(triangle.independent()).filter(|entry| !entry.1) {
-            slack[row] = multiplier[row].abs() * (distance[row].abs() + tolerance[row]);
+        for (&row, weights) in set.iter().zip(triangle.weights()) {
+            // The others are put exactly at their gaps, which moves the row as well.
+            let ways: Vec<f64> = weights.map(|(other, weight)| (weight * distance[set[other]]).abs()).collect();
+            if !ways.is_empty() {
+                let way = distance[row].abs() + tolerance[row] + ways.iter().sum::<f64>();
+                slack[row] = multiplier[row].abs() * way;
+            }
         }
-        Witness { error, left, multiplier, change, closed, rest, slack, is_equilibrium, is_rounded: false }
+        Witness { error, left, multiplier, change, passes, closed, rest, slack, is_equilibrium, is_rounded: false }
     }
 
-    /// Passes the forces of rows that follow from others on to these rows, as far as none of them pulls and each keeps
-    /// [the force that its spring needs](Repair::kept). Returns the change of each multiplier.
+    /// Passes the forces of rows that follow from others on to these rows, as far as none of them pulls. Returns `true`
+    /// for the rows whose multipliers it changed.
     ///
-    /// A row that follows from others is at its gap by rounding only, and its force times this rounding is slack.
-    fn pass_on(&self, set: &[usize], triangle: &Triangle, multiplier: &mut [f64]) -> Vec<f64> {
-        let mut passed = vec![0.0; multiplier.len()];
+    /// A row that follows from others is at its gap by rounding only, and its force times this rounding is slack. With
+    /// springs each row keeps a share of the largest force that is beyond rounding, so that its spring holds.
+    fn pass_on(&self, set: &[usize], triangle: &Triangle, multiplier: &mut [f64]) -> Vec<bool> {
+        let mut passes = vec![false; multiplier.len()];
+        let length = |row: usize| self.product(row, row).sqrt();
+        let largest = match self.norm.springs {
+            Some(_) => set.iter().map(|&row| multiplier[row].abs() * length(row)).fold(0.0, f64::max),
+            None => 0.0,
+        };
         let can_give = |row: usize, multiplier: &[f64]| match self.problem.is_two_sided(row) {
             true => f64::INFINITY,
-            false => (-multiplier[row] - self.kept[row]).max(0.0),
+            false if largest > 0.0 => (-multiplier[row] - KEPT * largest / length(row)).max(0.0),
+            false => -multiplier[row],
         };
         for (&row, weights) in set.iter().zip(triangle.weights()) {
-            let taken: Vec<(usize, f64)> =
-                weights.map(|(other, weight)| (set[other], weight * multiplier[row])).collect();
-            let force = multiplier[row].abs();
-            if taken.is_empty() || force == 0.0 {
+            let is_more = |(other, weight): &(usize, f64)| weight.abs() * length(*other) > NO_WEIGHT * length(row);
+            let others: Vec<(usize, f64)> =
+                weights.map(|(other, weight)| (set[other], weight)).filter(is_more).collect();
+            let force = multiplier[row];
+            if force == 0.0 || others.is_empty() || others.iter().any(|other| self.norm.is_on_loose_dof(other.0)) {
                 continue;
             }
-            let share = taken
+            let share = others
                 .iter()
-                .filter(|taken| taken.1 > 0.0)
-                .map(|&(other, taken)| can_give(other, multiplier) / taken)
-                .fold((can_give(row, multiplier) / force).min(1.0), f64::min);
-            let given = (row, -multiplier[row]);
-            for (row, step) in taken.into_iter().chain([given]).map(|(row, force)| (row, share * force)) {
-                passed[row] += step;
-                multiplier[row] = self.problem.allowed(row, multiplier[row] + step);
+                .filter(|(_, weight)| weight * force > 0.0)
+                .map(|&(other, weight)| can_give(other, multiplier) / (weight * force))
+                .fold((can_give(row, multiplier) / force.abs()).min(1.0), f64::min);
+            for (row, weight) in others.into_iter().chain([(row, -1.0)]).filter(|_| share > 0.0) {
+                passes[row] = true;
+                multiplier[row] = self.problem.allowed(row, multiplier[row] + share * (weight * force));
             }
         }
-        passed
+        passes
     }
 
     /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to
