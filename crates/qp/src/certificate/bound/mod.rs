@@ -8,8 +8,8 @@
 //!
 //! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the
 //! rows that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
-//! Rows that follow from others are at their gaps by rounding only: they pass their forces on to the others, and what
-//! they cannot pass on is slack.
+//! A row that follows from others is at its gap by rounding only: it passes its force on to them, and the force that it
+//! keeps, times that rounding, is a part of the product.
 //!
 //! If K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which equals the norm of K on
 //! shifts that do not move these rows. With s = g - B u* on C and a = |r| in the dual norm of K_D,

@@ -16,8 +16,9 @@ const FOLLOWS: f64 = 2.0;
 /// A weight is rounding if its part of the row that follows is below this share of the row.
 const NO_WEIGHT: f64 = 64.0 * f64::EPSILON;
 
-/// Share of the largest force, all in energy, that each row keeps where springs hold the body: rounding of the forces
-/// left out of balance is below it, and with it the slack is still rounding.
+/// Share of the largest force that each row keeps where springs hold the body, each force times the energy norm of the
+/// shift that a unit force causes. The rounding of the forces left out of balance is below it, and with it the slack is
+/// still rounding.
 const KEPT: f64 = 1024.0 * f64::EPSILON;
 
 /// Rounding of a row's distance after a shift, in units of its terms.
@@ -139,27 +140,29 @@ impl Repair<'_> {
         Witness { error, left, multiplier, change, passes, closed, rest, slack, is_equilibrium, is_rounded: false }
     }
 
-    /// Passes the forces of rows that follow from others on to these rows, as far as none of them pulls. Returns `true`
-    /// for the rows whose multipliers it changed.
+    /// A row that follows from others passes its force on to them, as far as none of them pulls. Returns `true` for the
+    /// rows whose multipliers it changed.
     ///
     /// A row that follows from others is at its gap by rounding only, and its force times this rounding is slack. With
     /// springs each row keeps a share of the largest force that is beyond rounding, so that its spring holds.
     fn pass_on(&self, set: &[usize], triangle: &Triangle, multiplier: &mut [f64]) -> Vec<bool> {
         let mut passes = vec![false; multiplier.len()];
-        let length = |row: usize| self.product(row, row).sqrt();
-        let largest = match self.norm.springs {
-            Some(_) => set.iter().map(|&row| multiplier[row].abs() * length(row)).fold(0.0, f64::max),
-            None => 0.0,
-        };
+        if !triangle.independent().contains(&false) {
+            return passes;
+        }
+        let mut length = vec![0.0; multiplier.len()];
+        set.iter().for_each(|&row| length[row] = self.product(row, row).sqrt());
+        let share = if self.norm.springs.is_some() { KEPT } else { 0.0 };
+        let kept = share * set.iter().map(|&row| multiplier[row].abs() * length[row]).fold(0.0, f64::max);
         let can_give = |row: usize, multiplier: &[f64]| match self.problem.is_two_sided(row) {
             true => f64::INFINITY,
-            false if largest > 0.0 => (-multiplier[row] - KEPT * largest / length(row)).max(0.0),
+            false if kept > 0.0 => (-multiplier[row] - kept / length[row]).max(0.0),
             false => -multiplier[row],
         };
         for (&row, weights) in set.iter().zip(triangle.weights()) {
-            let is_more = |(other, weight): &(usize, f64)| weight.abs() * length(*other) > NO_WEIGHT * length(row);
+            let is_weight = |(other, weight): &(usize, f64)| weight.abs() * length[*other] > NO_WEIGHT * length[row];
             let others: Vec<(usize, f64)> =
-                weights.map(|(other, weight)| (set[other], weight)).filter(is_more).collect();
+                weights.map(|(other, weight)| (set[other], weight)).filter(is_weight).collect();
             let force = multiplier[row];
             if force == 0.0 || others.is_empty() || others.iter().any(|other| self.norm.is_on_loose_dof(other.0)) {
                 continue;
