@@ -156,6 +156,24 @@ mod tests {
     }
 
     #[test]
+    fn forces_that_rows_pass_on_count_once_in_further_repairs() {
+        // A spring of stiffness 4 under a force of 8, 1000 behind a wall at 1: a force of 4 is left at the wall. Forces
+        // of 2e6 are locked between the wall and another row, or a copy of the wall has them beside a wall that pulls.
+        let opposed = ([(0, 0, 1.0), (1, 0, -2.0)], -2.0 * (1.0 - f64::EPSILON), [-4.0 - 2e6, -1e6]);
+        let copied = ([(0, 0, 1.0), (1, 0, 2.0)], 2.0, [5.0, -1e6]);
+        for (rows, gap, lambda) in [opposed, copied] {
+            let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &rows, &[1.0, gap]);
+            let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+            let (moved, multiplier) = problem.repaired(&norm, &[1001.0], &lambda).unwrap();
+            let force = problem.contact().mul_transposed(&multiplier)[0];
+            assert!((moved[0] - 1.0).abs() < ROUNDING && (force + 4.0).abs() < 4.0 * ROUNDING, "{moved:?}, {force}");
+            // The way of 1000 against the stiffness is the error.
+            let bound = problem.bound_on_boundary(&norm, &problem.answer(&[1001.0], &lambda), &[true, true]).unwrap();
+            assert!((bound.whole - 2000.0).abs() < 1e-6 * 2000.0, "{bound:?}");
+        }
+    }
+
+    #[test]
     fn repairs_end_when_half_the_bound_is_the_way_or_a_tenth_of_the_last_is_not_reached() {
         // The way takes no part in the bound, and there is no previous bound, or one more than ten times as large.
         assert!(!gains_nothing(1.0, 1.0, f64::INFINITY) && !gains_nothing(2.0, 2.0, 20.5));
