@@ -1,4 +1,4 @@
-"""Errors against the continuum: guaranteed in the plane, estimated elsewhere, with the numbers of the program."""
+"""Errors against the continuum, guaranteed or estimated, with the numbers of the program."""
 
 from __future__ import annotations
 
