@@ -13,7 +13,8 @@ use tempfile::TempDir;
 
 use crate::imports::rust_files;
 
-/// Shown commands that are not run here: the beginning of their line, and the reason.
+/// Shown commands that are not run here: the beginning of their line, and the reason. `commands.rs` checks what they
+/// name.
 const NOT_RUN: [(&str, &str); 5] = [
     ("cargo ", "builds, or measures for minutes; `test.sh` runs the short forms"),
     ("pip ", "installs packages"),
@@ -28,11 +29,11 @@ const RUN_ELSEWHERE: [&str; 1] = ["docs/first-part.md"];
 /// Smaller numbers are rounding, and differ from machine to machine.
 const ROUNDING: f64 = 1e-9;
 
-fn root() -> &'static Path {
+pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn read(name: &str) -> String {
+pub fn read(name: &str) -> String {
     fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
@@ -45,16 +46,54 @@ fn pages() -> Vec<String> {
     names
 }
 
-/// The parts of a document other than its running text.
-enum Part {
-    Heading,
-    Block { kind: String, text: String, line: usize },
+/// The pages of `docs/`, and the other documents.
+pub fn documents() -> Vec<String> {
+    let others = ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md"];
+    let of_folders = ["distributed/README.md", "python/README.md", "reference/README.md"];
+    others.into_iter().chain(of_folders).map(String::from).chain(pages()).collect()
 }
 
-fn parts(document: &str) -> Vec<Part> {
+/// The parts of a document other than its running text.
+pub enum Part {
+    Heading,
+    Block {
+        kind: String,
+        text: String,
+        line: usize,
+    },
+    /// Code in running text: between backticks, or a line that is indented by four spaces.
+    Code {
+        text: String,
+        line: usize,
+    },
+}
+
+/// The code in a paragraph that ends before the line `end`.
+fn code(paragraph: &str, end: usize) -> Vec<Part> {
+    let mut line = end - paragraph.lines().count();
+    let indented = paragraph.lines().enumerate().filter_map(|(at, text)| Some((at, text.strip_prefix("    ")?)));
+    let mut found: Vec<Part> =
+        indented.map(|(at, text)| Part::Code { text: text.trim().to_string(), line: line + at }).collect();
+    for (at, text) in paragraph.split('`').enumerate() {
+        if at % 2 == 1 {
+            found.push(Part::Code { text: text.split_whitespace().collect::<Vec<_>>().join(" "), line });
+        }
+        line += text.matches('\n').count();
+    }
+    found
+}
+
+pub fn parts(document: &str) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut open: Option<(String, String, usize)> = None;
-    for (number, line) in document.lines().enumerate() {
+    let mut paragraph = String::new();
+    // An empty line ends the last paragraph.
+    for (number, line) in document.lines().chain([""]).enumerate() {
+        let is_text = open.is_none() && !line.is_empty() && !line.starts_with("```") && !line.starts_with('#');
+        match is_text {
+            true => paragraph += &format!("{line}\n"),
+            false => parts.extend(code(&std::mem::take(&mut paragraph), number + 1)),
+        }
         match (line.strip_prefix("```"), &mut open) {
             (Some(_), Some(_)) => {
                 let (kind, text, line) = open.take().unwrap();
@@ -106,10 +145,22 @@ fn words(text: &str) -> String {
     text.split_whitespace().map(word).collect::<Vec<_>>().join(" ")
 }
 
+/// Returns `true` for a command of the program in running text that can run as it stands: an input follows its name, no
+/// word is a name in capitals but that of a folder to be written, and its files are on the desk.
+fn is_complete(desk: &Path, command: &str) -> bool {
+    let words: Vec<&str> = command.split(' ').collect();
+    let ["signorini", _, input, ..] = words[..] else { return false };
+    let is_there = |word: &str| {
+        let is_file = [".json", ".msh", ".inp", ".mtx"].iter().any(|ending| word.ends_with(ending));
+        !word.contains(|letter: char| letter.is_uppercase()) && (!is_file || desk.join(word).exists())
+    };
+    !input.starts_with('-') && words.windows(2).all(|pair| pair[0] == "--out" || is_there(pair[1]))
+}
+
 /// Result of running the commands of a document.
 #[derive(Default)]
 struct Followed {
-    /// Number of blocks that ran.
+    /// Number of blocks, and of commands in running text, that ran.
     ran: usize,
     /// Number of lines of output that were compared.
     compared: usize,
@@ -121,9 +172,22 @@ fn follow(name: &str) -> Followed {
     let (desk, text) = (desk(), read(name));
     let (mut shown, mut found) = (None, Followed::default());
     for part in parts(&text) {
-        let Part::Block { kind, text, line } = part else {
-            shown = None;
-            continue;
+        let (kind, text, line) = match part {
+            Part::Block { kind, text, line } => (kind, text, line),
+            Part::Heading => {
+                shown = None;
+                continue;
+            }
+            Part::Code { text, line } => {
+                if is_complete(desk.path(), &text) {
+                    let run = printed(desk.path(), &text);
+                    found.ran += usize::from(run.is_some());
+                    found
+                        .wrong
+                        .extend(run.and_then(Result::err).map(|error| format!("{name}:{line}: {text}: {error}")));
+                }
+                continue;
+            }
         };
         let place = format!("{name}:{line}");
         match kind.as_str() {
@@ -170,7 +234,7 @@ fn commands_of_the_documents_run_and_print_what_is_shown() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let ran: usize = followed.iter().map(|page| page.ran).sum();
     let compared: usize = followed.iter().map(|page| page.compared).sum();
-    assert!(ran > 20 && compared > 40, "{ran} blocks ran, {compared} lines were compared");
+    assert!(ran > 50 && compared > 40, "{ran} blocks and commands ran, {compared} lines were compared");
 }
 
 /// The names in a schema: the keys of its objects, and the choices among words.

@@ -2,6 +2,7 @@
 
 mod architecture;
 mod circles;
+mod commands;
 mod dependencies;
 mod documentation;
 mod documents;
