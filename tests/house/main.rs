@@ -8,6 +8,7 @@ mod documentation;
 mod documents;
 mod errors;
 mod examples;
+mod figures;
 mod imports;
 mod kinds;
 mod public;
