@@ -115,13 +115,13 @@ step "identical answers in two runs";     python3 reference/same_reports.py "$bu
 
 step "Python package";              python/test.sh
 step "reference, its own tests";    reference/environment.sh
-target/reference-venv/bin/python -m unittest discover --start-directory reference
-step "schema, valid and invalid scenes"; target/reference-venv/bin/python reference/schema.py "$built/signorini"
-step "reference, live validation";  target/reference-venv/bin/python reference/validate.py --signorini "$built/signorini"
+target/venv/bin/python -m unittest discover --start-directory reference
+step "schema, valid and invalid scenes"; target/venv/bin/python reference/schema.py "$built/signorini"
+step "reference, live validation";  target/venv/bin/python reference/validate.py --signorini "$built/signorini"
 step "documents as a site";         reference/book.sh
 if ! is_skipped "$pages"; then
     step "$pages"
-    (cd reference && SIGNORINI="$built/signorini" ../target/reference-venv/bin/python -m unittest pages site_pages)
+    (cd reference && SIGNORINI="$built/signorini" ../target/venv/bin/python -m unittest pages site_pages)
 fi
 
 if ! is_skipped "$distributed"; then
