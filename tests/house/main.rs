@@ -5,6 +5,7 @@ mod circles;
 mod dependencies;
 mod documentation;
 mod documents;
+mod effort;
 mod errors;
 mod examples;
 mod imports;
