@@ -52,7 +52,8 @@ ENDINGS = {1: (sg.BadInput, sg.NumericalError, sg.TooLarge), 3: (sg.Infeasible, 
 
 def run(target: Path, out: Path, method: str = "auto") -> tuple[int, dict[str, Any]]:
     """Returns the exit code and the report of `signorini solve`."""
-    command = [program(), "solve", target, "--method", method, "--out", out, "--format", "json", "--max-memory", "8GB"]
+    solve = [program(), "solve", target, "--method", method, "--out", out, "--format", "json"]
+    command = [*solve, "--pictures", "none", "--max-memory", "8GB"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     return ended.returncode, json.loads(ended.stdout) if ended.stdout else {}
 

@@ -6,6 +6,7 @@ mod commands;
 mod dependencies;
 mod documentation;
 mod documents;
+mod effort;
 mod errors;
 mod examples;
 mod figures;

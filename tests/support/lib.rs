@@ -9,6 +9,7 @@ pub mod clock;
 pub mod closed_forms;
 pub mod decks;
 pub mod draws;
+pub mod effort;
 pub mod endings;
 pub mod extremes;
 pub mod floors;
@@ -33,6 +34,8 @@ pub mod triangles;
 pub mod verification;
 
 use std::path::Path;
+
+pub use effort::{cases, seed};
 
 /// The folder of the workspace.
 ///
