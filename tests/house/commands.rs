@@ -236,8 +236,9 @@ impl Known {
             }
             Some("run") => match chosen.first().filter(|target| target.kind != "bin") {
                 Some(target) => {
-                    let texts = target.files().into_iter().map(|file| fs::read_to_string(file).unwrap());
-                    check_options(after, &texts.collect::<String>())
+                    let text: String = target.files().iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+                    check_part(after, &text)?;
+                    check_options(after, &text)
                 }
                 None if said.targets.is_empty() => self.check_program(after),
                 None => Ok(()),
@@ -292,6 +293,16 @@ fn check_script(script: &str, words: &[String]) -> Result<(), String> {
     let beside = imported.filter_map(|line| line.split_whitespace().next());
     let beside = beside.filter_map(|name| fs::read_to_string(file.with_file_name(format!("{name}.py"))).ok());
     check_options(words, &(beside.collect::<String>() + &text))
+}
+
+/// The first argument stands in the text of a program if it is a word, as the name of one of its parts.
+fn check_part(words: &[String], text: &str) -> Result<(), String> {
+    let plain = |text: &str| text.to_lowercase().replace(['-', '_'], "");
+    let is_word = |word: &&String| word.chars().all(|letter| letter.is_ascii_lowercase() || letter == '-');
+    match words.first().filter(is_word).filter(|word| !plain(text).contains(&plain(word))) {
+        Some(word) => Err(format!("there is no {word}")),
+        None => Ok(()),
+    }
 }
 
 /// Each option stands in the text of a program or of its help, or is a field of its arguments there.
@@ -378,6 +389,7 @@ fn a_wrong_command_is_found() {
             "cargo test --package signorini-mechanics blocks_of_many_cells",
         ),
         ("cargo run --release --example two_springs", "cargo run --release --example three_springs"),
+        ("cargo run --example modes -- scenes 200", "cargo run --example modes -- scones 200"),
         ("cargo run --release -- solve a.json --out b", "cargo run --release -- solve a.json --output b"),
         ("signorini solve examples/indentation.json", "signorini solve examples/indentations.json"),
         ("signorini compare SCENE.json", "signorini compares SCENE.json"),
