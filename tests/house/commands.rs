@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::dependencies::metadata;
-use crate::documents::{Part, documents, parts, read, root};
+use crate::documents::{FOLDERS, Part, documents, files, parts, read, root};
 use crate::imports::rust_files;
 
 /// What has the form of a command and is none: lines of the table of `reference/validate.py`, and a link.
@@ -21,10 +21,6 @@ const NO_COMMANDS: [&str; 5] = [
 
 /// Names of the program in documents.
 const PROGRAM: [&str; 4] = ["signorini", "PROGRAM", "target/release/signorini", "target/debug/signorini"];
-
-/// Folders of the repository whose files commands name.
-const FOLDERS: [&str; 9] =
-    ["crates", "src", "tests", "tools", "examples", "python", "reference", "distributed", "docs"];
 
 /// Options of cargo that take a value.
 const WITH_VALUE: [&str; 8] =
@@ -210,7 +206,7 @@ impl Known {
         let of_repository = |word: &&String| {
             FOLDERS.iter().any(|folder| word.starts_with(&format!("{folder}/"))) && !word.contains(['*', ','])
         };
-        words.iter().filter(of_repository).try_for_each(|word| exists(word))
+        words.iter().filter(of_repository).try_for_each(exists)
     }
 
     fn check_cargo(&self, words: &[String]) -> Result<(), String> {
@@ -240,8 +236,9 @@ impl Known {
             }
             Some("run") => match chosen.first().filter(|target| target.kind != "bin") {
                 Some(target) => {
-                    let texts = target.files().into_iter().map(|file| fs::read_to_string(file).unwrap());
-                    check_options(after, &texts.collect::<String>())
+                    let text: String = target.files().iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+                    check_part(after, &text)?;
+                    check_options(after, &text)
                 }
                 None if said.targets.is_empty() => self.check_program(after),
                 None => Ok(()),
@@ -298,6 +295,16 @@ fn check_script(script: &str, words: &[String]) -> Result<(), String> {
     check_options(words, &(beside.collect::<String>() + &text))
 }
 
+/// The first argument stands in the text of a program if it is a word, as the name of one of its parts.
+fn check_part(words: &[String], text: &str) -> Result<(), String> {
+    let plain = |text: &str| text.to_lowercase().replace(['-', '_'], "");
+    let is_word = |word: &&String| word.chars().all(|letter| letter.is_ascii_lowercase() || letter == '-');
+    match words.first().filter(is_word).filter(|word| !plain(text).contains(&plain(word))) {
+        Some(word) => Err(format!("there is no {word}")),
+        None => Ok(()),
+    }
+}
+
 /// Each option stands in the text of a program or of its help, or is a field of its arguments there.
 fn check_options(words: &[String], text: &str) -> Result<(), String> {
     for word in words.iter().filter(|word| word.len() > 2 && word.starts_with("--")) {
@@ -336,22 +343,6 @@ fn comments(file: &Path) -> String {
     text.lines().map(|line| comment(line) + "\n").collect()
 }
 
-/// The files of code with these endings.
-fn code(endings: &[&str]) -> Vec<PathBuf> {
-    let mut folders: Vec<PathBuf> = FOLDERS.iter().map(|folder| root().join(folder)).collect();
-    let mut files = vec![root().join("Cargo.toml"), root().join("test.sh")];
-    while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
-            match path.extension().and_then(|extension| extension.to_str()) {
-                _ if path.is_dir() => folders.push(path),
-                Some(ending) if endings.contains(&ending) => files.push(path),
-                _ => {}
-            }
-        }
-    }
-    files
-}
-
 /// The commands of a document, each with its line: those in running text, and the lines of its blocks.
 fn commands(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
@@ -373,7 +364,8 @@ fn every_command_of_documents_and_comments_names_what_exists() {
     let known = Known::read();
     let pages = documents().into_iter().map(|name| (read(&name), name));
     let name = |file: &PathBuf| file.strip_prefix(root()).unwrap().display().to_string();
-    let sources = code(&["rs", "py", "sh", "toml"]).into_iter().map(|file| (comments(&file), name(&file)));
+    let is_code = |file: &PathBuf| ["rs", "py", "sh", "toml"].iter().any(|end| file.extension() == Some(end.as_ref()));
+    let sources = files().into_iter().filter(is_code).map(|file| (comments(&file), name(&file)));
     let (mut wrong, mut checked) = (Vec::new(), 0);
     for (text, name) in pages.chain(sources) {
         for (line, command) in commands(&text) {
@@ -397,6 +389,7 @@ fn a_wrong_command_is_found() {
             "cargo test --package signorini-mechanics blocks_of_many_cells",
         ),
         ("cargo run --release --example two_springs", "cargo run --release --example three_springs"),
+        ("cargo run --example modes -- scenes 200", "cargo run --example modes -- scones 200"),
         ("cargo run --release -- solve a.json --out b", "cargo run --release -- solve a.json --output b"),
         ("signorini solve examples/indentation.json", "signorini solve examples/indentations.json"),
         ("signorini compare SCENE.json", "signorini compares SCENE.json"),

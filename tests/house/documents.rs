@@ -32,6 +32,9 @@ const RUN_ELSEWHERE: [&str; 2] = ["docs/gallery.md", "docs/first-part.md"];
 /// Smaller numbers are rounding, and differ from machine to machine.
 const ROUNDING: f64 = 1e-9;
 
+/// Folders whose files documents name.
+pub const FOLDERS: [&str; 8] = ["crates", "src", "tests", "tools", "examples", "python", "reference", "distributed"];
+
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -427,6 +430,19 @@ fn long_documents_stay_within_their_limits() {
     }
 }
 
+/// The files in these folders.
+pub fn files() -> Vec<PathBuf> {
+    let mut left: Vec<PathBuf> = FOLDERS.iter().map(|folder| root().join(folder)).collect();
+    let mut files = Vec::new();
+    while let Some(path) = left.pop() {
+        match path.is_dir() {
+            true => left.extend(fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path())),
+            false => files.push(path),
+        }
+    }
+    files
+}
+
 /// Files of other projects that a document names.
 const FOREIGN: [&str; 2] = ["qpsolvers/", "qpbenchmark/"];
 
@@ -434,15 +450,8 @@ const FOREIGN: [&str; 2] = ["qpsolvers/", "qpbenchmark/"];
 #[test]
 fn every_source_file_that_a_document_names_exists() {
     let short = |path: &str| path.replace("crates/", "").replace("src/", "");
-    let folders = ["crates", "src", "tests", "tools", "examples", "python", "reference", "distributed"];
-    let mut files: Vec<String> = Vec::new();
-    let mut left: Vec<PathBuf> = folders.iter().map(|folder| root().join(folder)).collect();
-    while let Some(path) = left.pop() {
-        match path.is_dir() {
-            true => left.extend(fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path())),
-            false => files.push(format!("/{}", short(path.strip_prefix(root()).unwrap().to_str().unwrap()))),
-        }
-    }
+    let name = |file: &PathBuf| format!("/{}", short(file.strip_prefix(root()).unwrap().to_str().unwrap()));
+    let files: Vec<String> = files().iter().map(name).collect();
     let mut named = 0;
     for page in pages().into_iter().chain(["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(String::from)) {
         let text = read(&page);
