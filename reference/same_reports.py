@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-FOLDERS = ("examples", "tools/impact", "tests/corpus", "tests/faults")
+FOLDERS = ("examples", "studies/impact", "tests/corpus", "tests/faults")
 
 SECONDS = re.compile(r"[0-9.e+-]+ s\b")
 """A duration inside a sentence, for example in the reason of an attempt."""

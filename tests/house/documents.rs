@@ -73,7 +73,7 @@ fn parts(document: &str) -> Vec<Part> {
 /// A folder with the scenes of this repository, in which the commands of a page run.
 fn desk() -> TempDir {
     let desk = tempfile::tempdir().unwrap();
-    for folder in ["examples", "tools"] {
+    for folder in ["examples", "studies"] {
         std::os::unix::fs::symlink(root().join(folder), desk.path().join(folder)).unwrap();
     }
     desk
@@ -365,7 +365,7 @@ const FOREIGN: [&str; 2] = ["qpsolvers/", "qpbenchmark/"];
 #[test]
 fn every_source_file_that_a_document_names_exists() {
     let short = |path: &str| path.replace("crates/", "").replace("src/", "");
-    let folders = ["crates", "src", "tests", "tools", "examples", "python", "reference", "distributed"];
+    let folders = ["crates", "src", "tests", "tools", "studies", "examples", "python", "reference", "distributed"];
     let mut files: Vec<String> = Vec::new();
     let mut left: Vec<PathBuf> = folders.iter().map(|folder| root().join(folder)).collect();
     while let Some(path) = left.pop() {

@@ -139,7 +139,7 @@ fn json_and_text_of_an_answer_show_the_same_estimates_of_both_methods() {
 #[test]
 fn an_estimated_and_a_guaranteed_total_error_are_explained() {
     let desk = Desk::new();
-    let plane = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/guarantee/coarse.json");
+    let plane = concat!(env!("CARGO_MANIFEST_DIR"), "/studies/guarantee/coarse.json");
     for (scene, error) in [(example("ball").as_str(), "0.5"), (plane, "0.3")] {
         let run = desk.run(&["solve", scene, "--total-error", error, "--explain"]).ends_with(0);
         assert!(run.stdout.contains("\n  why "), "{}", run.stdout);
@@ -435,7 +435,7 @@ fn a_picture_of_another_kind_or_of_a_bar_is_refused() {
     let desk = Desk::new();
     desk.run(&["draw", &example("indentation"), "--out", "set-up.jpg"]).ends_with(2);
     desk.run(&["draw", &example("indentation")]).ends_with(2);
-    desk.write("bar.json", include_str!("../../tools/impact/bar.json"));
+    desk.write("bar.json", include_str!("../../studies/impact/bar.json"));
     desk.run(&["draw", "bar.json", "--out", "bar.png"]).fails_with(1, &["`model`", "a bar has no picture"]);
     assert!(!desk.path("bar.png").exists());
 }
