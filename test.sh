@@ -98,18 +98,18 @@ step "build";                       cargo test --quiet --workspace --no-run --al
 step "tests";                       cargo test --quiet --workspace --all-features
 step "examples and short forms of tools"
 for lesson in two_springs one_scene find_the_contact_set many_gaps judge_an_answer bouncing_mass uniform_pressure; do example $lesson; done
-example verification --short
-example extremes --most 100
+example studies verification --short
+example studies extremes --most 100
 # Every version has inputs of its own: its digits are the seed.
 seed=$(sed -n '/^version = /{s/[^0-9]//g;p;q}' Cargo.toml)
-for target in scene mesh matrix problem; do example fuzz $target 20000 "$seed"; done
-example fuzz exact 2000 "$seed"
-example contact_cost --only "Q4 64,Hex8 6" --rounds 1
-example multigrid --most-dofs 20000
-example impact
-example dynamic_cost --short
+for target in scene mesh matrix problem; do example studies fuzz $target 20000 "$seed"; done
+example studies fuzz exact 2000 "$seed"
+example studies contact_cost --only "Q4 64,Hex8 6" --rounds 1
+example studies multigrid --most-dofs 20000
+example studies impact
+example studies dynamic_cost --short
 for scene in examples/*.json; do program compare "$scene" --out "$out/$(basename "$scene" .json)"; done
-for scene in tools/impact/*.json; do program solve "$scene" --out "$out/$(basename "$scene" .json)"; done
+for scene in studies/impact/*.json; do program solve "$scene" --out "$out/$(basename "$scene" .json)"; done
 program sweep examples/indentation.json --gaps -0.01:-0.10:10 --out "$out/sweep"
 step "identical answers in two runs";     python3 reference/same_reports.py "$built/signorini" "$built/signorini" examples tests/corpus
 

@@ -15,12 +15,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 
-FOLDERS = ("examples", "tools", "tests/corpus/findings", "tests/faults", "tests/meshes")
+FOLDERS = ("examples", "studies", "tests/corpus/findings", "tests/faults", "tests/meshes")
 """Folders with scenes, problem directories, decks and meshes as files."""
 
 TOTAL_ERRORS = {
-    "tools/guarantee/coarse.json": "1e-2",
-    "tools/guarantee/quarter.json": "0.5",
+    "studies/guarantee/coarse.json": "1e-2",
+    "studies/guarantee/quarter.json": "0.5",
     "examples/bar.json": "0.1",
     "examples/between.json": "0.2",
     "examples/circle.json": "0.2",
@@ -56,7 +56,7 @@ ALL_OF_KINDS = ("export", "refusal")
 LARGE = ("docs/scale-block.json", "tests/corpus/findings/strip_max_memory/scene.json")
 """Scenes that are only exported and solved."""
 
-SLOW = (*LARGE, "tools/impact/", "examples/two_cylinders.json", "examples/gallery/", "tests/meshes/quarter-ball-tet10.msh")
+SLOW = (*LARGE, "studies/impact/", "examples/two_cylinders.json", "examples/gallery/", "tests/meshes/quarter-ball-tet10.msh")
 """Beginnings of the targets that the short form leaves out."""
 
 

@@ -1,7 +1,7 @@
 """Writes twenty parts with the real Gmsh: for each part a mesh NAME.msh and a scene NAME.json.
 
     target/venv/bin/python reference/parts.py [--coarser FACTOR] FOLDER [NAME ...]
-    cargo run --release --example kinds -- --scenes FOLDER
+    cargo run --release --example studies -- kinds --scenes FOLDER
 
 The second command measures the times of the methods on them. Fourteen parts are meshed with tetrahedra in space, seven of them with
 ten nodes; six are meshed with quadratic triangles, plane or axisymmetric. Ten meshes are graded towards the contact. The parts have

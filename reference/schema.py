@@ -19,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 def scenes():
     """Returns all scenes of the project. Lines that begin with `//` are comments and are removed, because JSON has no comments."""
-    for folder in ["examples", "examples/first-part", "examples/two-parts", "tools/guarantee", "tools/impact"]:
+    for folder in ["examples", "examples/first-part", "examples/two-parts", "studies/guarantee", "studies/impact"]:
         for file in sorted((ROOT / folder).glob("*.json")):
             lines = file.read_text().splitlines()
             yield file, json.loads("\n".join(line for line in lines if not line.lstrip().startswith("//")))

@@ -23,7 +23,7 @@ from problem import write_problem  # noqa: E402
 # All scenes without a motion.
 SCENES = [
     scene
-    for scene in sorted([*ROOT.glob("examples/**/*.json"), *ROOT.glob("tools/*/*.json"), *ROOT.glob("tests/corpus/*.json")])
+    for scene in sorted([*ROOT.glob("examples/**/*.json"), *ROOT.glob("studies/*/*.json"), *ROOT.glob("tests/corpus/*.json")])
     if '"analysis"' not in scene.read_text()
 ]
 REFERENCE = [case for case in cases.RAW_CASES if case.generate is not None]
@@ -267,7 +267,7 @@ def test_a_scene_without_supports_names_its_motion() -> None:
 
 
 def test_a_scene_with_a_motion_is_refused() -> None:
-    moving = next((ROOT / "tools" / "impact").glob("*.json"))
+    moving = next((ROOT / "studies" / "impact").glob("*.json"))
     with pytest.raises(sg.SceneError, match="the scene moves"):
         sg.Scene(moving).solve()
 

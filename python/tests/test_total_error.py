@@ -13,7 +13,7 @@ import signorini as sg
 from bodies import ROOT
 from test_scene import program
 
-COARSE = ROOT / "tools" / "guarantee" / "coarse.json"
+COARSE = ROOT / "studies" / "guarantee" / "coarse.json"
 
 
 def coarse(**changes: Any) -> sg.Scene:

@@ -1,6 +1,6 @@
 //! Inputs that random damage has found, one for every ending that `tests/faults` does not cover; each is run again.
 //!
-//! `cargo run --release --example fuzz -- TARGET INPUTS SEED --keep` adds to `tests/corpus`. The name of a file
+//! `cargo run --release --example studies -- fuzz TARGET INPUTS SEED --keep` adds to `tests/corpus`. The name of a file
 //! consists of the name of the right file that was damaged and the code of its error; `problems` has a line for each
 //! contact problem, with its seed and its ending.
 

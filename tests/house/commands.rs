@@ -389,7 +389,7 @@ fn a_wrong_command_is_found() {
             "cargo test --package signorini-mechanics blocks_of_many_cells",
         ),
         ("cargo run --release --example two_springs", "cargo run --release --example three_springs"),
-        ("cargo run --example modes -- scenes 200", "cargo run --example modes -- scones 200"),
+        ("cargo run --example studies -- modes scenes 200", "cargo run --example studies -- mods scenes 200"),
         ("cargo run --release -- solve a.json --out b", "cargo run --release -- solve a.json --output b"),
         ("signorini solve examples/indentation.json", "signorini solve examples/indentations.json"),
         ("signorini compare SCENE.json", "signorini compares SCENE.json"),

@@ -33,7 +33,8 @@ const RUN_ELSEWHERE: [&str; 2] = ["docs/gallery.md", "docs/first-part.md"];
 const ROUNDING: f64 = 1e-9;
 
 /// Folders whose files documents name.
-pub const FOLDERS: [&str; 8] = ["crates", "src", "tests", "tools", "examples", "python", "reference", "distributed"];
+pub const FOLDERS: [&str; 9] =
+    ["crates", "src", "tests", "tools", "studies", "examples", "python", "reference", "distributed"];
 
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -118,7 +119,7 @@ pub fn parts(document: &str) -> Vec<Part> {
 /// A folder with the scenes of this repository, in which the commands of a page run.
 fn desk() -> TempDir {
     let desk = tempfile::tempdir().unwrap();
-    for folder in ["examples", "tools"] {
+    for folder in ["examples", "studies"] {
         std::os::unix::fs::symlink(root().join(folder), desk.path().join(folder)).unwrap();
     }
     desk

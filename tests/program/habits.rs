@@ -143,7 +143,7 @@ fn an_estimated_and_a_guaranteed_total_error_are_explained() {
     let mut estimated = crate::total_error::classical(0.3);
     estimated["obstacles"][0]["rule"] = json!("closest-point");
     desk.write("estimated.json", estimated.to_string());
-    let guaranteed = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/guarantee/coarse.json");
+    let guaranteed = concat!(env!("CARGO_MANIFEST_DIR"), "/studies/guarantee/coarse.json");
     for (scene, error) in [("estimated.json", "0.2"), (guaranteed, "0.3")] {
         let run = desk.run(&["solve", scene, "--total-error", error, "--explain"]).ends_with(0);
         assert!(run.stdout.contains("\n  why "), "{}", run.stdout);
@@ -439,7 +439,7 @@ fn a_picture_of_another_kind_or_of_a_bar_is_refused() {
     let desk = Desk::new();
     desk.run(&["draw", &example("indentation"), "--out", "set-up.jpg"]).ends_with(2);
     desk.run(&["draw", &example("indentation")]).ends_with(2);
-    desk.write("bar.json", include_str!("../../tools/impact/bar.json"));
+    desk.write("bar.json", include_str!("../../studies/impact/bar.json"));
     desk.run(&["draw", "bar.json", "--out", "bar.png"]).fails_with(1, &["`model`", "a bar has no picture"]);
     assert!(!desk.path("bar.png").exists());
 }

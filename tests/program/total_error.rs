@@ -301,7 +301,7 @@ fn a_surface_without_bounds_between_nodes_has_an_estimate() {
     assert!(report["reason"].as_str().unwrap().starts_with("obstacles[0].shape: the distance"), "{report}");
 }
 
-/// A short form of `cargo run --release --example guarantee`.
+/// A short form of `cargo run --release --example studies -- guarantee`.
 #[test]
 fn no_random_scene_violates_the_guarantee() {
     let (first, count, mut meshes) = (seed(1), cases(6, 24), 0);

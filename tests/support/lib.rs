@@ -23,7 +23,6 @@ pub mod oracles;
 pub mod pair_scenes;
 pub mod plane_scenes;
 pub mod problems;
-pub mod process;
 pub mod program;
 pub mod random;
 pub mod rollers;
