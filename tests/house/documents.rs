@@ -25,8 +25,8 @@ const NOT_RUN: [(&str, &str); 5] = [
     ("signorini tradeoff examples/indentation.json", "measures for a minute"),
 ];
 
-/// Pages whose commands are run by another test; those of the first, which are the same solves with pictures, in the
-/// long form here too.
+/// Pages whose commands are left to others: those of the first, nearly all of them solves that other tests make too, to
+/// the long form of this test; those of the second to another test.
 const RUN_ELSEWHERE: [&str; 2] = ["docs/gallery.md", "docs/first-part.md"];
 
 /// Smaller numbers are rounding, and differ from machine to machine.
