@@ -26,7 +26,7 @@ kept=tests/full-pass.txt
 table="
 every | first  | format        | cargo fmt --all --check |
 every | first  | lints         | cargo clippy --quiet --workspace --all-targets --all-features -- -D warnings |
-long  | first  | documentation | rustdoc_as_errors    | Cargo.toml clippy.toml src/lib.rs crates/*/src/lib.rs
+long  | first  | documentation | rustdoc_as_errors    | Cargo.toml src/lib.rs crates/*/src/lib.rs
 long  | first  | features      | features             | Cargo.toml crates/*/Cargo.toml src/lib.rs crates/qp/src/lib.rs crates/qp/src/linear/mod.rs
 every | first  | build         | cargo test --quiet --workspace --no-run --all-features |
 every | tests  | tests         | cargo test --quiet --workspace --all-features |

@@ -101,7 +101,8 @@ fn tests_need_the_named_tools_and_skip_the_rest_by_name() {
     assert_eq!(needed, ["cargo", "rustfmt", "clippy", "python3", "venv"]);
     let sentence = readme.split("It needs ").nth(1).unwrap().split(". ").next().unwrap();
     assert!(needed.iter().all(|tool| sentence.contains(tool)), "{sentence}");
-    // Where everything but mpirun is found, exactly the step that needs it is named. Without a history every step is chosen.
+    // Where everything but mpirun is found, exactly the step that needs it is named. Every step is chosen, because
+    // there is no history.
     const UNKNOWN: &str = "== no commit of this history is known at which all steps passed";
     let found = [("cargo", 0), ("python3", 0), ("valgrind", 0)];
     let (is_fine, lines) = needs(&found, &[]);
@@ -116,6 +117,23 @@ fn tests_need_the_named_tools_and_skip_the_rest_by_name() {
     let with_apt = [&found[..], &[("apt-get", 1)]].concat();
     let (is_fine, lines) = needs(&with_apt, &[("INSTALL", "1")]);
     assert!(is_fine && lines == ["== test.sh installs by apt-get: openmpi-bin"], "{lines:?}");
+}
+
+#[test]
+fn every_long_step_names_files_that_exist() {
+    let script = read("test.sh");
+    let table = script.split("\ntable=\"\n").nth(1).unwrap().split("\n\"\n").next().unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().map(|row| row.split('|').map(str::trim).collect()).collect();
+    let of_class = |class: &str| rows.iter().filter(|row| row[0] == class).map(|row| row[2]).collect::<Vec<_>>();
+    let every = ["format", "lints", "build", "tests", "lessons", "Python", "validation", "ledger"];
+    assert_eq!(of_class("every"), every);
+    assert_eq!(of_class("long").len(), rows.len() - every.len());
+    for row in rows.iter().filter(|row| row[0] == "long") {
+        assert!(!row[4].is_empty(), "{row:?}");
+        let list = ["-c", &format!("ls -d {}", row[4])];
+        let listed = Command::new("sh").args(list).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
+        assert!(listed.status.success(), "{row:?}: {}", String::from_utf8_lossy(&listed.stderr));
+    }
 }
 
 #[test]

@@ -165,7 +165,7 @@ fn interrupted(desk: &Desk, arguments: &[&str], event: &str, cut: impl Fn(&Run) 
 #[test]
 fn an_interrupt_of_a_factorisation_ends_the_program_without_an_answer() {
     let desk = Desk::new();
-    desk.write("large.json", large(400).to_string());
+    desk.write("large.json", large(600).to_string());
     let solve = ["solve", "large.json", "--method", "active-set", "--out", "o"];
     let run = interrupted(&desk, &solve, "factorisation", |_| true);
     assert!(run.stdout.is_empty() && run.stderr.lines().count() == 1, "{}{}", run.stdout, run.stderr);
