@@ -1,13 +1,18 @@
 #!/usr/bin/env bash
 # Builds the wheel of the Python package, target/wheels/signorini-*.whl, and installs it in a new environment without Rust; there the
 # Python lines of the README must run. Needs cargo, and python3 >= 3.11 with venv.
+#
+#   python/wheel.sh            in the profile of the tests, whose crates it shares as far as their features are the same
+#   python/wheel.sh release    as `pip install ./python` does
 set -euo pipefail
 cd "$(dirname "$0")/.."
-wheels=${CARGO_TARGET_DIR:-$PWD/target}/wheels
+export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
+wheels=$CARGO_TARGET_DIR/wheels
 environment=$(mktemp -d)
 trap 'rm -rf "$environment"' EXIT
 
 rm -rf "$wheels"
+export MATURIN_PEP517_ARGS="--profile ${1:-dev}"
 python3 -m venv "$environment/build"
 "$environment/build/bin/python" -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$wheels" ./python
 wheel=$(echo "$wheels"/signorini-*.whl)

@@ -1,6 +1,6 @@
 """Compares decks without contact with CalculiX: twelve with straight edges, others with curved edges.
 
-    target/reference-venv/bin/python reference/decks_without_contact.py target/release/signorini
+    target/venv/bin/python reference/decks_without_contact.py target/release/signorini
 
 All elements are quadratic. The first decks show twelve kinds of loads, supports and joints. In the further ones nodes lie on curved
 surfaces, on coarse and on finer meshes; the ball is a mesh of Gmsh, which meshio reads. CalculiX, whose command is ccx, prints seven

@@ -22,8 +22,10 @@ The exit code is 1 if signorini misses a program of a generated or typed set at 
 """
 
 import argparse
+import datetime
 import importlib.metadata
 import statistics
+import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -125,6 +127,12 @@ def line(solver: str, found: list[Judged]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
+def when() -> str:
+    """Returns the line above a table: the day, and the commit of the repository."""
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=Path(__file__).parent, capture_output=True, text=True, check=True)
+    return f"*Printed on {datetime.date.today()} at commit {commit.stdout.strip()} by `python reference/foreign_qps.py`.*"
+
+
 HEADING = "| solver | 1e-3 | 1e-6 | 1e-9 | answer | residual | objective | median | longest |\n|" + "---|" * 9
 
 
@@ -132,7 +140,7 @@ def table(name: str, problems: list[Program], solvers: list[str], limit: float) 
     """Prints the table of a set as it grows; returns its text and what signorini made of each program."""
     most = max(len(problem.q) for problem in problems)
     rows = max(sum(0 if part is None else len(part) for part in (problem.h, problem.b)) for problem in problems)
-    lines = [f"**{name}**: {len(problems)} programs, at most {most} unknowns and {rows} rows", "", HEADING]
+    lines = [f"**{name}**: {len(problems)} programs, at most {most} unknowns and {rows} rows", "", when(), "", HEADING]
     print("\n".join(lines), flush=True)
     own: list[Judged] = []
     for solver in solvers:

@@ -51,7 +51,7 @@ ENTRIES = [
     Entry("sweep", "A sweep", "Contact force and width over the gap.",
           "sweep examples/indentation.json --gaps -0.01:-0.10:10", "force-width.png"),
     Entry("motion", "A motion", "A bar thrown against a wall: contact force and energies over time.",
-          "solve tools/impact/bar.json", "history.png"),
+          "solve studies/impact/bar.json", "history.png"),
     Entry("tradeoff", "A trade-off", "Error over seconds of every method, the error of the mesh included.",
           "tradeoff examples/indentation.json --refinements 1 --runs 1", "total-error.png"),
 ]

@@ -2,9 +2,9 @@
 
 The files are kept in the repository, so that no test needs Gmsh. This command writes them again:
 
-    target/reference-venv/bin/python reference/meshes.py
+    target/venv/bin/python reference/meshes.py
 
-Gmsh needs libraries of a graphical system (on Debian libglu1-mesa, libxcursor1, libxft2, libxinerama1).
+It needs `pip install gmsh==4.15.2`, and Gmsh needs libraries of a graphical system (on Debian libglu1-mesa, libxcursor1, libxft2, libxinerama1).
 Every file has a node that belongs to no element of the body. The files of version 4.1 have unsorted node tags with gaps; in
 version 2.2 Gmsh numbers the nodes itself. The cube is one mesh in four forms, with coordinates that ASCII represents exactly.
 """

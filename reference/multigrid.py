@@ -1,4 +1,4 @@
-"""Solves the block of tools/multigrid without contact by pyamg, for comparison: hierarchy, cycles, seconds.
+"""Solves the block of studies/multigrid without contact by pyamg, for comparison: hierarchy, cycles, seconds.
 
     pip install pyamg && OMP_NUM_THREADS=1 python reference/multigrid.py 16 32 64
 

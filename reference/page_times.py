@@ -43,7 +43,7 @@ def main() -> int:
         runs = [(f"solve {example}.json", ["solve", ROOT / f"examples/{example}.json"]) for example in EXAMPLES]
         runs += [
             ("sweep indentation.json, 22 events", ["sweep", scene, "--gaps=-0.01:-0.10:10"]),
-            ("solve disc.json, a motion", ["solve", ROOT / "tools/impact/disc.json"]),
+            ("solve disc.json, a motion", ["solve", ROOT / "studies/impact/disc.json"]),
             ("solve, 98,552 nodes on the surface", ["solve", folder / "plate.json", "--accuracy", "1e-2", "--no-proof"]),
         ]
         for number, (what, arguments) in enumerate(runs):

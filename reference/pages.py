@@ -356,7 +356,7 @@ class Answers(Pages):
                 self.assertLess(sorted(off)[len(off) * 3 // 4], 24, off)
 
     def test_the_numbers_stand_above_the_pictures(self) -> None:
-        ball = ROOT / "tools/impact/bouncing_bar.json"
+        ball = ROOT / "studies/impact/bouncing_bar.json"
         for command, scene, *options in (("solve", EXAMPLES / "ball.json"), ("solve", ball), ("sweep", EXAMPLES / "indentation.json", "--gaps=-0.01:-0.10:4")):
             page, _ = self.page(command, scene, *options)
             browser = self.opened(page)
@@ -570,7 +570,7 @@ class Questions(Pages):
 
 class TotalErrors(Pages):
     def test_a_guaranteed_error_is_shown_with_its_meshes(self) -> None:
-        page, report = self.page("solve", ROOT / "tools/guarantee/coarse.json", "--total-error", "0.1")
+        page, report = self.page("solve", ROOT / "studies/guarantee/coarse.json", "--total-error", "0.1")
         browser = self.opened(page)
         self.assertGreater(len(report["levels"]), 2)
         self.assertEqual(browser.ask("document.querySelectorAll('#levels tbody tr').length"), len(report["levels"]))
@@ -619,7 +619,7 @@ class Sweeps(Pages):
 
 class Motions(Pages):
     def test_the_time_slider_moves_the_body_and_the_energies(self) -> None:
-        page, report = self.page("solve", ROOT / "tools/impact/bouncing_bar.json")
+        page, report = self.page("solve", ROOT / "studies/impact/bouncing_bar.json")
         browser = self.opened(page)
         words, picture = self.text("#facts"), self.drawn("#answer .view")
         last = browser.ask("Number(document.querySelector('#answer .slider input').max)")

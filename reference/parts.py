@@ -1,12 +1,12 @@
 """Writes twenty parts with the real Gmsh: for each part a mesh NAME.msh and a scene NAME.json.
 
-    target/reference-venv/bin/python reference/parts.py [--coarser FACTOR] FOLDER [NAME ...]
-    cargo run --release --example kinds -- --scenes FOLDER
+    target/venv/bin/python reference/parts.py [--coarser FACTOR] FOLDER [NAME ...]
+    cargo run --release --example studies -- kinds --scenes FOLDER
 
 The second command measures the times of the methods on them. Fourteen parts are meshed with tetrahedra in space, seven of them with
 ten nodes; six are meshed with quadratic triangles, plane or axisymmetric. Ten meshes are graded towards the contact. The parts have
 3,000 to 150,000 dofs. Lengths are in mm, forces in N. `--coarser 2` makes all edges twice as long. Every run writes the same files.
-meshes.py names the libraries that Gmsh needs.
+It needs `pip install gmsh`; meshes.py names the libraries that Gmsh needs.
 """
 
 import json

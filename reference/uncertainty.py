@@ -1,7 +1,7 @@
 """Measures if the uncertainties of peak pressure, width and area hold: twenty parts to design them on, and twenty to check them.
 
     cargo build --release
-    target/reference-venv/bin/python reference/uncertainty.py [--design] [--signorini PATH] FOLDER [NAME ...]
+    target/venv/bin/python reference/uncertainty.py [--design] [--signorini PATH] FOLDER [NAME ...]
 
 Every part is meshed with the real Gmsh at its element size h and at h/4, with linear and with quadratic elements (T3, T6, Tet4, Tet10),
 and solved by the program. A line compares what the program prints at h with its value at h/4. Without `--design` the parts are those

@@ -51,8 +51,9 @@ pub struct Solution {
     pub inner: Arc<Answer>,
     /// `None` for the answer that an exception of many problems carries.
     pub source: Option<Source>,
-    /// Multipliers of the equality rows, shape (p,), in force, of either sign; empty without such rows.
+    /// The derivatives of the answer, once they have been asked for.
     pub derivatives: Mutex<Option<Derivatives>>,
+    /// Arrays of `inner`, each made when it is first asked for.
     displacement: PyOnceLock<Py<PyAny>>,
     multiplier: PyOnceLock<Py<PyAny>>,
     equality_multiplier: PyOnceLock<Py<PyAny>>,

@@ -23,7 +23,7 @@ from problem import write_problem  # noqa: E402
 # All scenes without a motion.
 SCENES = [
     scene
-    for scene in sorted([*ROOT.glob("examples/**/*.json"), *ROOT.glob("tools/*/*.json"), *ROOT.glob("tests/corpus/*.json")])
+    for scene in sorted([*ROOT.glob("examples/**/*.json"), *ROOT.glob("studies/*/*.json"), *ROOT.glob("tests/corpus/*.json")])
     if '"analysis"' not in scene.read_text()
 ]
 REFERENCE = [case for case in cases.RAW_CASES if case.generate is not None]
@@ -52,7 +52,8 @@ ENDINGS = {1: (sg.BadInput, sg.NumericalError, sg.TooLarge), 3: (sg.Infeasible, 
 
 def run(target: Path, out: Path, method: str = "auto") -> tuple[int, dict[str, Any]]:
     """Returns the exit code and the report of `signorini solve`."""
-    command = [program(), "solve", target, "--method", method, "--out", out, "--format", "json", "--max-memory", "8GB"]
+    solve = [program(), "solve", target, "--method", method, "--out", out, "--format", "json"]
+    command = [*solve, "--pictures", "none", "--max-memory", "8GB"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     return ended.returncode, json.loads(ended.stdout) if ended.stdout else {}
 
@@ -266,7 +267,7 @@ def test_a_scene_without_supports_names_its_motion() -> None:
 
 
 def test_a_scene_with_a_motion_is_refused() -> None:
-    moving = next((ROOT / "tools" / "impact").glob("*.json"))
+    moving = next((ROOT / "studies" / "impact").glob("*.json"))
     with pytest.raises(sg.SceneError, match="the scene moves"):
         sg.Scene(moving).solve()
 

@@ -1,4 +1,4 @@
-"""Errors against the continuum: guaranteed in the plane, estimated elsewhere, with the numbers of the program."""
+"""Errors against the continuum, guaranteed or estimated, with the numbers of the program."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import signorini as sg
 from bodies import ROOT
 from test_scene import program
 
-COARSE = ROOT / "tools" / "guarantee" / "coarse.json"
+COARSE = ROOT / "studies" / "guarantee" / "coarse.json"
 
 
 def coarse(**changes: Any) -> sg.Scene:

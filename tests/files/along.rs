@@ -16,7 +16,8 @@ fn along(scene: &Value, lines: &[&str]) -> BTreeMap<String, Vec<f64>> {
     let desk = Desk::new();
     desk.write("scene.json", scene.to_string());
     let options = lines.iter().flat_map(|line| ["--along", line]);
-    let arguments: Vec<&str> = ["solve", "scene.json", "--out", "o"].into_iter().chain(options).collect();
+    let arguments: Vec<&str> =
+        ["solve", "scene.json", "--out", "o", "--pictures", "none"].into_iter().chain(options).collect();
     desk.run(&arguments).ends_with(0);
     let csv = fs::read_to_string(desk.path("o/along.csv")).unwrap();
     let mut rows = csv.lines();
@@ -271,7 +272,8 @@ fn the_pressure_is_that_of_the_obstacle_on_which_the_line_lies() {
 fn lines_that_do_not_fit_are_refused() {
     let desk = Desk::new();
     desk.write("block.json", support::program::scene().to_string());
-    let run = |line: &str| desk.run(&["solve", "block.json", "--out", "o", &format!("--along={line}")]);
+    let run =
+        |line: &str| desk.run(&["solve", "block.json", "--out", "o", "--pictures", "none", &format!("--along={line}")]);
     for (line, phrase) in [
         ("0,0", "it must be X1,Y1:X2,Y2"),
         ("0,0:1", "one end has 2 coordinates and the other 1"),
@@ -290,6 +292,6 @@ fn lines_that_do_not_fit_are_refused() {
     assert!(outside.stderr.contains("--along 7,7:8,8 meets no body; the mesh reaches from"), "{}", outside.stderr);
     assert_eq!(fs::read_to_string(desk.path("o/along.csv")).unwrap().lines().count(), 1);
     // The table of an earlier run would not belong to the next answer.
-    desk.run(&["solve", "block.json", "--out", "o"]).ends_with(0);
+    desk.run(&["solve", "block.json", "--out", "o", "--pictures", "none"]).ends_with(0);
     assert!(!desk.path("o/along.csv").exists());
 }

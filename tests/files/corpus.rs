@@ -1,6 +1,6 @@
 //! Inputs that random damage has found, one for every ending that `tests/faults` does not cover; each is run again.
 //!
-//! `cargo run --release --example fuzz -- TARGET INPUTS SEED --keep` adds to `tests/corpus`. The name of a file
+//! `cargo run --release --example studies -- fuzz TARGET INPUTS SEED --keep` adds to `tests/corpus`. The name of a file
 //! consists of the name of the right file that was damaged and the code of its error; `problems` has a line for each
 //! contact problem, with its seed and its ending.
 
@@ -13,6 +13,7 @@ use signorini::qp::read_problem;
 use support::draws::Draws;
 use support::fuzz::damage::{damaged, damaged_deck, fault, faults, read};
 use support::fuzz::problem;
+use support::{cases, seed};
 
 fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")
@@ -151,8 +152,8 @@ fn codes(problem: &ContactProblem, settings: &Settings) -> [&'static str; 3] {
 /// GOAL: the ending does not depend on the door, for every method, on random problems and on every kept finding.
 #[test]
 fn one_solve_and_prepared_data_end_in_the_same_way() {
-    const RANDOM: u64 = 2000;
-    let random = (0..RANDOM).filter_map(|seed| problem::problem(&mut Draws(900_000 + seed)).ok());
+    let first = seed(900_000);
+    let random = (first..first + cases(200, 2000)).filter_map(|seed| problem::problem(&mut Draws(seed)).ok());
     let kept = fs::read_dir(corpus().join("findings")).unwrap();
     let kept = kept.map(|finding| finding.unwrap().path()).filter(|folder| folder.join("K.mtx").exists());
     let kept = kept.map(|folder| read_problem(&folder).unwrap());

@@ -151,7 +151,7 @@ fn two_bodies_in_space_are_seen_from_the_side_of_their_contact() {
 #[test]
 fn the_page_of_a_motion_opens_at_the_frame_with_the_largest_force() {
     let desk = Desk::new();
-    let ball = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/impact/ball.json");
+    let ball = concat!(env!("CARGO_MANIFEST_DIR"), "/studies/impact/ball.json");
     desk.run(&["solve", ball, "--out", "o"]).ends_with(0);
     let motion = &page(&desk)["motion"];
     let times: Vec<f64> = serde_json::from_value(motion["times"].clone()).unwrap();

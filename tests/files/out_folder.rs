@@ -174,7 +174,7 @@ pub fn layers() -> Value {
 fn the_strain_energy_density_is_that_of_the_material_of_each_element() {
     let desk = Desk::new();
     desk.write("layers.json", layers().to_string());
-    desk.run(&["solve", "layers.json", "--out", "o"]).ends_with(0);
+    desk.run(&["solve", "layers.json", "--out", "o", "--pictures", "none"]).ends_with(0);
     let vtu = fs::read_to_string(desk.path("o/solution.vtu")).unwrap();
     let document = Document::parse(&vtu).unwrap();
     let arrays = |name: &str| -> Vec<Vec<f64>> {
@@ -225,7 +225,8 @@ fn the_tables_describe_every_entry_of_the_vectors() {
     });
     let desk = Desk::new();
     desk.write("scene.json", scene.to_string());
-    let report = desk.run(&["solve", "scene.json", "--format", "json", "--out", "o"]).ends_with(0).json();
+    let run = desk.run(&["solve", "scene.json", "--format", "json", "--out", "o", "--pictures", "none"]);
+    let report = run.ends_with(0).json();
     let read = |name: &str| fs::read_to_string(desk.path("o").join(name)).unwrap();
     let (u, lambda) = (read_vector(&desk.path("o/u.mtx")).unwrap(), read_vector(&desk.path("o/lambda.mtx")).unwrap());
     let dofs = read("dofs.csv");

@@ -17,11 +17,11 @@ fn folders(folder: &str) -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_two_rust_files_of_python_tools_or_tests_import_each_other() {
+fn no_two_rust_files_of_python_studies_or_tests_import_each_other() {
     let roots = |path: &PathBuf| path.join("main.rs").exists() || path.join("lib.rs").exists();
     let programs = folders("tools").into_iter().chain(folders("tests")).filter(roots);
     let (mut found, mut files, mut arrows) = (BTreeMap::new(), 0, 0);
-    for folder in programs.chain([root().join("python/src")]) {
+    for folder in programs.chain(["python/src", "studies"].map(|folder| root().join(folder))) {
         let house = House::of_folder(&folder);
         files += house.files.len();
         arrows += house.files.keys().map(|module| house.taken_from(module).len()).sum::<usize>();

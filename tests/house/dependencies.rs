@@ -18,7 +18,7 @@ fn allowed() -> Vec<String> {
 }
 
 /// What cargo says of the workspace.
-fn metadata(arguments: &[&str]) -> Value {
+pub fn metadata(arguments: &[&str]) -> Value {
     let mut cargo = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()));
     cargo
         .args(["metadata", "--format-version", "1", "--locked", "--manifest-path"])

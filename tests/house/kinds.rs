@@ -5,6 +5,8 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use signorini::fem::ElementKind;
+
 use crate::imports::House;
 
 /// The code of every file of `src/`.
@@ -53,7 +55,7 @@ fn assert_named_in(names_of_kind: &[String], expected: &[&str]) {
 fn an_element_is_named_in_three_files() {
     let (all, scene) = ("fem/element/mod.rs", "scene/input/schema/cells.rs");
     // Bodies that consist of one kind of element also name it, and the estimate for a mesh file assumes triangles.
-    for (element, file, others) in [
+    let elements = [
         ("Line2", "fem/element/line2.rs", &["scene/input/body/bar.rs"][..]),
         ("T3", "fem/element/t3.rs", &[scene, "scene/input/body/gmsh.rs"]),
         ("T6", "fem/element/t6.rs", &[scene]),
@@ -61,7 +63,11 @@ fn an_element_is_named_in_three_files() {
         ("Q8", "fem/element/q8.rs", &[scene]),
         ("Tet4", "fem/element/tet4.rs", &[scene]),
         ("Hex8", "fem/element/hex8.rs", &[scene, "scene/input/body/half_ball.rs"]),
-    ] {
+        ("Tet10", "fem/element/tet10.rs", &[scene]),
+        ("Hex20", "fem/element/hex20.rs", &[scene]),
+    ];
+    assert_eq!(elements.map(|element| element.0), ElementKind::ALL.map(ElementKind::name));
+    for (element, file, others) in elements {
         let of_kinds = ["ElementKind", "ElementSpec", "SolidElementSpec"].map(|kinds| format!("{kinds}::{element}"));
         assert_named_in(&of_kinds, &[&[all], others].concat());
         let own = format!("static {}:", element.to_uppercase());

@@ -2,11 +2,14 @@
 
 mod architecture;
 mod circles;
+mod commands;
 mod dependencies;
 mod documentation;
 mod documents;
+mod effort;
 mod errors;
 mod examples;
+mod figures;
 mod imports;
 mod kinds;
 mod public;

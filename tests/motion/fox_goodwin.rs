@@ -105,12 +105,12 @@ fn the_peak_of_a_block_converges_for_every_step() {
 /// differences as well.
 #[test]
 fn the_energy_of_random_motions_never_grows() {
-    let mut state = 7_u64;
+    let mut state = support::seed(7);
     let mut random = move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    for number in 0..1000 {
+    for number in 0..support::cases(250, 1000) {
         let dofs = 2 + number % 7;
         // K = F'F, with a free motion in every third body; M is diagonal, or F'F plus a diagonal.
         let mut squares = |diagonal: f64, kept: usize| {
@@ -188,7 +188,7 @@ fn bounces(cells: usize) -> Vec<[f64; 2]> {
 
 #[test]
 fn a_bouncing_bar_keeps_its_times_and_its_peaks() {
-    let (coarse, fine) = (bounces(100), bounces(800));
+    let (coarse, fine) = (bounces(100), bounces(support::cases(400, 800)));
     assert_eq!((coarse.len(), fine.len()), (4, 4), "{coarse:?}, {fine:?}");
     for (coarse, fine) in coarse.iter().zip(&fine) {
         eprintln!("{coarse:?} {fine:?}");

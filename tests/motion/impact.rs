@@ -84,7 +84,7 @@ fn central_differences_have_the_exact_pressure_and_no_penetration() {
 
 #[test]
 fn the_stable_step_of_a_bar_is_the_time_of_a_wave_through_a_cell() {
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tools/impact/bar.json")).unwrap();
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/studies/impact/bar.json")).unwrap();
     let text = text.replace("\"dynamic\": {", "\"dynamic\": {\"scheme\": \"central-difference\",");
     let scene = Scene::from_json(&text, "scene").unwrap();
     let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
@@ -169,7 +169,7 @@ fn a_time_dependent_load_moves_an_oscillator_as_in_the_closed_form() {
 
 #[test]
 fn a_run_that_is_resumed_goes_on_bit_for_bit() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/impact/bar.json");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/studies/impact/bar.json");
     let scene = Scene::read(path).unwrap();
     let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
     let new =

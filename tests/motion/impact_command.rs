@@ -95,8 +95,8 @@ fn memory_does_not_grow_with_the_number_of_steps() {
 fn a_killed_run_is_resumed_bit_for_bit() {
     let desk = Desk::new();
     desk.write("bar.json", with("frames", json!(60)).to_string());
-    desk.run(&["solve", "bar.json", "--out", "whole"]).ends_with(0);
-    let mut child = desk.command(&["solve", "bar.json", "--out", "stopped"]).spawn().unwrap();
+    desk.run(&["solve", "bar.json", "--out", "whole", "--pictures", "none"]).ends_with(0);
+    let mut child = desk.command(&["solve", "bar.json", "--out", "stopped", "--pictures", "none"]).spawn().unwrap();
     while !desk.path("stopped/series-00010.vtu").exists() {
         assert!(child.try_wait().unwrap().is_none(), "the run ended before its tenth frame");
     }
@@ -107,7 +107,7 @@ fn a_killed_run_is_resumed_bit_for_bit() {
     assert!(series.ends_with("</VTKFile>\n"));
     let names = series.split('"').filter(|name| name.ends_with(".vtu"));
     assert!(names.map(|name| desk.path(&format!("stopped/{name}"))).all(|path| path.exists()));
-    desk.run(&["solve", "bar.json", "--out", "stopped", "--resume"]).ends_with(0);
+    desk.run(&["solve", "bar.json", "--out", "stopped", "--resume", "--pictures", "none"]).ends_with(0);
     for name in ["history.csv", "checkpoint.json", "series.pvd", "series-00059.vtu", "frames/00060.json"] {
         let [whole, stopped] = ["whole", "stopped"].map(|run| fs::read(desk.path(&format!("{run}/{name}"))).unwrap());
         assert!(whole == stopped, "{name} differs");
@@ -120,7 +120,7 @@ fn only_a_run_of_the_same_scene_is_resumed() {
     desk.write("bar.json", bar().to_string());
     desk.write("other.json", with("step", json!(0.01)).to_string());
     desk.run(&["solve", "bar.json", "--out", "out", "--resume"]).fails_with(1, &["cannot resume", "checkpoint.json"]);
-    desk.run(&["solve", "bar.json", "--out", "out"]).ends_with(0);
+    desk.run(&["solve", "bar.json", "--out", "out", "--pictures", "none"]).ends_with(0);
     desk.run(&["solve", "other.json", "--out", "out", "--resume"]).fails_with(1, &["belongs to another scene"]);
     desk.write("still.json", scene().to_string());
     desk.run(&["solve", "still.json", "--out", "out", "--resume"]).fails_with(1, &["no motion to resume"]);

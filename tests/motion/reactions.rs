@@ -308,9 +308,9 @@ fn the_table_of_resultants_contains_the_supports_and_is_resumed_bit_for_bit() {
     scene["analysis"]["dynamic"]["duration"] = json!(0.3);
     scene["analysis"]["dynamic"]["frames"] = json!(3);
     desk.write("short.json", scene.to_string());
-    desk.run(&["solve", "long.json", "--out", "whole"]).ends_with(0);
-    desk.run(&["solve", "short.json", "--out", "parts"]).ends_with(0);
-    desk.run(&["solve", "long.json", "--out", "parts", "--resume"]).ends_with(0);
+    desk.run(&["solve", "long.json", "--out", "whole", "--pictures", "none"]).ends_with(0);
+    desk.run(&["solve", "short.json", "--out", "parts", "--pictures", "none"]).ends_with(0);
+    desk.run(&["solve", "long.json", "--out", "parts", "--resume", "--pictures", "none"]).ends_with(0);
     let [whole, parts] =
         ["whole", "parts"].map(|run| fs::read_to_string(desk.path(&format!("{run}/resultants.csv"))).unwrap());
     assert!(whole == parts, "resultants.csv differs after the resumption");

@@ -24,7 +24,7 @@ fn the_table_of_a_watched_node_has_displacement_velocity_and_contact_force_at_ev
     // The cells have the length 0.5; the point is in the middle of the last one.
     let watch = json!([{"node": 20}, {"point": [9.75]}, {"node": 19}]);
     desk.write("bar.json", with("watch", watch).to_string());
-    desk.run(&["solve", "bar.json", "--out", "out"]).ends_with(0);
+    desk.run(&["solve", "bar.json", "--out", "out", "--pictures", "none"]).ends_with(0);
     let (heading, rows) = table(&desk, "out/watch.csv");
     let columns = ["node 20", "point (9.75)", "node 19"].map(|name| ["u", "v", "f"].map(|of| format!("{name} {of}_x")));
     assert_eq!((heading[0].as_str(), &heading[1..]), ("time", &columns.concat()[..]));
@@ -76,7 +76,7 @@ fn a_watched_point_has_the_values_of_the_element_around_it() {
         });
         let desk = Desk::new();
         desk.write("scene.json", scene.to_string());
-        desk.run(&["solve", "scene.json", "--out", "out"]).ends_with(0);
+        desk.run(&["solve", "scene.json", "--out", "out", "--pictures", "none"]).ends_with(0);
         let (heading, rows) = table(&desk, "out/watch.csv");
         assert_eq!(
             heading[1..7],
@@ -122,7 +122,7 @@ fn a_run_that_is_resumed_during_contact_continues_watched_points_and_peaks_bit_f
     scene["analysis"]["dynamic"]["frames"] = json!(5);
     desk.write("short.json", scene.to_string());
     let report = |arguments: &[&str]| {
-        let arguments = [&["solve"], arguments, &["--format", "json"]].concat();
+        let arguments = [&["solve"], arguments, &["--format", "json", "--pictures", "none"]].concat();
         let mut report = desk.run(&arguments).ends_with(0).json();
         report.as_object_mut().unwrap().remove("seconds");
         report
@@ -144,7 +144,7 @@ fn a_run_that_is_resumed_during_contact_continues_watched_points_and_peaks_bit_f
     assert_eq!(fs::read_to_string(&table).unwrap(), "mine\n");
     // A new run without watched points removes an old table.
     desk.write("bar.json", bar().to_string());
-    desk.run(&["solve", "bar.json", "--out", "whole"]).ends_with(0);
+    desk.run(&["solve", "bar.json", "--out", "whole", "--pictures", "none"]).ends_with(0);
     assert!(!desk.path("whole/watch.csv").exists());
 }
 
@@ -152,7 +152,7 @@ fn a_run_that_is_resumed_during_contact_continues_watched_points_and_peaks_bit_f
 fn every_frame_has_the_velocities_of_its_nodes() {
     let desk = Desk::new();
     desk.write("bar.json", bar().to_string());
-    desk.run(&["solve", "bar.json", "--out", "out"]).ends_with(0);
+    desk.run(&["solve", "bar.json", "--out", "out", "--pictures", "none"]).ends_with(0);
     for number in [0, 2] {
         let text = fs::read_to_string(desk.path(&format!("out/series-{number:05}.vtu"))).unwrap();
         let heading = "<DataArray type=\"Float64\" Name=\"velocity\" NumberOfComponents=\"3\" format=\"ascii\">\n";
@@ -180,7 +180,7 @@ fn a_motion_between_two_walls_has_the_impulse_of_each_wall() {
     // It touches one wall from 0.5 to 1.17, and the other one 0.6 later.
     scene["analysis"]["dynamic"]["duration"] = json!(2.6);
     desk.write("bar.json", scene.to_string());
-    let text = desk.run(&["solve", "bar.json", "--out", "out"]).ends_with(0).stdout;
+    let text = desk.run(&["solve", "bar.json", "--out", "out", "--pictures", "none"]).ends_with(0).stdout;
     let report: Value = serde_json::from_str(&fs::read_to_string(desk.path("out/report.json")).unwrap()).unwrap();
     let contact = &report["contact"];
     let (heading, rows) = table(&desk, "out/history.csv");

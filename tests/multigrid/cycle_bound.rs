@@ -20,9 +20,6 @@ const OF_REFERENCE: f64 = 1e-11;
 /// Largest median of bound over true error.
 const MEDIAN: f64 = 1.3;
 
-/// Number of gaps of each body.
-const GAPS: usize = 4;
-
 /// Number of cycles for the bound of a body without thin parts.
 const FEW_CYCLES: usize = 6;
 
@@ -127,7 +124,7 @@ fn of_body(problem: &ContactProblem, name: &str, reach: f64, draws: &mut Draws, 
     let direct = Prepared::new(problem, &Settings::with_method(Method::ActiveSet)).unwrap();
     let iterative = Prepared::new(problem, &mprgp()).unwrap();
     let first = ratios.len();
-    for _ in 0..GAPS {
+    for _ in 0..support::cases(1, 4) {
         let shift = reach * draws.signed();
         let gap: Vec<f64> = problem.gap().iter().map(|gap| gap + shift * (1.0 + 0.2 * draws.signed())).collect();
         let at_gap = problem.with_gap(gap.clone()).unwrap();

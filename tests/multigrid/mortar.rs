@@ -63,12 +63,14 @@ fn answer(scene: &Value, what: &str) -> Solution {
 
 #[test]
 fn meshes_that_do_not_match_need_few_cycles_at_any_ratio_of_stiffness() {
-    for young in [[1.0, 1.0], [10.0, 1.0], [1.0, 10.0], [1000.0, 1.0], [1.0, 1000.0]] {
-        for (cells, width) in [([8, 12], 1.0), ([12, 8], 1.0), ([8, 12], 1.7), ([12, 8], 1.7)] {
-            let what = format!("{cells:?}, {width} wide, {young:?}");
-            let found = answer(&stacked(cells, width, young, "auto"), &what);
-            assert!(found.iterations <= MOST_CYCLES, "{what}: {} cycles", found.iterations);
-        }
+    let moduli = [[1.0, 1.0], [10.0, 1.0], [1.0, 10.0], [1000.0, 1.0], [1.0, 1000.0]];
+    let meshes = [([8, 12], 1.0), ([12, 8], 1.0), ([8, 12], 1.7), ([12, 8], 1.7)];
+    let pairs = moduli.into_iter().flat_map(|young| meshes.map(|mesh| (young, mesh)));
+    // Every third pair has every ratio and every mesh.
+    for (young, (cells, width)) in pairs.step_by(support::cases(3, 1)) {
+        let what = format!("{cells:?}, {width} wide, {young:?}");
+        let found = answer(&stacked(cells, width, young, "auto"), &what);
+        assert!(found.iterations <= MOST_CYCLES, "{what}: {} cycles", found.iterations);
     }
 }
 

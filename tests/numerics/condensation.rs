@@ -75,6 +75,9 @@ fn every_example_scene_has_the_same_answer_and_the_same_search() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "json") {
             let model = Scene::read(&path).unwrap().build().unwrap();
+            if model.problem().dofs() > support::cases(5_000, usize::MAX) {
+                continue;
+            }
             check_both_ways(model.problem(), &path.display().to_string());
             count += 1;
         }

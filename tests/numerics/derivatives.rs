@@ -1,7 +1,7 @@
 //! GOAL: a derivative that is called proven, or one-sided, is right; a kink is never called smooth.
 //!
 //! REFERENCE: exact arithmetic, the slopes of the exact path, differences. A short form of
-//! `cargo run --release --example derivatives -- kinks 1000`.
+//! `cargo run --release --example studies -- derivatives kinks 1000`.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
 //! GOAL: no answer of the program contradicts exact arithmetic. This is a short form of
-//! `cargo run --release --example fuzz -- exact 20000`.
+//! `cargo run --release --example studies -- fuzz exact 20000`.
 //!
 //! CONDITIONS: 400 problems of fixed seeds and some that once had a fault, every kind of stiffness and of rows, every
 //! method, random options, and wrong answers for `verify`. The exact solver itself is compared with the elimination of

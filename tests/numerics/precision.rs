@@ -7,6 +7,7 @@ use support::endings::best;
 use support::problems::of_entries;
 use support::random::springs;
 use support::scenes::built_example;
+use support::{cases, seed};
 
 /// Two answers certified in double precision agree to this: rounding times the condition of the larger scenes.
 const AGREEMENT: f64 = 1e-11;
@@ -65,8 +66,9 @@ fn a_requested_accuracy_is_reached_with_few_refinement_steps() {
 /// The widened bound holds even if the condition of the problem makes the measured contraction vary.
 #[test]
 fn the_bound_holds_for_a_factor_in_single_precision() {
+    let (first, count) = (seed(0), cases(100, 1000));
     let (mut answers, mut worst) = (0, 0.0_f64);
-    for seed in 0..1000 {
+    for seed in first..first + count {
         let problem = springs(seed);
         let exact = solve(&problem, &with(Method::ActiveSet, Precision::Double, None)).unwrap();
         for accuracy in [1e-2, 1e-8] {
@@ -83,7 +85,7 @@ fn the_bound_holds_for_a_factor_in_single_precision() {
         }
     }
     println!("{answers} answers, bound over error at most {worst:.3}");
-    assert!(answers > 100);
+    assert!(10 * answers > count);
     assert!(worst < 10.0);
 }
 

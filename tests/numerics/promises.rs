@@ -1,5 +1,5 @@
 //! GOAL: what the program prints is true. This is a short form of
-//! `cargo run --release --example fuzz -- promises 18000 --program target/release/signorini`.
+//! `cargo run --release --example studies -- fuzz promises 18000 --program target/release/signorini`.
 //!
 //! CONDITIONS: 300 problems of springs and dense matrices, run as a user runs them. Printed bounds, certified answers
 //! and refusals are compared with exact arithmetic, and `verify` gets the exact answers. 40 long chains of rows.

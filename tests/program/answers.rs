@@ -194,7 +194,10 @@ fn an_obstacle_out_of_reach_gives_a_certified_answer_without_contact() {
 fn exported_problems_give_the_answer_of_their_scene_bit_for_bit() {
     let desk = Desk::new();
     for name in examples() {
-        let of_scene = desk.run(&["solve", &example(&name), "--format", "json", "--out", "scene"]).ends_with(0).json();
+        let of_scene = desk
+            .run(&["solve", &example(&name), "--format", "json", "--out", "scene", "--pictures", "none"])
+            .ends_with(0)
+            .json();
         let exported = desk.run(&["export", &example(&name), &name]).ends_with(0);
         assert!(exported.stdout.contains(" dofs and ") && exported.stderr.lines().count() == 1, "{}", exported.stdout);
         let of_files = desk.run(&["solve", &name, "--format", "json", "--out", "files"]).ends_with(0).json();
@@ -248,7 +251,7 @@ fn closed_and_open_are_said_of_mean_gaps_where_rows_hold_means() {
     let desk = Desk::new();
     for (cells, are_means) in [(3, false), (4, true)] {
         desk.write("blocks.json", scene(cells).to_string());
-        let text = desk.run(&["solve", "blocks.json", "--out", "answer"]).ends_with(0).stdout;
+        let text = desk.run(&["solve", "blocks.json", "--out", "answer", "--pictures", "none"]).ends_with(0).stdout;
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         let between = "Rows between the meshes of `base.top` and `bottom` hold means: closed and open belong to the mean \
                        gap over the area of a node, not to the gap at the node.";

@@ -4,7 +4,8 @@
 use std::process::Command;
 
 use serde_json::{Value, json};
-use support::program::{Desk, Problem, example, scene, vector};
+use signorini::Scene;
+use support::program::{Desk, Problem, example, says, scene, vector};
 
 /// The names listed under `Commands:` in the help.
 fn commands(desk: &Desk) -> Vec<String> {
@@ -139,8 +140,11 @@ fn json_and_text_of_an_answer_show_the_same_estimates_of_both_methods() {
 #[test]
 fn an_estimated_and_a_guaranteed_total_error_are_explained() {
     let desk = Desk::new();
-    let plane = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/guarantee/coarse.json");
-    for (scene, error) in [(example("ball").as_str(), "0.5"), (plane, "0.3")] {
+    let mut estimated = crate::total_error::classical(0.3);
+    estimated["obstacles"][0]["rule"] = json!("closest-point");
+    desk.write("estimated.json", estimated.to_string());
+    let guaranteed = concat!(env!("CARGO_MANIFEST_DIR"), "/studies/guarantee/coarse.json");
+    for (scene, error) in [("estimated.json", "0.2"), (guaranteed, "0.3")] {
         let run = desk.run(&["solve", scene, "--total-error", error, "--explain"]).ends_with(0);
         assert!(run.stdout.contains("\n  why "), "{}", run.stdout);
     }
@@ -435,7 +439,7 @@ fn a_picture_of_another_kind_or_of_a_bar_is_refused() {
     let desk = Desk::new();
     desk.run(&["draw", &example("indentation"), "--out", "set-up.jpg"]).ends_with(2);
     desk.run(&["draw", &example("indentation")]).ends_with(2);
-    desk.write("bar.json", include_str!("../../tools/impact/bar.json"));
+    desk.write("bar.json", include_str!("../../studies/impact/bar.json"));
     desk.run(&["draw", "bar.json", "--out", "bar.png"]).fails_with(1, &["`model`", "a bar has no picture"]);
     assert!(!desk.path("bar.png").exists());
 }
@@ -514,7 +518,6 @@ const ABSENT: [(&str, &str); 8] = [
 
 #[test]
 fn what_is_not_modelled_is_answered_by_name_in_every_object_of_a_scene() {
-    let desk = Desk::new();
     for place in [
         "",
         "/body",
@@ -535,14 +538,10 @@ fn what_is_not_modelled_is_answered_by_name_in_every_object_of_a_scene() {
                 object.clear();
             }
             object.insert(name.to_string(), json!(0.3));
-            desk.write("scene.json", scene.to_string());
-            let run = desk.run(&["solve", "scene.json"]);
-            let found = run.fails_with(
-                1,
-                &[&format!("`{name}` does not exist: {words}"), "take CalculiX"]
-                    .map(|phrase| if name.contains("stiffness") { words } else { phrase }),
-            );
-            assert!(!found.stderr.contains("expected one of"), "{place}: {}", found.stderr);
+            let found = Scene::from_json(&scene.to_string(), "scene.json").unwrap_err().to_string();
+            let expected = [&format!("`{name}` does not exist: {words}"), "take CalculiX"];
+            says(&found, &expected.map(|phrase| if name.contains("stiffness") { words } else { phrase }));
+            assert!(!found.contains("expected one of"), "{place}: {found}");
         }
     }
 }

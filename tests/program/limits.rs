@@ -45,12 +45,18 @@ fn confined(desk: &Desk, kilobytes: u32, arguments: &str) -> Run {
 
 /// The least address space, in kB, in which the program tells its version, to `REFUSAL_KILOBYTES / 8`.
 fn least_kilobytes(desk: &Desk) -> u32 {
-    let starts = |kilobytes: &u32| {
+    let starts = |kilobytes: u32| {
         let script = format!("ulimit -v {kilobytes}; exec '{}' --version", env!("CARGO_BIN_EXE_signorini"));
         let output = Command::new("sh").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();
         output.status.success()
     };
-    (8_000..FILE_KILOBYTES).step_by(REFUSAL_KILOBYTES as usize / 8).find(starts).expect("the program starts")
+    let (mut too_few, mut enough) = (0, FILE_KILOBYTES);
+    assert!(starts(enough), "the program starts");
+    while enough - too_few > REFUSAL_KILOBYTES / 8 {
+        let middle = too_few.midpoint(enough);
+        *(if starts(middle) { &mut enough } else { &mut too_few }) = middle;
+    }
+    enough
 }
 
 fn rectangle(cells: [usize; 2], element: &str) -> Value {

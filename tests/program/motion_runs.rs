@@ -37,10 +37,12 @@ fn a_resumed_motion_goes_on_to_a_longer_duration_bit_for_bit() {
     for (name, duration, frames) in [("short", 0.4012, 5), ("long", 1.7034, 12)] {
         desk.write(&format!("{name}.json"), bar(duration, frames).to_string());
     }
-    desk.run(&["solve", "long.json", "--out", "whole"]).ends_with(0);
-    desk.run(&["solve", "short.json", "--out", "parts"]).ends_with(0);
+    desk.run(&["solve", "long.json", "--out", "whole", "--pictures", "none"]).ends_with(0);
+    desk.run(&["solve", "short.json", "--out", "parts", "--pictures", "none"]).ends_with(0);
     assert!(end(&desk, "parts") != end(&desk, "whole"));
-    let run = desk.run(&["solve", "long.json", "--out", "parts", "--resume", "--format", "json"]).ends_with(0);
+    let run = desk
+        .run(&["solve", "long.json", "--out", "parts", "--resume", "--format", "json", "--pictures", "none"])
+        .ends_with(0);
     assert!(run.json()["contact"]["impulse"].as_f64().unwrap() > 0.0);
     assert_eq!(end(&desk, "parts"), end(&desk, "whole"));
     // A motion is resumed neither to an earlier time nor with another scene.
@@ -77,8 +79,8 @@ fn a_request_to_terminate_ends_a_run_as_an_interrupt_does() {
 fn a_motion_is_resumed_only_from_files_that_it_wrote() {
     let desk = Desk::new();
     desk.write("bar.json", bar(0.1, 4).to_string());
-    let begun = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run"]).ends_with(0);
-    let resumed = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run", "--resume"]);
+    let begun = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run", "--pictures", "none"]).ends_with(0);
+    let resumed = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run", "--resume", "--pictures", "none"]);
     begun(&desk);
     for secret in ["\"hunter2\"", "{\"scene\": \"hunter2\", \"steps\": \"hunter2\"}", "hunter2"] {
         desk.write("secret", secret);

@@ -8,6 +8,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use support::cases;
 use support::program::{Desk, Run, example, scene};
 
 /// Start of the name of a file that is complete before it is renamed to its place.
@@ -71,7 +72,7 @@ fn a_kill_at_any_moment_leaves_no_broken_file() {
     let there = || fs::read_dir(desk.path("o")).map_or(0, Iterator::count);
     // Pictures take long, so only a few runs draw them.
     let runs: [(&[&str], usize); 2] =
-        [(&["export", "block.json", "o"], 40), (&["solve", "block.json", "--out", "o"], 6)];
+        [(&["export", "block.json", "o"], cases(5, 40)), (&["solve", "block.json", "--out", "o"], cases(1, 6))];
     for (arguments, kills) in runs {
         fs::remove_dir_all(desk.path("o")).unwrap_or(());
         desk.run(arguments).ends_with(0);
@@ -141,6 +142,12 @@ fn block(x: usize, y: usize) -> Value {
     block
 }
 
+/// A block of `x` by `x / 2` cells, in the long form of a million dofs.
+fn large(x: usize) -> Value {
+    let x = cases(x, 1000);
+    block(x, x / 2)
+}
+
 /// The first run that is interrupted after `event` and that `cut` accepts as interrupted early. The folder `o` holds
 /// its files.
 fn interrupted(desk: &Desk, arguments: &[&str], event: &str, cut: impl Fn(&Run) -> bool) -> Run {
@@ -158,7 +165,7 @@ fn interrupted(desk: &Desk, arguments: &[&str], event: &str, cut: impl Fn(&Run) 
 #[test]
 fn an_interrupt_of_a_factorisation_ends_the_program_without_an_answer() {
     let desk = Desk::new();
-    desk.write("large.json", block(1000, 500).to_string());
+    desk.write("large.json", large(600).to_string());
     let solve = ["solve", "large.json", "--method", "active-set", "--out", "o"];
     let run = interrupted(&desk, &solve, "factorisation", |_| true);
     assert!(run.stdout.is_empty() && run.stderr.lines().count() == 1, "{}{}", run.stdout, run.stderr);
@@ -298,7 +305,7 @@ fn a_motion_ends_at_its_time_limit() {
     assert_eq!(run.json()["status"], "not_certified");
 }
 
-/// Ten runs write the same bytes, except the seconds in the report.
+/// Ten runs, or three in the short form, write the same bytes, except the seconds in the report.
 #[test]
 fn ten_runs_write_the_same_bytes() {
     let desk = Desk::new();
@@ -316,7 +323,7 @@ fn ten_runs_write_the_same_bytes() {
         files.sort();
         files
     };
-    for run in 0..10 {
+    for run in 0..cases(3, 10) {
         desk.run(&["solve", &example("indentation"), "--out", &format!("o{run}")]).ends_with(0);
         assert_eq!(files(&format!("o{run}")), files("o0"), "run {run}");
     }
@@ -406,7 +413,7 @@ fn long_work_shows_its_progress_on_a_terminal_and_erases_it() {
     assert!(!shown.is_empty() && shown.iter().all(|line| line.chars().count() < 80), "{shown:?}");
     assert!(left.starts_with("interrupted in gap ") && left.lines().count() == 1, "{left:?}");
 
-    desk.write("large.json", block(1000, 500).to_string());
+    desk.write("large.json", large(600).to_string());
     // The step that runs after the first second depends on the machine.
     let awaited = ["[0-9] s (passed|left of this): (ordering|factorisation|certificate|report)"];
     let drawn_by_solve = drawn(&desk, &["solve", "large.json", "--method", "active-set"], &awaited);

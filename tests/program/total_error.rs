@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 use support::brackets::{of_column, shown};
 use support::program::Desk;
 use support::{axis_scenes, key_scenes, pair_scenes, plane_scenes, space_scenes};
+use support::{cases, seed};
 
 /// The classical scene: a block of 1 x 0.5, clamped below, pressed by a parabola 0.01 deep.
 pub fn classical(poisson: f64) -> Value {
@@ -130,7 +131,7 @@ fn new_nodes_are_placed_on_known_circles() {
     assert!((forces[0] / forces[1] - 1.0).abs() < 2e-3, "{forces:?}");
     let desk = Desk::new();
     desk.write("scene.json", half_disc(2, 2.0).to_string());
-    desk.run(&["solve", "scene.json", "--total-error", "0.02", "--out", "out"]).ends_with(0);
+    desk.run(&["solve", "scene.json", "--total-error", "0.02", "--out", "out", "--pictures", "none"]).ends_with(0);
     let mut again = half_disc(2, 2.0);
     again["body"] = json!({"gmsh": {"file": "out/mesh.msh"}});
     desk.write("again.json", again.to_string());
@@ -300,14 +301,15 @@ fn a_surface_without_bounds_between_nodes_has_an_estimate() {
     assert!(report["reason"].as_str().unwrap().starts_with("obstacles[0].shape: the distance"), "{report}");
 }
 
-/// A short form of `cargo run --release --example guarantee`.
+/// A short form of `cargo run --release --example studies -- guarantee`.
 #[test]
 fn no_random_scene_violates_the_guarantee() {
-    let mut meshes = 0;
-    for seed in 1..=24 {
-        let in_space = (seed <= 12).then(|| (space_scenes::scene(seed), space_scenes::CLEAR));
-        let about_axis = (seed <= 6).then(|| axis_scenes::scene(seed));
-        let of_bodies = (seed <= 6).then(|| pair_scenes::scene(seed));
+    let (first, count, mut meshes) = (seed(1), cases(6, 24), 0);
+    for number in 0..count {
+        let seed = first + number;
+        let in_space = (number < count / 2).then(|| (space_scenes::scene(seed), space_scenes::CLEAR));
+        let about_axis = (number < count / 4).then(|| axis_scenes::scene(seed));
+        let of_bodies = (number < count / 4).then(|| pair_scenes::scene(seed));
         let in_plane =
             [plane_scenes::scene(seed), key_scenes::scene(seed)].into_iter().chain(about_axis).chain(of_bodies);
         for (scene, clear) in in_plane.map(|scene| (scene, plane_scenes::CLEAR)).chain(in_space) {
@@ -316,8 +318,9 @@ fn no_random_scene_violates_the_guarantee() {
             meshes += one.of_force.len();
         }
     }
-    assert!(meshes > 90, "{meshes}");
-    for seed in 1..=12 {
+    assert!(4 * meshes > 15 * count as usize, "{meshes}");
+    // Columns of other seeds may have no bound: bodies may lie before each other in several layers.
+    for seed in 1..=count / 2 {
         let columns = [plane_scenes::column(seed), space_scenes::column(seed), pair_scenes::column(seed)];
         let columns = columns.map(|column| (column, 0.0));
         let about = (axis_scenes::column(seed), axis_scenes::OF_POLYNOMIAL);
@@ -383,7 +386,7 @@ fn a_first_mesh_that_is_cut_short_is_no_failed_check() {
     let mut scene = classical(0.3);
     scene["body"]["rectangle"]["x"]["divisions"] = json!([64]);
     scene["body"]["rectangle"]["y"]["divisions"] = json!([32]);
-    for milliseconds in (2..40).map(|step| 10 * step) {
+    for milliseconds in (2..40).step_by(cases(5, 1)).map(|step| 10 * step) {
         let time = format!("{}", f64::from(milliseconds) / 1e3);
         let (code, _, message) = solved(&scene, &["--total-error", "1e-6", "--time-limit", &time]);
         assert_eq!(code, 4, "{time} s: {message}");
@@ -461,7 +464,8 @@ fn a_total_error_comes_with_the_answer_on_the_last_mesh() {
     for (scene, words) in [(classical(0.3), "guaranteed at most"), (estimated, "estimated")] {
         let desk = Desk::new();
         desk.write("scene.json", scene.to_string());
-        let found = desk.run(&["solve", "scene.json", "--total-error", "0.1", "--out", "out", "--format", "json"]);
+        let goal = ["--total-error", "0.1", "--format", "json", "--out", "out", "--pictures", "none"];
+        let found = desk.run(&[&["solve", "scene.json"], &goal[..]].concat());
         let found = found.ends_with(0).json();
         let mut again = scene.clone();
         again["body"] = json!({"gmsh": {"file": "out/mesh.msh"}});

@@ -1,7 +1,7 @@
 //! GOAL: every derivative of an output of a scene with respect to its numbers is that of the answer.
 //!
 //! REFERENCE: differences of whole answers inside one proven contact set, and the slope of the exact path. A short form
-//! of `cargo run --release --example derivatives -- scenes 200`.
+//! of `cargo run --release --example studies -- derivatives scenes 200`.
 
 use serde_json::{Value, json};
 use signorini::{Scene, Settings};

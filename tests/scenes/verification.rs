@@ -1,4 +1,4 @@
-//! Every answer of `cargo run --release --example verification` has at most the error stated here.
+//! Every answer of `cargo run --release --example studies -- verification` has at most the error stated here.
 //!
 //! GOAL        classical contact problems, with the scenes of the command itself
 //! CONDITIONS  those of `tests/support/verification`

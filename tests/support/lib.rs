@@ -9,6 +9,7 @@ pub mod clock;
 pub mod closed_forms;
 pub mod decks;
 pub mod draws;
+pub mod effort;
 pub mod endings;
 pub mod extremes;
 pub mod floors;
@@ -22,7 +23,6 @@ pub mod oracles;
 pub mod pair_scenes;
 pub mod plane_scenes;
 pub mod problems;
-pub mod process;
 pub mod program;
 pub mod random;
 pub mod rollers;
@@ -33,6 +33,8 @@ pub mod triangles;
 pub mod verification;
 
 use std::path::Path;
+
+pub use effort::{cases, seed};
 
 /// The folder of the workspace.
 ///

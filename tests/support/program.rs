@@ -48,12 +48,19 @@ impl Run {
         let is_fault = |line: &&str| !line.starts_with("warning: ") && !line.starts_with("writing ");
         let sentences: Vec<&str> = run.stderr.lines().filter(is_fault).collect();
         let [sentence] = sentences[..] else { panic!("standard error is not one sentence: {:?}", run.stderr) };
-        assert!(sentence.starts_with("error: ") && sentence.chars().count() < 1000, "{sentence}");
-        assert!(!sentence.chars().any(char::is_control), "{sentence:?}");
-        for phrase in phrases {
-            assert!(sentence.contains(phrase), "{sentence:?} does not contain {phrase:?}");
-        }
+        assert!(sentence.starts_with("error: "), "{sentence}");
+        says(sentence, phrases);
         run
+    }
+}
+
+/// Asserts that `sentence` is one, is not too long, and contains each of `phrases`.
+#[track_caller]
+pub fn says(sentence: &str, phrases: &[&str]) {
+    assert!(sentence.chars().count() < 1000, "{sentence}");
+    assert!(!sentence.chars().any(char::is_control), "{sentence:?}");
+    for phrase in phrases {
+        assert!(sentence.contains(phrase), "{sentence:?} does not contain {phrase:?}");
     }
 }
 

@@ -197,8 +197,8 @@ pub(super) struct Solve {
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
-    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below E: guaranteed in
-    /// the plane, estimated elsewhere
+    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below E: guaranteed,
+    /// but estimated for several bodies in space and for a few keys; the report says which
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error,
           conflicts_with_all = ["accuracy", "extrapolate", "resume"])]
     pub total_error: Option<f64>,

@@ -11,7 +11,7 @@ use std::time::Instant;
 /// A bar with a known motion.
 pub struct Case {
     pub name: &'static str,
-    /// Name of its scene file in `tools/impact`.
+    /// Name of its scene file in `studies/impact`.
     pub scene: &'static str,
     /// Exact displacement at x and t.
     pub displacement: fn(f64, f64) -> f64,
@@ -94,9 +94,9 @@ pub fn set_up(scene: &Value) -> Result<(Model, Dynamics, Integrator), Error> {
     Ok((model, dynamics, integrator))
 }
 
-/// The scene of this name in `tools/impact`, with cells of its axes or of its zone of contact.
+/// The scene of this name in `studies/impact`, with cells of its axes or of its zone of contact.
 pub fn scene_of(name: &str, cells: usize) -> Value {
-    let path = crate::root().join(format!("tools/impact/{name}.json"));
+    let path = crate::root().join(format!("studies/impact/{name}.json"));
     let mut scene: Value = serde_json::from_str(&fs::read_to_string(path).expect("a scene")).expect("JSON");
     if let Some(rectangle) = scene["body"].get_mut("rectangle") {
         (rectangle["x"]["divisions"], rectangle["y"]["divisions"]) = (json!([cells]), json!([cells]));

@@ -1,4 +1,4 @@
-//! One row of the table of answers, and the tables as text.
+//! One row of the table of answers.
 
 use std::time::Instant;
 
@@ -28,18 +28,6 @@ impl Answer {
         let (ours, exact) = (value(ours), value(exact));
         format!("{case} | {element} | {unknowns} | {quantity} | {ours} | {exact} | {error:.1e} | {seconds:.3}")
     }
-}
-
-/// Returns a table as Markdown from a heading and rows whose cells are separated by bars.
-pub fn markdown(heading: &str, rows: &[String]) -> String {
-    let line = heading.split(" | ").map(|_| "---").collect::<Vec<_>>().join(" | ");
-    [heading.to_owned(), line].iter().chain(rows).map(|row| format!("| {row} |\n")).collect()
-}
-
-/// Returns the same table as comma-separated values.
-pub fn csv(heading: &str, rows: &[String]) -> String {
-    let quoted = |row: &String| row.split(" | ").map(|cell| format!("\"{cell}\"")).collect::<Vec<_>>().join(",") + "\n";
-    [heading.to_owned()].iter().chain(rows).map(quoted).collect()
 }
 
 /// A scene with its solution.

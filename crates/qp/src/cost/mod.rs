@@ -42,9 +42,9 @@ const DENSE_SHARE: f64 = 0.4;
 
 /// Estimated time and memory of the two paths.
 ///
-/// Calibrated on blocks of Q4 and Hex8 (`cargo run --release --example multigrid`) and on parts of tetrahedra
-/// (`cargo run --release --example kinds -- --scenes FOLDER`, on the output of `reference/parts.py`); accurate to a
-/// factor of about two.
+/// Calibrated on blocks of Q4 and Hex8 (`cargo run --release --example studies -- multigrid`) and on parts of
+/// tetrahedra (`cargo run --release --example studies -- kinds --scenes FOLDER`, on the output of
+/// `reference/parts.py`); accurate to a factor of about two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Bytes of the direct path at its peak, the problem itself included.

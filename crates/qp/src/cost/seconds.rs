@@ -19,7 +19,7 @@ const ORDERING: f64 = 1.3e-7;
 const MINIMUM_DEGREE: f64 = 1.3e-8;
 
 /// Seconds of a hierarchy for an unknown, and for an entry of the lower triangle
-/// (`cargo run --release --example kinds`).
+/// (`cargo run --release --example studies -- kinds`).
 const HIERARCHY: [f64; 2] = [5e-7, 5.3e-8];
 
 /// The same of an iteration with one cycle.

@@ -126,7 +126,7 @@ impl SchemeSpec {
 /// the wave number k travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The returning front is smeared over some
 /// cells, and the waves behind it stay in the body: the rebound is too slow by a share that falls with h^(2/3).
 ///
-/// `tools/impact` prints the figures.
+/// `studies/impact` prints the figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Scheme {
     /// Fox and Goodwin's two-step rule: of fourth order without contact and damping; a contact node that reaches its
