@@ -1,18 +1,21 @@
 """Measures how many faults in the certificate or in the guarantee the tests detect.
 
-`python reference/mutants.py [--of certificate|guarantee] [--count N] [--seed S]`
+`python reference/mutants.py [--of certificate|guarantee] [--count N] [--seed S] [--again] [--long]`
 
 cargo-mutants (`cargo install cargo-mutants --locked`) lists the mutants of the certificate (conditions, bound, proof, infeasible rows,
 claims) or of the guarantee against the continuum: an exchanged operator, a negated condition, a function that returns a constant. This
 command draws some of them, by a digest of the seed and of the change, so that an edit of the code does not move other mutants into or
-out of the draw. It puts one mutant at a time into a copy of the repository in `target/mutants`, builds it, and runs stages of fast tests
-until one fails. Survivors that are not faults are listed in `tests/mutants.toml`, each with its reason. The exit code is 1 if more than
-2 % of the mutants that build survive without a reason. With `--again`, mutants that earlier runs killed count as killed.
+out of the draw. It puts them into a copy of the repository in `target/mutants`, each behind a number that the environment gives, and
+builds them together; a mutant that does not build beside others is built alone. For each it runs stages of fast tests until one fails.
+Survivors that are not faults are listed in `tests/mutants.toml`, each with its reason. The exit code is 1 if more than 2 % of the mutants
+that build survive without a reason. With `--again`, mutants that earlier runs killed count as killed. With `--long`, the tests run in
+their long form: `--again --long` tells which survivors of the short form it kills.
 """
 
 import argparse
 import hashlib
 import json
+import math
 import os
 import re
 import resource
@@ -47,12 +50,7 @@ WAITING = 10
 MEMORY = 6 << 30
 """Limit of the address space of a test program in bytes, which ends a loop that fills a vector."""
 
-SLOW = (
-    "contact_sets_of_three_hundred_rows",
-    "the_bound_of_the_pieces_of_a_loose_answer_equals_that_of_the_whole",
-    "plain_loop_meets_cycles",
-    "every_example_scene_has_the_same_answer",
-)
+SLOW = ("contact_sets_of_three_hundred_rows", "the_bound_of_the_pieces_of_a_loose_answer_equals_that_of_the_whole")
 """Tests of the modules below that are left out: they take 4 s or more, and check methods rather than the certificate."""
 
 
@@ -111,15 +109,29 @@ although no profile asks for link-time optimisation; without that a mutant is bu
 
 MARK = re.compile(r" ?/\* ~ changed by cargo-mutants ~ \*/")
 PLACE = re.compile(r":\d+:\d+: ")
+CHOICE = re.compile(r"match crate::planted\(\) \{ // ([\d ]+)")
+
+NUMBER = "SIGNORINI_MUTANT"
+"""The variable of the environment with the number of the mutant in force; 0 for none."""
+
+PLANTED = f"""
+pub(crate) fn planted() -> usize {{
+    static NUMBER: std::sync::OnceLock<usize> = std::sync::OnceLock::new();
+    *NUMBER.get_or_init(|| std::env::var("{NUMBER}").map_or(0, |number| number.parse().unwrap()))
+}}
+"""
+"""The function that a mutated crate gets."""
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A change of one file: its name, with line and column, and the lines that it removes and adds."""
+    """A change of one file: its name, with line and column, the lines that it removes and adds, and where its function is."""
 
     name: str
     file: str
     diff: str
+    function: tuple[int, int] | None = None
+    """First and last line."""
 
     @property
     def key(self) -> tuple[str, str]:
@@ -152,7 +164,45 @@ def listed(root: Path, area: Area) -> list[Mutant]:
     done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
     if done.returncode:
         raise SystemExit(f"cargo mutants: {done.stderr.strip()}\nIt comes with: cargo install cargo-mutants --locked")
-    return [Mutant(one["name"], one["file"], one["diff"]) for one in json.loads(done.stdout)]
+    lines = lambda of: (of["span"]["start"]["line"], of["span"]["end"]["line"]) if of else None
+    return [Mutant(one["name"], one["file"], one["diff"], lines(one["function"])) for one in json.loads(done.stdout)]
+
+
+def switched(text: str, mutants: dict[int, Mutant]) -> str:
+    """Returns the text of a file in which each mutated function chooses its body by the number of the mutant in force."""
+    lines, count, below = text.splitlines(), len(text.splitlines()), math.inf
+    for first, last in sorted({mutant.function for mutant in mutants.values() if mutant.function}, reverse=True):
+        heads = (at for at in range(first, last) if re.search(r"^(?! *//).*\{$", lines[at - 1]))
+        if (head := next(heads, None)) is None or last >= below:
+            continue  # a function around another one
+        own = {number: mutant for number, mutant in mutants.items() if mutant.function == (first, last)}
+        choice = [f"match crate::planted() {{ // {' '.join(map(str, own))}"]
+        for number, mutant in own.items():
+            changed = mutant.applied(text).splitlines()
+            choice += [f"{number} => {{", *changed[head : last - 1 + len(changed) - count], "}"]
+        lines[head : last - 1], below = [*choice, "_ => {", *lines[head : last - 1], "}", "}"], first
+    return "\n".join(lines) + "\n"
+
+
+def together(tree: Path, area: Area, mutants: dict[int, Mutant]) -> set[int]:
+    """Puts mutants into the tree, each behind its number. Returns the numbers of those that build beside others."""
+    texts = {mutant.file: (tree / mutant.file).read_text() for mutant in mutants.values()}
+    root = tree / area.files[0].split("/src/")[0] / "src" / "lib.rs"
+    root.write_text(root.read_text() + PLANTED)
+    numbers, faults = set(mutants), True
+    while faults:
+        for file, text in texts.items():
+            of_file = {number: mutants[number] for number in sorted(numbers) if mutants[number].file == file}
+            (tree / file).write_text(switched(text, of_file))
+        choices = [found for file in texts for found in CHOICE.findall((tree / file).read_text())]
+        numbers &= {int(number) for found in choices for number in found.split()}
+        messages = [message["message"] for message in built(tree, area.stages[0])[1] if message["reason"] == "compiler-message"]
+        errors = [span for one in messages if one["level"] == "error" for span in one["spans"] if span["is_primary"]]
+        faults = {(span["file_name"], span["line_start"]) for span in errors}
+        for file, line in faults:
+            found = CHOICE.findall("\n".join((tree / file).read_text().splitlines()[:line]))
+            numbers -= {int(number) for number in found[-1].split()} if found else numbers
+    return numbers
 
 
 def numbered(mutants: list[Mutant]) -> list[str]:
@@ -235,15 +285,18 @@ def ended(command: list[str], tree: Path, seconds: float, limit=None) -> tuple[i
             return None, ""
 
 
-def programs(tree: Path, stage: Stage) -> list[str] | None:
-    """Builds and returns the test programs of a stage; None if the tree does not build."""
+def built(tree: Path, stage: Stage) -> tuple[bool, list[dict]]:
+    """Builds the test programs of a stage. Returns `True` if the tree builds, and the messages of cargo."""
     command = ["cargo", "test", "--quiet", "--offline", "--no-run", "--message-format=json", *stage.programs]
     code, output = ended(command, tree, BUILD_SECONDS)
-    if code != 0:
-        return None
-    messages = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
-    built = [message for message in messages if message.get("profile", {}).get("test")]
-    return [message["executable"] for message in built if message["executable"]]
+    return code == 0, [json.loads(line) for line in output.splitlines() if line.startswith("{")]
+
+
+def programs(tree: Path, stage: Stage) -> list[str] | None:
+    """Builds and returns the test programs of a stage; None if the tree does not build."""
+    builds, messages = built(tree, stage)
+    tests = [message for message in messages if message.get("profile", {}).get("test")]
+    return [message["executable"] for message in tests if message["executable"]] if builds else None
 
 
 def judged(tree: Path, area: Area) -> tuple[str, str]:
@@ -302,6 +355,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=COUNT, metavar="N", help=f"number of mutants to draw (default {COUNT})")
     parser.add_argument("--seed", type=int, default=SEED, metavar="S", help=f"seed of the draw (default {SEED})")
     parser.add_argument("--again", action="store_true", help="try only what the last run did not kill")
+    parser.add_argument("--long", action="store_true", help="run the long form of the tests")
     parser.add_argument("--of", choices=AREAS, default="certificate", help="what is changed (default certificate)")
     options = parser.parse_args()
     area = AREAS[options.of]
@@ -312,22 +366,25 @@ def main() -> int:
     copied(ROOT, tree)
     (OWN / "rustc").write_text(WRAPPER)
     (OWN / "rustc").chmod(0o755)
+    last = dict(json.loads(kept.read_text())) if options.again and kept.exists() else {}
+    waiting = {at: mutant for at, (name, mutant) in enumerate(chosen, 1) if last.get(name, "survived") == "survived"}
+    beside = together(tree, area, waiting)
+    print(f"{len(beside)} of {len(waiting)} build together, after {time.monotonic() - began:.0f} s", flush=True)
+    os.environ |= {NUMBER: "0"} | ({"SIGNORINI_LONG": "1"} if options.long else {})
     first = judged(tree, area)
     if first[0] != "survived":
         print(f"without a mutant the tests end with: {' in stage '.join(first)}", file=sys.stderr)
         return 1
     print(f"the tests pass without a mutant, after {time.monotonic() - began:.0f} s", flush=True)
-    last = dict(json.loads(kept.read_text())) if options.again and kept.exists() else {}
-    outcomes = []
-    for name, mutant in chosen:
-        if last.get(name, "survived") == "survived":
-            outcome, stage = tried(mutant, tree, area)
-            print(f"{time.monotonic() - began:6.0f} s  {outcome:<12}{stage:<10}{mutant.name}", flush=True)
-        else:
-            outcome = last[name]
+    for at in sorted(waiting, key=lambda at: at not in beside):
+        (name, mutant), os.environ[NUMBER] = chosen[at - 1], str(at)
+        if at not in beside:
+            copied(ROOT, tree)
+        outcome, stage = judged(tree, area) if at in beside else tried(mutant, tree, area)
+        print(f"{time.monotonic() - began:6.0f} s  {outcome:<12}{stage:<10}{mutant.name}", flush=True)
         last[name] = outcome
-        outcomes.append((mutant, outcome))
         kept.write_text(json.dumps(last, indent=1))
+    outcomes = [(mutant, last[name]) for name, mutant in chosen]
     table, is_met = summary(outcomes, known)
     print(f"\n{table}\n\n{time.monotonic() - began:.0f} s in all")
     return 0 if is_met else 1
