@@ -35,8 +35,7 @@ REASONS = ROOT / "tests" / "mutants.toml"
 
 SEED = 20
 COUNT = 60
-"""Number of mutants of a draw. On two busy cores a mutant takes 10 to 20 s if the first stage kills it, a minute if a later stage
-does, and two to three minutes if it survives."""
+"""Number of mutants of a draw."""
 
 ALLOWED = 0.02
 """Largest share of the mutants that build which may survive without a reason."""
