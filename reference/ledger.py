@@ -39,8 +39,8 @@ CASE_GROWTH = 0.02
 MEAN_GROWTH = 0.005
 """The geometric mean of the instructions may grow by this share."""
 
-PEAK_GROWTH = 0.05
-"""The peak of a case may grow by this share."""
+PEAK_GROWTH = 0.2
+"""The peak of a case may grow by this share: matrix products pack blocks by the sizes of the caches, which are not those of every machine."""
 
 PEAK_NOISE = 2.0
 """MB by which a peak may differ: it counts pages of the program's file, as the system finds them in memory."""
