@@ -11,7 +11,7 @@ from unittest import mock
 import ledger
 from ledger import Cost, Table
 
-OLD = {"first": Cost(100.0, 10.0), "second": Cost(2000.0, 50.0), "third": Cost(1.5, 5.0)}
+OLD = {"first": Cost(100.0, 8.0), "second": Cost(2000.0, 50.0), "third": Cost(1.5, 5.0)}
 
 HERE = "rustc 1.95.0, valgrind-3.19.0, glibc 2.36, AVX2"
 
