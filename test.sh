@@ -35,7 +35,7 @@ long  | tests  | studies       | studies              | studies examples/*.json
 every | others | Python        | python/test.sh       |
 every | others | validation    | $python reference/validate.py --signorini $built/signorini |
 every | others | ledger        | python3 reference/ledger.py --short $built/signorini |
-long  | others | before-after  | python3 reference/before_and_after.py --short $built/signorini $built/signorini | reference/before_and_after.py
+long  | others | before-after  | python3 reference/before_and_after.py --short $built/signorini $built/signorini | reference/before_and_after.py reference/jobs.py
 long  | others | reference     | $python -m unittest discover --start-directory reference | reference
 long  | others | schema        | $python reference/schema.py $built/signorini | reference/schema.py tests/wrong_scenes.json crates/mechanics/src/scene/input/schema
 long  | others | site          | reference/book.sh    | reference/book.py reference/book.sh docs *.md */README.md
