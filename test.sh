@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # Runs the checks. Needs cargo with rustfmt and clippy, and python3 (3.11 or later) with venv.
 #
-#   ./test.sh          runs each step of class `every`, and each `long` step one of whose files differs from the last full pass
+#   ./test.sh          runs the steps that the changes since the last full pass call for, by their class
 #   ./test.sh all      runs all steps, and the tests in their long form; if all pass, tests/full-pass.txt names the commit
 #   ./test.sh needs    only says what is missing, what would be installed, and which steps would be left out or skipped
 #
-# The last full pass is the commit in tests/full-pass.txt. If the history does not have it, every step runs.
+# A step of class `every` runs each time, one of class `code` unless pages alone differ from the last full pass, one of class `pages` only
+# then, and a `long` step if one of its files differs.
+# The last full pass is the commit in tests/full-pass.txt. If the history does not have it, every step runs but that of the pages.
 # Python packages go into target/. Chromium, PETSc, MPI and valgrind are packages of Debian: as root in a container, or with INSTALL=1,
 # apt-get installs those that are missing and that a step needs. Otherwise these steps are skipped, and named at the end; with SKIP=never
 # that is an error.
@@ -20,21 +22,23 @@ export CARGO_TARGET_DIR
 built=$CARGO_TARGET_DIR/debug
 python=$CARGO_TARGET_DIR/venv/bin/python
 kept=tests/full-pass.txt
+# One pass lints and builds: the compiler of clippy also compiles. Its variables are as `cargo clippy -- -D warnings` sets them.
+export RUSTC_WORKSPACE_WRAPPER=clippy-driver CLIPPY_ARGS=-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__
 
 # Class, lane, name, command, and the files that trigger a long step: its own script, pages and folder. The steps of lane `first` run one
 # after the other; then the lanes `tests` and `others` run beside each other.
 table="
 every | first  | format        | cargo fmt --all --check |
-every | first  | lints         | cargo clippy --quiet --workspace --all-targets --all-features -- -D warnings |
 long  | first  | documentation | rustdoc_as_errors    | Cargo.toml src/lib.rs crates/*/src/lib.rs
 long  | first  | features      | features             | Cargo.toml crates/*/Cargo.toml src/lib.rs crates/qp/src/lib.rs crates/qp/src/linear/mod.rs
-every | first  | build         | cargo test --quiet --workspace --no-run --all-features |
-every | tests  | tests         | cargo test --quiet --workspace --all-features |
-every | tests  | lessons       | lessons              |
+every | first  | lints and build | cargo test --quiet --workspace --all-targets --all-features --no-run |
+code  | tests  | tests         | cargo test --quiet --workspace --all-features |
+code  | tests  | lessons       | lessons              |
+pages | tests  | tests of pages | tests_of_pages      |
 long  | tests  | studies       | studies              | studies examples/*.json
-every | others | Python        | python/test.sh       |
-every | others | validation    | $python reference/validate.py --signorini $built/signorini |
-every | others | ledger        | python3 reference/ledger.py --short $built/signorini |
+code  | others | Python        | python/test.sh       |
+code  | others | validation    | $python reference/validate.py --signorini $built/signorini |
+code  | others | ledger        | python3 reference/ledger.py --short $built/signorini |
 long  | others | before-after  | python3 reference/before_and_after.py --short $built/signorini $built/signorini | reference/before_and_after.py reference/jobs.py
 long  | others | reference     | $python -m unittest discover --start-directory reference | reference
 long  | others | schema        | $python reference/schema.py $built/signorini | reference/schema.py tests/wrong_scenes.json crates/mechanics/src/scene/input/schema
@@ -52,6 +56,12 @@ features() {
     [ "$mode" = all ] || return 0
     cargo clippy --quiet --no-default-features --features pictures -- -D warnings
     for features in "" faer nalgebra; do cargo clippy --quiet --package signorini-qp --features "$features" -- -D warnings; done
+}
+# The tests that read pages.
+tests_of_pages() {
+    cargo test --quiet --workspace --all-features --test house
+    cargo test --quiet --workspace --all-features --test program -- guarantees:: tutorial::
+    python/test.sh readme
 }
 example() { printf -- '-- %s\n' "$*"; "$built/examples/$1" "${@:2}"; }
 lessons() {
@@ -83,7 +93,7 @@ distributed() {
     done
 }
 release_ledger() {
-    cargo build --quiet --release
+    env -u RUSTC_WORKSPACE_WRAPPER cargo build --quiet --release
     python3 reference/ledger.py "$CARGO_TARGET_DIR/release/signorini"
 }
 
@@ -99,17 +109,27 @@ case $mode in "" | all | needs) ;; *) echo "usage: ./test.sh [all|needs]" >&2; e
 [ "$mode" != all ] || export SIGNORINI_LONG=${SIGNORINI_LONG:-fresh}
 passed=$(cut -d' ' -f1 $kept 2>/dev/null || true)
 git cat-file -e "$passed^{commit}" 2>/dev/null || passed=""
+# Prints those of the given files that differ from the last full pass.
+changed() { git diff --name-only "$passed" -- "$@"; git ls-files --others --exclude-standard -- "$@"; }
+only_pages=""
+if [ -n "$passed" ] && [ "$mode" != all ] && [ -n "$(changed '*.md' docs)" ] && [ -z "$(changed . ':!*.md' ':!docs' ":!$kept")" ]; then
+    only_pages=yes
+fi
 # Succeeds if a step runs, given its class and the files that trigger it.
 is_chosen() {
-    [ "$1" = every ] || [ "$mode" = all ] || [ -z "$passed" ] && return
-    # shellcheck disable=SC2086
-    [ -n "$(git diff --name-only "$passed" -- $2; git ls-files --others --exclude-standard -- $2)" ]
+    case $1 in
+        every) ;;
+        code) [ -z "$only_pages" ] ;;
+        pages) [ -n "$only_pages" ] ;;
+        # shellcheck disable=SC2086
+        long) [ "$mode" = all ] || [ -z "$passed" ] || [ -n "$(changed $2)" ] ;;
+    esac
 }
 chosen=() left=()
 while IFS='|' read -r class lane name command files; do
     read -r class <<<"$class"; read -r lane <<<"$lane"; read -r name <<<"$name"; read -r command <<<"$command"
     [ -n "$class" ] || continue
-    if is_chosen "$class" "$files"; then chosen+=("$lane|$name|$command"); else left+=("$name"); fi
+    if is_chosen "$class" "$files"; then chosen+=("$lane|$name|$command"); elif [ "$class" != pages ]; then left+=("$name"); fi
 done <<<"$table"
 runs() { [[ $'\n'"$(printf '%s\n' "${chosen[@]}")" == *"|$1|"* ]]; }
 
@@ -123,7 +143,7 @@ look() {
     ! runs pages || has_chromium || lacks pages Chromium chromium
     ! runs distributed || command -v mpirun >/dev/null || lacks distributed mpirun openmpi-bin
     ! runs distributed || petsc_python >/dev/null || lacks distributed petsc4py python3-petsc4py python3-numpy
-    command -v valgrind >/dev/null || lacks ledger valgrind valgrind
+    ! runs ledger && ! runs "release ledger" || command -v valgrind >/dev/null || lacks ledger valgrind valgrind
 }
 is_skipped() { [[ $'\n'"$(printf '%s\n' "${skipped[@]-}")" == *$'\n'"${1#release }: "* ]]; }
 is_container() {

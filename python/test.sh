@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Puts the package with the library that the tests of the workspace build into target/python, and runs all checks on it, in the
-# environment of `reference/environment.sh`. `python/wheel.sh` builds and installs the wheel as a user does.
+# environment of `reference/environment.sh`; `python/test.sh readme` only runs the Python lines of the README.
+# `python/wheel.sh` builds and installs the wheel as a user does.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -24,9 +25,11 @@ types() {
         --allowlist <(echo signorini.torch) --ignore-unused-allowlist
     "$python" -m mypy --no-error-summary --cache-dir "$CARGO_TARGET_DIR/mypy" -p signorini
 }
-types &
-"$python" -m pytest --quiet -p no:cacheprovider tests
-wait $!
+if [ "${1:-}" != readme ]; then
+    types &
+    "$python" -m pytest --quiet -p no:cacheprovider tests
+    wait $!
+fi
 # The Python lines of the README.
 sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" | (cd / && "$python" -)
 echo "the Python package: all checks passed"

@@ -119,21 +119,87 @@ fn tests_need_the_named_tools_and_skip_the_rest_by_name() {
     assert!(is_fine && lines == ["== test.sh installs by apt-get: openmpi-bin"], "{lines:?}");
 }
 
+/// The rows of the table of steps: class, lane, name, command, files.
+fn rows(script: &str) -> Vec<Vec<String>> {
+    let table = script.split("\ntable=\"\n").nth(1).unwrap().split("\n\"\n").next().unwrap();
+    table.lines().map(|row| row.split('|').map(|cell| cell.trim().to_string()).collect()).collect()
+}
+
 #[test]
 fn every_long_step_names_files_that_exist() {
-    let script = read("test.sh");
-    let table = script.split("\ntable=\"\n").nth(1).unwrap().split("\n\"\n").next().unwrap();
-    let rows: Vec<Vec<&str>> = table.lines().map(|row| row.split('|').map(str::trim).collect()).collect();
-    let of_class = |class: &str| rows.iter().filter(|row| row[0] == class).map(|row| row[2]).collect::<Vec<_>>();
-    let every = ["format", "lints", "build", "tests", "lessons", "Python", "validation", "ledger"];
-    assert_eq!(of_class("every"), every);
-    assert_eq!(of_class("long").len(), rows.len() - every.len());
+    let rows = rows(&read("test.sh"));
+    let of_class =
+        |class: &str| rows.iter().filter(|row| row[0] == class).map(|row| row[2].as_str()).collect::<Vec<_>>();
+    assert_eq!(of_class("every"), ["format", "lints and build"]);
+    assert_eq!(of_class("code"), ["tests", "lessons", "Python", "validation", "ledger"]);
+    assert_eq!(of_class("long").len(), rows.len() - 8);
     for row in rows.iter().filter(|row| row[0] == "long") {
         assert!(!row[4].is_empty(), "{row:?}");
         let list = ["-c", &format!("ls -d {}", row[4])];
         let listed = Command::new("sh").args(list).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
         assert!(listed.status.success(), "{row:?}: {}", String::from_utf8_lossy(&listed.stderr));
     }
+}
+
+/// A history whose last full pass is its first commit, with a file of each kind.
+fn history() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for file in [
+        "README.md",
+        "docs/scenes.md",
+        "crates/qp/src/lib.rs",
+        "crates/qp/src/cone.rs",
+        "studies/main.rs",
+        "tests/full-pass.txt",
+    ] {
+        let file = folder.path().join(file);
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(file, "").unwrap();
+    }
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("test.sh"), folder.path().join("test.sh")).unwrap();
+    let commit = "git init -q && git add . && git -c user.name=a -c user.email=a@b commit -qm a && git rev-parse HEAD >tests/full-pass.txt";
+    assert!(Command::new("sh").args(["-c", commit]).current_dir(&folder).status().unwrap().success());
+    folder
+}
+
+/// The steps that `./test.sh needs` leaves out if these files of a [`history`] change.
+fn left_out(files: &[&str], folder: &Path) -> Vec<String> {
+    for file in files {
+        fs::write(folder.join(file), "changed").unwrap();
+    }
+    let target = folder.join(".git/target");
+    let output = Command::new(folder.join("test.sh")).arg("needs").env("CARGO_TARGET_DIR", target).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("== left out, because their files are as at the last full pass: "));
+    line.map_or(Vec::new(), |names| names.split(", ").map(String::from).collect())
+}
+
+#[test]
+fn a_change_chooses_the_steps_that_it_may_break() {
+    let rows = rows(&read("test.sh"));
+    let of_class =
+        |class: &str| rows.iter().filter(|row| row[0] == class).map(|row| row[2].clone()).collect::<Vec<_>>();
+    let all_but = |chosen: &[&str], classes: &[&str]| {
+        let names = rows.iter().filter(|row| classes.contains(&row[0].as_str())).map(|row| row[2].clone());
+        names.filter(|name| !chosen.contains(&name.as_str())).collect::<Vec<_>>()
+    };
+    assert_eq!(of_class("pages").len(), 1);
+    for (files, left) in [
+        (&[][..], all_but(&[], &["long"])),
+        (&["docs/scenes.md"], all_but(&["site"], &["long", "code"])),
+        (&["README.md", "docs/new.md"], all_but(&["site"], &["long", "code"])),
+        (&["README.md", "crates/qp/src/cone.rs"], all_but(&["site"], &["long"])),
+        (&["crates/qp/src/lib.rs"], all_but(&["documentation", "features"], &["long"])),
+        (&["studies/new.rs"], all_but(&["studies"], &["long"])),
+    ] {
+        assert_eq!(left_out(files, history().path()), left, "{files:?}");
+    }
+    let lost = history();
+    fs::write(lost.path().join("tests/full-pass.txt"), "0123456789012345678901234567890123456789").unwrap();
+    assert_eq!(left_out(&["docs/scenes.md"], lost.path()), Vec::<String>::new());
 }
 
 #[test]
