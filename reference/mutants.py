@@ -40,7 +40,7 @@ COUNT = 60
 ALLOWED = 0.02
 """Largest share of the mutants that build which may survive without a reason."""
 
-BUILD_SECONDS = 1200
+BUILD_SECONDS = 3600
 """Time limit of a build. The first one compiles all dependencies."""
 
 WAITING = 10

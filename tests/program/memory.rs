@@ -213,7 +213,7 @@ fn a_run_whose_memory_allocation_fails_ends_with_one_sentence() {
     let cache_kilobytes: u64 = cache.trim().trim_end_matches('K').parse().unwrap_or(0);
     let more = (2 * 1024 * cache_kilobytes).saturating_sub(64 << 20) / 1_000_000;
     let options = ["", "--no-condense", "--method qp --no-condense", "--method mprgp"];
-    let limits = [40, 90, 110, 130, 150, 180, 220, 270, 400];
+    let limits = [40, 90, 110, 130, 150, 180, 220, 270, 400, 800];
     let runs = options.iter().flat_map(|options| limits.map(|megabytes| (options, megabytes)));
     let (mut codes, mut count) = ([0, 0], 0);
     for (number, scene) in scenes.iter().enumerate() {
