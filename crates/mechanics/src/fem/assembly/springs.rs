@@ -97,19 +97,19 @@ impl Springs {
         directions.map(|held| vec![held]).collect()
     }
 
-    /// The stiffness of the free dofs, with these springs added to it.
+    /// The stiffness of the free dofs, with all springs added to it.
     ///
     /// # Errors
     /// [`qp::Error::NotFinite`] if it overflows.
     pub fn added_to(
-        &self,
+        all: &[Springs],
         stiffness: &SymmetricMatrix,
         dofs: &DofMap,
         dimension: usize,
     ) -> Result<SymmetricMatrix, Error> {
         let mut entries: Vec<(usize, usize, f64)> = stiffness.lower().triplets().collect();
         let along = |node: usize, axis: usize| dofs.displacement_along(node, &COORDINATES[axis][..dimension]).free;
-        for (a, b, block) in &self.pairs {
+        for (a, b, block) in all.iter().flat_map(|springs| &springs.pairs) {
             for (i, of_row) in block.iter().enumerate().take(dimension) {
                 for (j, &stiffness) in of_row.iter().enumerate().take(dimension).filter(|entry| *entry.1 != 0.0) {
                     let of_b = along(*b, j);

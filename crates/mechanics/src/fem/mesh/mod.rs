@@ -24,6 +24,7 @@ pub use zone::Zone;
 
 use crate::error::Error;
 use crate::fem::geometry::distance;
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// More nodes than this are refused before memory is allocated: a mesh of Tet4 has some 24 places of elements for each
@@ -85,7 +86,8 @@ impl Mesh {
 
     fn checked(self) -> Result<Self, Error> {
         self.check_nodes()?;
-        self.check_boundaries()?;
+        self.check_names()?;
+        self.check_boundaries(0)?;
         Ok(self)
     }
 
@@ -119,12 +121,17 @@ impl Mesh {
         }
     }
 
-    fn check_boundaries(&self) -> Result<(), Error> {
-        for (index, boundary) in self.boundaries.iter().enumerate() {
+    /// Checks that the names of all boundaries differ.
+    fn check_names(&self) -> Result<(), Error> {
+        let mut names = HashSet::with_capacity(self.boundaries.len());
+        let twice = self.boundaries.iter().find(|boundary| !names.insert(&boundary.name));
+        twice.map_or(Ok(()), |boundary| named_twice(&boundary.name))
+    }
+
+    /// Checks the boundaries from a number on, but for their names.
+    fn check_boundaries(&self, from: usize) -> Result<(), Error> {
+        for boundary in &self.boundaries[from..] {
             let name = &boundary.name;
-            if self.boundaries[..index].iter().any(|other| other.name == *name) {
-                return fail(format!("two boundaries are called `{name}`"));
-            }
             let (found, count) = (boundary.kind, boundary.connectivity.len());
             if !self.kinds().any(|kind| kind.facet() == found) || !count.is_multiple_of(found.nodes()) {
                 let expected: Vec<String> =
@@ -135,7 +142,7 @@ impl Mesh {
                 ));
             }
         }
-        self.check_facets()
+        self.check_facets(from)
     }
 
     /// Coordinates [x, y, z] of every node, length `n_nodes`, in length; those beyond the dimension are zero.
@@ -281,6 +288,11 @@ impl Mesh {
                 }),
             }
         }
+        let of_other =
+            |boundary: &Boundary| boundary.name.strip_prefix(name)?.strip_prefix('.').and_then(|of| other.boundary(of));
+        if let Some(boundary) = self.boundaries.iter().find(|boundary| of_other(boundary).is_some()) {
+            return named_twice(&boundary.name);
+        }
         let first = self.nodes.len();
         self.node_names.extend(&other.node_names, name, first);
         let behind = |nodes: &[usize]| nodes.iter().map(|node| first + node).collect::<Vec<usize>>();
@@ -296,7 +308,7 @@ impl Mesh {
             name: format!("{name}.{}", group.name),
             elements: group.elements.iter().map(|element| elements + element).collect(),
         }));
-        self.checked()
+        Ok(self)
     }
 
     /// The same mesh with one more boundary, after the others.
@@ -304,8 +316,11 @@ impl Mesh {
     /// # Errors
     /// [`Error::Mesh`] for a name that exists, facets of the wrong kind, a facet that is not a face of an element.
     pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
+        if self.boundary(&boundary.name).is_some() {
+            return named_twice(&boundary.name);
+        }
         self.boundaries.push(boundary);
-        self.check_boundaries()?;
+        self.check_boundaries(self.boundaries.len() - 1)?;
         Ok(self)
     }
 
@@ -348,6 +363,10 @@ pub(crate) fn extent(nodes: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
 /// An [`Error::Mesh`].
 pub(crate) fn fail<T>(message: String) -> Result<T, Error> {
     Err(Error::Mesh { message })
+}
+
+fn named_twice<T>(name: &str) -> Result<T, Error> {
+    fail(format!("two boundaries are called `{name}`"))
 }
 
 /// Checks the lines of a structured mesh and counts the nodes of the grid that is `refined` times as fine.

@@ -48,10 +48,10 @@ impl Parts {
     /// # Errors
     /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if it overflows.
     pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        let add = |stiffness: SymmetricMatrix, springs: &Springs| {
-            springs.added_to(&stiffness, &self.dofs, self.body.dimension())
-        };
-        self.springs.iter().try_fold(of_body, add)
+        match self.springs.is_empty() {
+            true => Ok(of_body),
+            false => Springs::added_to(&self.springs, &of_body, &self.dofs, self.body.dimension()),
+        }
     }
 
     /// The external load with the tensions of bolts, and the forces of springs on nodes with prescribed displacements.
