@@ -15,6 +15,9 @@ use super::decks;
 /// Two solves of one contact problem from rows that differ by rounding, and forces that statics decides, relative.
 const SAME: f64 = 1e-9;
 
+/// How far neighbours overlap, or stand apart, at most a tenth of the thinnest body.
+const OVERLAP: f64 = 1e-4;
+
 /// A point is inside a box if it is farther from its sides than this.
 const INSIDE: f64 = 1e-6;
 
@@ -141,6 +144,36 @@ fn thin_tubes_press_on_each_other_between_them_only() {
     }
 }
 
+/// CONDITIONS: three tubes of 1 mm wall, each shrunk on the next by 0.01 mm.
+#[test]
+fn three_nested_tubes_touch_their_neighbours_only() {
+    let tube = |inner: f64, count: usize| {
+        json!({"ring": {"radius": {"points": [inner, inner + 1.01], "divisions": [1]},
+                        "angle": {"points": [0, 90], "divisions": [count]}, "element": "q8"}})
+    };
+    let hold = |prefix: &str| {
+        [
+            json!({"on": {"boundary": format!("{prefix}start")}, "y": 0}),
+            json!({"on": {"boundary": format!("{prefix}end")}, "x": 0}),
+        ]
+    };
+    let supports: Vec<Value> = ["", "middle.", "outside."].into_iter().flat_map(hold).collect();
+    let mut scene = json!({
+        "contact": "auto",
+        "body": tube(20.0, 24), "material": steel(),
+        "further-bodies": [further("middle", tube(21.0, 30)), further("outside", tube(22.0, 20))],
+        "supports": supports,
+    });
+    let found = answer(&scene);
+    scene.as_object_mut().unwrap().remove("contact");
+    let between = |own: &str, other: &str| json!({"boundary": own, "rule": "closest-point", "shape": {"body": {"boundary": other}}});
+    scene["obstacles"] = json!([between("outer", "middle.inner"), between("middle.outer", "outside.inner")]);
+    let exact = answer(&scene);
+    let forces = |answer: &Answer| answer.model().obstacle_forces(answer.multiplier());
+    assert_eq!(forces(&found).len(), 2);
+    forces(&found).iter().zip(forces(&exact)).for_each(|(&found, exact)| compare(found, exact));
+}
+
 /// Three strips, as coarse as one cell each, and thin.
 fn strips(thin: f64, cells: usize) -> Value {
     let strip = |from: f64, cells: usize| block(&[[0.0, 1.0], [from, from + thin]], &[cells, 1], "q8");
@@ -236,8 +269,9 @@ fn choice(draws: &mut Draws, values: &[f64]) -> f64 {
 }
 
 /// A random assembly in the plane or in space: a stack of bodies that get smaller upwards, so that each passes the load
-/// on top down, laps beside it, or an upright plate on it.
-fn assembly(draws: &mut Draws) -> Assembly {
+/// on top down, such as an upright plate on another; or two plates that lap, if `may_lap`.
+fn assembly(draws: &mut Draws, may_lap: bool) -> Assembly {
+    let laps = may_lap && draws.below(3) == 0;
     let dimension = if draws.below(3) == 0 { 3 } else { 2 };
     let up = dimension - 1;
     let elements: &[&str] =
@@ -246,10 +280,14 @@ fn assembly(draws: &mut Draws) -> Assembly {
     let most = if dimension == 2 { 9 } else { 3 };
     let (mut boxes, mut bodies): (Vec<Vec<[f64; 2]>>, Vec<Value>) = (Vec::new(), Vec::new());
     let (mut floor, mut side) = (0.0, [-2.0, 2.0]);
-    for number in 0..2 + draws.below(3) {
+    for number in 0..if laps { 2 } else { 2 + draws.below(3) } {
         let thick = choice(draws, &[1e-3, 0.02, 0.1, 0.5, 2.0]);
         if number > 0 {
-            // An upright plate, or a body that leaves a rim.
+            floor += choice(draws, &[0.0, 0.0, OVERLAP, -OVERLAP, 0.01]);
+        }
+        if number > 0 && laps {
+            side = side.map(|at| at + choice(draws, &[0.5, 1.0, 3.0]));
+        } else if number > 0 {
             let wide = side[1] - side[0];
             let margin = wide * choice(draws, &[0.0, 0.05, 0.25, 0.45]);
             side = [side[0] + margin * between(draws, 0.2, 0.8), side[1] - margin];
@@ -302,7 +340,7 @@ fn is_through(model: &Model, boxes: &[Vec<[f64; 2]>]) -> bool {
                 })
             })
         };
-        row.gap.abs() > SAME && (1..50).any(|step| inside(f64::from(step) / 50.0))
+        row.gap < -OVERLAP - SAME || row.gap > SAME && (1..50).any(|step| inside(f64::from(step) / 50.0))
     })
 }
 
@@ -312,7 +350,7 @@ fn is_through(model: &Model, boxes: &[Vec<[f64; 2]>]) -> bool {
 fn no_row_of_random_assemblies_leads_through_a_body() {
     let (mut draws, mut rows) = (Draws(seed(20_261_129)), 0);
     for case in 0..cases(60, 400) {
-        let Assembly { scene, boxes, .. } = assembly(&mut draws);
+        let Assembly { scene, boxes, .. } = assembly(&mut draws, true);
         let model = built(&scene);
         assert!(!is_through(&model, &boxes), "case {case}: {scene}");
         // Each body touches the next, and no other.
@@ -327,7 +365,7 @@ fn no_row_of_random_assemblies_leads_through_a_body() {
 fn random_stacks_pass_their_load_down() {
     let mut draws = Draws(seed(1129));
     for case in 0..cases(15, 100) {
-        let Assembly { scene, force: exact, .. } = assembly(&mut draws);
+        let Assembly { scene, force: exact, .. } = assembly(&mut draws, false);
         let found = answer(&scene);
         for force in found.model().obstacle_forces(found.multiplier()) {
             assert!((force / exact - 1.0).abs() < SAME, "case {case}: {force:e} instead of {exact:e}: {scene}");
