@@ -1,5 +1,6 @@
 //! Scenes: accepted and refused input, the rows of obstacles, supports, and contact answers compared with closed forms.
 
+mod between_bodies;
 mod concave_obstacles;
 mod contact_scenes;
 mod contacts_found;

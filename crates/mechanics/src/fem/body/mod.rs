@@ -12,6 +12,8 @@ pub use phase::{Phase, Temperature};
 pub(crate) use point::LocalPoint;
 pub use region::Region;
 
+use std::sync::{Arc, OnceLock};
+
 use signorini_qp as qp;
 
 use crate::error::Error;
@@ -23,6 +25,7 @@ use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, trace};
 use crate::fem::material::{Material, Stiffness};
 use crate::fem::mesh::{Boundary, Mesh, fail};
+use crate::fem::mortar::Skin;
 use crate::fem::threads::in_order;
 
 /// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
@@ -40,6 +43,18 @@ pub struct ElasticBody {
     phases: Vec<Phase>,
     /// The phase of each element.
     of_elements: Vec<u32>,
+    skins: Skins,
+}
+
+/// The skins of all regions, made when they are needed first.
+#[derive(Clone, Debug, Default)]
+struct Skins(OnceLock<Arc<[Skin]>>);
+
+impl PartialEq for Skins {
+    /// They follow from the rest of a body.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// An element with the coordinates of its nodes.
@@ -79,7 +94,8 @@ impl ElasticBody {
             }
         }
         let (regions, of_elements) = (vec![Region::whole(&mesh)], vec![0; mesh.element_count()]);
-        let body = ElasticBody { mesh, formulation, regions, phases: vec![phase], of_elements };
+        let body =
+            ElasticBody { mesh, formulation, regions, phases: vec![phase], of_elements, skins: Skins::default() };
         let tables = body.tabulated();
         let fault = |index: usize| {
             let BodyElement { nodes, kind, cell, .. } = body.element(index)?;
@@ -140,6 +156,7 @@ impl ElasticBody {
         }
         let (nodes, elements) = (self.mesh.nodes().len(), self.mesh.element_count());
         self.mesh = self.mesh.beside(&other.mesh, name)?;
+        self.skins = Skins::default();
         self.regions.extend(other.regions.iter().map(|region| region.shifted(name, nodes, elements)));
         let phases = self.phases.len() as u32;
         self.phases.extend_from_slice(&other.phases);
@@ -173,6 +190,7 @@ impl ElasticBody {
     #[cfg(test)]
     pub(crate) fn moved(&self, dof: usize, by: f64) -> Self {
         let mut body = self.clone();
+        body.skins = Skins::default();
         body.mesh = body.mesh.moved(dof / self.dimension(), dof % self.dimension(), by);
         body
     }
@@ -186,6 +204,14 @@ impl ElasticBody {
     /// [`ElasticBody::beside`].
     pub fn regions(&self) -> &[Region] {
         &self.regions
+    }
+
+    /// The skin of each body, in their order; none in one dimension.
+    pub(crate) fn skins(&self) -> &Arc<[Skin]> {
+        self.skins.0.get_or_init(|| {
+            let regions = self.regions.iter().filter(|_| self.dimension() > 1);
+            regions.map(|region| Skin::new(self.mesh.surface(region.elements()), self.mesh.nodes())).collect()
+        })
     }
 
     /// The number of the body that a node belongs to, both from 0; `None` without such a node.

@@ -94,6 +94,17 @@ impl<'a> Facet<'a> {
         dot(self.normal, other.normal) < -FACING
     }
 
+    /// Returns `true` if the angle between both normals is below 60 degrees.
+    pub fn is_alike(&self, other: &Facet) -> bool {
+        dot(self.normal, other.normal) > FACING
+    }
+
+    /// The place with these values of its shape functions.
+    pub fn at(&self, shape: &PerNode<f64>) -> [f64; 3] {
+        let parts = || self.places().iter().zip(shape);
+        [0, 1, 2].map(|axis| parts().map(|(place, share)| share * place[axis]).sum())
+    }
+
     /// Adds its part to the normals of its nodes, with weights that leave no error on circles and spheres, however much
     /// the facets around a node differ: `|a x b| / (a.a b.b)` at a corner with the edges a and b.
     pub fn add_normals(&self, sums: &mut [[f64; 3]]) {

@@ -27,6 +27,7 @@ mod facet;
 mod line;
 mod search;
 mod shared;
+mod skin;
 mod smooth;
 #[cfg(test)]
 mod tests;
@@ -35,8 +36,10 @@ use std::collections::BTreeSet;
 
 use coverage::{Covered, Part, kept, parts};
 use facet::Facet;
-use search::{Distances, Sides};
+use search::{Distances, Sides, Sight};
 use signorini_qp::SparseMatrix;
+
+pub(crate) use skin::{Skin, TwoSkins};
 
 use crate::error::Error;
 use crate::fem::element::{FacetKind, positive_coefficient};
@@ -82,6 +85,7 @@ pub struct Mortar<'a> {
     reach: f64,
     may_carry: Option<&'a dyn Fn(usize) -> bool>,
     has_coefficient: Option<&'a dyn Fn(usize) -> bool>,
+    between: Option<TwoSkins<'a>>,
 }
 
 /// The rows of a [`Mortar`] in the nodal displacements: `contact * [u_slave, u_master] <= gap`.
@@ -178,7 +182,8 @@ impl<'a> Mortar<'a> {
             facets: &boundary.connectivity,
         };
         let (slave, master, reach) = (surface(slave), surface(master), f64::INFINITY);
-        Mortar { slave, master, formulation, direction: None, reach, may_carry: None, has_coefficient: None }
+        let (direction, between) = (None, None);
+        Mortar { slave, master, formulation, direction, reach, may_carry: None, has_coefficient: None, between }
     }
 
     /// The same with all rows along `direction`, a unit vector [x, y, z] from the slave body into the other, instead of
@@ -201,6 +206,12 @@ impl<'a> Mortar<'a> {
     /// this, at all.
     pub(crate) fn with_coefficients(self, has_coefficient: &'a dyn Fn(usize) -> bool) -> Self {
         Mortar { has_coefficient: Some(has_coefficient), ..self }
+    }
+
+    /// The same without rows where something solid lies between the surfaces. They belong to two bodies, `own` and
+    /// `other`, of those with these skins.
+    pub(crate) fn between(self, skins: &'a [Skin], [own, other]: [usize; 2]) -> Self {
+        Mortar { between: Some(TwoSkins { skins, own, other }), ..self }
     }
 
     /// The rows in nodal displacements.
@@ -247,7 +258,12 @@ impl<'a> Mortar<'a> {
     pub(crate) fn found(&self) -> Result<Found, Error> {
         self.check()?;
         let sides = Sides::of(self);
-        let (covered, opposite) = self.covered(&sides);
+        let Sight { covered, opposite, met } = self.sight(&sides);
+        if let Some([slave, master]) = self.between.and_then(|_| sides.without_turned_away(&covered, &met)) {
+            let [slave, master] =
+                [(self.slave, &slave), (self.master, &master)].map(|(of, facets)| SurfaceMesh { facets, ..of });
+            return Mortar { slave, master, ..*self }.found();
+        }
         if let Some((index, one)) = covered.iter().enumerate().find(|(_, one)| one.has_layers()) {
             return Err(Error::Mesh {
                 message: format!(
@@ -291,7 +307,7 @@ impl<'a> Mortar<'a> {
     pub(crate) fn seen(&self) -> Result<Seen, Error> {
         self.check()?;
         let sides = Sides::of(self);
-        let (covered, _) = self.covered(&sides);
+        let covered = self.sight(&sides).covered;
         let has_layers = covered.iter().any(Covered::has_layers);
         Ok(Seen { faces: covered.iter().map(Covered::is_covered).collect(), has_layers })
     }

@@ -47,6 +47,18 @@ impl<'a> Sides<'a> {
         self.sag() > 0.0
     }
 
+    /// The facets of both surfaces without those that see nothing and turn away from a neighbour that does: their
+    /// normals would bend those of the nodes that the two share. `None` without such a facet.
+    pub fn without_turned_away(&self, covered: &[Covered], met: &BTreeSet<u32>) -> Option<[Vec<usize>; 2]> {
+        let sees = |facet: usize| covered[facet].is_covered();
+        let kept = [
+            kept(&self.slave, self.normals[0].len(), sees),
+            kept(&self.master, self.normals[1].len(), |facet| met.contains(&(facet as u32))),
+        ];
+        let is_whole = kept[0].len() == self.slave.len() && kept[1].len() == self.master.len();
+        (!is_whole).then(|| kept.map(|facets| facets.into_iter().flat_map(|facet| facet.nodes).copied().collect()))
+    }
+
     /// The boxes around the master facets.
     fn tree(&self) -> Tree {
         let numbers: Vec<u32> = (0..self.master.len() as u32).collect();
@@ -176,24 +188,40 @@ impl<'a> Distances<'a> {
     }
 }
 
+/// What both surfaces see of each other.
+pub(super) struct Sight<'f> {
+    /// The integrals over the covered part of every slave facet.
+    pub covered: Vec<Covered<'f>>,
+    /// The nearest place of the slave surface for each master node.
+    pub opposite: Vec<Opposite>,
+    /// The numbers of the master facets that cover slave facets.
+    pub met: BTreeSet<u32>,
+}
+
 impl Mortar<'_> {
-    /// The integrals over the covered part of every slave facet, and the nearest place of the slave surface for each
-    /// master node.
-    pub(super) fn covered<'f>(&self, sides: &'f Sides<'f>) -> (Vec<Covered<'f>>, Vec<Opposite>) {
-        let tree = sides.tree();
+    /// What the surfaces see of each other within reach, with nothing solid between.
+    pub(super) fn sight<'f>(&self, sides: &'f Sides<'f>) -> Sight<'f> {
+        let (tree, mut all_met) = (sides.tree(), BTreeSet::new());
+        let can_touch = |[from, to]: [[f64; 3]; 2], outward: [f64; 3]| {
+            self.between.is_none_or(|between| between.can_touch(from, to, outward))
+        };
         let mut nearest: BTreeMap<usize, Opposite> = BTreeMap::new();
         let mut all = Vec::with_capacity(sides.slave.len());
         for facet in &sides.slave {
             let site = Site::new(facet, self.direction, &sides.normals[0]);
             let mut covered = self.whole(&site);
             let (mut met, mut shared) = (BTreeSet::new(), Vec::new());
-            let near = site.near(&tree, self.reach).into_iter().map(|number| &sides.master[number as usize]);
-            for other in near.filter(|other| facet.faces(other)) {
-                shared.extend(self.shared(&site, other));
+            let near = site.near(&tree, self.reach).into_iter().map(|number| (number, &sides.master[number as usize]));
+            for (number, other) in near.filter(|(_, other)| facet.faces(other)) {
+                let found = self.shared(&site, other).filter(|one| can_touch(one.middles(), site.direction));
+                all_met.extend(found.iter().map(|_| number));
+                shared.extend(found);
                 for (&node, &place) in other.nodes.iter().zip(other.places()) {
                     let found = met.insert(node).then(|| site.opposite(node, place, self.reach)).flatten();
                     let Some(found) = found else { continue };
-                    if nearest.get(&node).is_none_or(|nearest| found.gap.abs() < nearest.gap.abs()) {
+                    let is_nearest = nearest.get(&node).is_none_or(|nearest| found.gap.abs() < nearest.gap.abs());
+                    let foot = [0, 1, 2].map(|axis| place[axis] - found.gap * found.normal[axis]);
+                    if is_nearest && can_touch([foot, place], found.normal) {
                         nearest.insert(node, found);
                     }
                 }
@@ -201,7 +229,7 @@ impl Mortar<'_> {
             covered.add(shared);
             all.push(covered);
         }
-        (all, nearest.into_values().collect())
+        Sight { covered: all, opposite: nearest.into_values().collect(), met: all_met }
     }
 
     /// The integrals over the whole facet.
@@ -235,6 +263,9 @@ impl Mortar<'_> {
             let gap = sum(&heights[1], &opposite) - sum(&heights[0], &own);
             let area = weight * self.measure(facet, &own);
             shared.add(facet.nodes.len(), area, gap, [&self.functions(facet, slave), &opposite]);
+            if self.between.is_some() {
+                shared.add_places(area, [facet.at(&own), other.at(&opposite)]);
+            }
         };
         match &site.projected {
             None => line::for_each_point(facet, &site.directions, other, self.reach, &mut add),
@@ -258,6 +289,18 @@ impl Mortar<'_> {
         let radius = facet.places().iter().zip(shape).map(|(place, share)| share * place[0]).sum();
         self.formulation.measure(radius)
     }
+}
+
+/// The facets that see the other surface, and those that do not turn away from one of these at a common node.
+fn kept<'f, 'a>(facets: &'f [Facet<'a>], nodes: usize, sees: impl Fn(usize) -> bool) -> Vec<&'f Facet<'a>> {
+    let mut seeing: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+    for facet in (0..facets.len()).filter(|&facet| sees(facet)) {
+        facets[facet].nodes.iter().for_each(|&node| seeing[node].push(facet));
+    }
+    let turns_away =
+        |one: &Facet| one.nodes.iter().flat_map(|&node| &seeing[node]).any(|&facet| !facets[facet].is_alike(one));
+    let numbered = facets.iter().enumerate();
+    numbered.filter(|&(number, facet)| sees(number) || !turns_away(facet)).map(|(_, facet)| facet).collect()
 }
 
 /// The mean outward unit normal at each node.

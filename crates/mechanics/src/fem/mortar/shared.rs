@@ -16,6 +16,8 @@ pub(super) struct Shared<'a> {
     pub area: f64,
     /// Of the distance, along the direction of the slave facet.
     gap: f64,
+    /// Of the places on the slave facet and on the other.
+    places: [[f64; 3]; 2],
     /// Of the functions of the nodes of the slave facet, of their products, and of those with the functions of the
     /// other facet.
     pub functions: [f64; MOST],
@@ -26,7 +28,18 @@ pub(super) struct Shared<'a> {
 impl<'a> Shared<'a> {
     pub fn new(other: &'a Facet<'a>) -> Self {
         let products = [[0.0; MOST]; MOST];
-        Shared { other, area: 0.0, gap: 0.0, functions: [0.0; MOST], products, with: products }
+        Shared { other, area: 0.0, gap: 0.0, places: [[0.0; 3]; 2], functions: [0.0; MOST], products, with: products }
+    }
+
+    /// Adds the area around two opposite places, of the slave facet and of the other.
+    pub fn add_places(&mut self, area: f64, places: [[f64; 3]; 2]) {
+        let sums = self.places.iter_mut().flatten().zip(places.iter().flatten());
+        sums.for_each(|(sum, part)| *sum += area * part);
+    }
+
+    /// The middles of the shared part on both facets.
+    pub fn middles(&self) -> [[f64; 3]; 2] {
+        self.places.map(|sums| sums.map(|sum| sum / self.area))
     }
 
     /// Adds a point with the values of the functions of both facets, and their distance there.

@@ -1,5 +1,7 @@
 //! All contacts between the bodies of a scene: surfaces that face each other.
 
+use std::sync::Arc;
+
 use crate::error::Error;
 use crate::fem::geometry::{distance, length, minus};
 use crate::fem::mortar::Seen;
@@ -23,16 +25,18 @@ impl Scene {
         let (mut scene, nodes) = (self.clone(), body.mesh().nodes().to_vec());
         let regions = body.regions().to_vec();
         let named: Vec<[Option<usize>; 2]> = self.named_pairs(&body);
-        let surfaces: Vec<Boundary> = regions.iter().map(|region| body.mesh().surface(region.elements())).collect();
-        for second in 1..regions.len() {
+        let skins = Arc::clone(body.skins());
+        for second in 1..skins.len() {
             for first in 0..second {
                 let pair = [Some(first), Some(second)];
                 if named.iter().any(|one| *one == pair || [one[1], one[0]] == pair) {
                     continue;
                 }
-                let sides = [&surfaces[first], &surfaces[second]];
+                let bodies = [first, second];
+                let sides = bodies.map(|body| &skins[body].surface);
                 let between = |[own, other]: [usize; 2]| {
                     Mortar::new((&nodes, sides[own]), (&nodes, sides[other]), *body.formulation())
+                        .between(&skins, [bodies[own], bodies[other]])
                 };
                 let size = size_of(&body, &regions[first]).min(size_of(&body, &regions[second]));
                 let least = sides.iter().map(|side| largest_facet(&nodes, side)).fold(0.0, f64::max);
@@ -50,8 +54,7 @@ impl Scene {
                 }
                 let mut found = Vec::new();
                 for ([own, other], Seen { faces, .. }) in [[0, 1], [1, 0]].into_iter().zip(seen) {
-                    let [of, at] =
-                        [[first, second][own], [first, second][other]].map(|region| name_of(&regions[region]));
+                    let [of, at] = [bodies[own], bodies[other]].map(|region| name_of(&regions[region]));
                     let name = free_name(&body, &format!("{of}-at-{at}"));
                     found.push(sides[own].part(&name, |facet| faces[facet]));
                 }

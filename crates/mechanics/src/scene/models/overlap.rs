@@ -7,8 +7,9 @@ use std::collections::HashMap;
 use super::contacts::facet_length;
 use crate::fem::element::{Cell, MAX_NODES};
 use crate::fem::mesh::extent;
-use crate::fem::surface::{Tree, distance_from};
-use crate::fem::{Boundary, Mesh, Mortar};
+use crate::fem::mortar::Skin;
+use crate::fem::surface::Tree;
+use crate::fem::{Mesh, Mortar};
 use crate::scene::{ContactRow, Model};
 
 /// Overlaps below this share of the size of the mesh are rounding.
@@ -37,9 +38,7 @@ pub(crate) struct Overlap {
 
 /// A displaced body.
 struct Solid {
-    surface: Boundary,
-    /// Boxes around its facets.
-    facets: Tree,
+    skin: Skin,
     /// How far each facet misses the curve for which it stands, in length.
     sags: Vec<f64>,
     /// Boxes around its elements.
@@ -71,26 +70,20 @@ impl Solid {
             let room = (0..3).fold(0.0, |room: f64, axis| room.max(high[axis] - low[axis])) / 4.0;
             [low.map(|at| at - room), high.map(|at| at + room)]
         });
-        let surface = mesh.surface(elements.clone());
-        let numbers: Vec<u32> = (0..surface.facets().count() as u32).collect();
-        let facets = Tree::new(&numbers, |number| {
-            let facet = surface.facet(number as usize);
-            let (low, high) = extent(&facet.iter().map(|&node| nodes[node]).collect::<Vec<_>>());
-            [low, high]
-        });
-        let sags = Mortar::new((nodes, &surface), (nodes, &surface), *model.body().formulation()).sags();
-        Solid { surface, facets, sags, elements: tree_of_elements, first: elements.start }
+        let skin = Skin::new(mesh.surface(elements.clone()), nodes);
+        let sags = Mortar::new((nodes, &skin.surface), (nodes, &skin.surface), *model.body().formulation()).sags();
+        Solid { skin, sags, elements: tree_of_elements, first: elements.start }
     }
 
     /// The nodes of its surface, and the middles of its facets: where two bodies cross, no node need lie inside.
     /// `allowed` has how deep a node may lie in the other body, in lengths of a facet.
     fn points(&self, nodes: &[[f64; 3]], allowed: impl Fn(usize) -> f64) -> Vec<Point> {
-        let of_nodes = self.surface.nodes().into_iter();
+        let of_nodes = self.skin.surface.nodes().into_iter();
         let mut points: Vec<Point> =
             of_nodes.map(|node| Point { at: nodes[node], node, sag: 0.0, allowed: allowed(node) }).collect();
-        let reference = self.surface.kind.reference();
+        let reference = self.skin.surface.kind.reference();
         let shape = (reference.shape)(reference.centroid());
-        points.extend(self.surface.facets().zip(&self.sags).map(|(facet, &sag)| {
+        points.extend(self.skin.surface.facets().zip(&self.sags).map(|(facet, &sag)| {
             let at =
                 [0, 1, 2].map(|axis| facet.iter().zip(shape).map(|(&node, share)| share * nodes[node][axis]).sum());
             let allowed = facet.iter().map(|&node| allowed(node)).fold(0.0, f64::max);
@@ -108,27 +101,6 @@ impl Solid {
             places.iter_mut().zip(mesh.element(element)).for_each(|(place, &node)| *place = nodes[node]);
             Cell::new(mesh.kind_of(element).reference(), &places).weights_at(at, SAME_PLACE).is_some()
         })
-    }
-
-    /// The distance of a point from the surface, straight pieces of curved facets for these, and the number of the
-    /// nearest facet.
-    fn depth(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> (f64, usize) {
-        let of_piece = |piece: Vec<usize>| {
-            let places: Vec<[f64; 3]> = piece.into_iter().map(|node| nodes[node]).collect();
-            distance_from(&places, at)
-        };
-        let of_facet = |facet: &[usize]| {
-            self.surface.kind.straight_cells(facet).into_iter().map(of_piece).fold(f64::INFINITY, f64::min)
-        };
-        let (mut least, mut nearest) = (f64::INFINITY, 0);
-        self.facets.near(at, |number| {
-            let far = of_facet(self.surface.facet(number as usize));
-            if far < least {
-                (least, nearest) = (far, number as usize);
-            }
-            least * least
-        });
-        (least, nearest)
     }
 }
 
@@ -163,8 +135,8 @@ impl Model {
             let rounding = ROUNDING * mesh.size();
             let points = of_nodes.points(&nodes, of_node).into_iter().filter(|point| is_near(&point.at));
             for point in points.filter(|point| body.contains(mesh, &nodes, point.at)) {
-                let (depth, facet) = body.depth(&nodes, point.at);
-                let length = facet_length(&nodes, body.surface.facet(facet));
+                let (depth, facet) = body.skin.nearest(point.at);
+                let length = facet_length(&nodes, body.skin.surface.facet(facet));
                 let left = rounding + point.sag + body.sags[facet] + point.allowed * length;
                 if depth > left && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
                     let has_rows = point.allowed == KEPT_APART;

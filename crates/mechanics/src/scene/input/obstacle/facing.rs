@@ -12,6 +12,9 @@ use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
+use crate::fem::mesh::extent;
+use crate::fem::mortar::TwoSkins;
+use crate::fem::surface::Tree;
 use crate::fem::{Boundary, FacetKind};
 use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, number, point, refused, wrong};
 use crate::scene::input::schema::approach::Rule;
@@ -24,6 +27,9 @@ const ASLANT: f64 = 0.2;
 /// in single precision, leave 5e-7 of the size of the bodies, which is below this share of a facet if at most 2000
 /// facets lie side by side. A place nearer to an edge of a facet than this share of the edge counts as on the edge.
 const SAME_PLACE: f64 = 1e-3;
+
+/// Two distances that differ by less, relative, differ by rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// A boundary of another elastic body as an obstacle, with its rows and its reach.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -187,7 +193,10 @@ impl FitSpec {
 fn pairs(site: &Site, own: &Boundary, other: &Boundary) -> Result<Vec<Pair>, Error> {
     let (normals, partners) = (node_normals(site.body, own), node_normals(site.body, other));
     let edges = shortest_edges(own, site.body.mesh().nodes());
-    let search = Search { site, own, other, partners, edges };
+    let nodes = site.body.mesh().nodes();
+    let numbers: Vec<u32> = (0..partners.len() as u32).collect();
+    let tree = Tree::new(&numbers, |number| [nodes[partners[number as usize].0]; 2]);
+    let search = Search { site, own, other, partners, tree, edges };
     let candidates = site.candidates.iter().zip(&normals);
     let pairs: Result<Vec<Pair>, Error> = candidates
         .map(|(&(node, _), &(_, outward))| {
@@ -226,6 +235,8 @@ struct Search<'a> {
     other: &'a Boundary,
     /// Nodes of the other boundary with their outward normals.
     partners: Vec<(usize, [f64; 3])>,
+    /// Their places.
+    tree: Tree,
     /// The shortest edge of the facets at each node of the own boundary, in length; infinite at other nodes.
     edges: Vec<f64>,
 }
@@ -261,24 +272,42 @@ impl Search<'_> {
 
     fn nearest(&self, node: usize, outward: [f64; 3]) -> Result<Way, Error> {
         let (nodes, rule) = (self.site.body.mesh().nodes(), self.site.rule);
-        let ways = self.partners.iter().map(|&(partner, facing)| {
+        let way_to = |number: u32| {
+            let (partner, facing) = self.partners[number as usize];
             let way = minus(nodes[partner], nodes[node]);
             let mean = unit(minus(outward, facing));
             let normal = if rule == Rule::Approach { self.site.direction() } else { mean };
             let distance = dot(way, normal);
             let aside = length(minus(way, normal.map(|component| distance * component)));
             Way { aside, pair: Pair { partner, normal, mean, distance } }
-        });
+        };
         let nearest = match rule {
             // The nearest of the nodes straight across; without such a node, the node with the smallest offset.
-            Rule::Approach => ways.min_by(|a, b| {
-                let straight = |way: &Way| way.aside.max(self.tolerance(node));
-                let far = |way: &Way| way.pair.distance.abs();
-                straight(a).total_cmp(&straight(b)).then(far(a).total_cmp(&far(b)))
-            }),
+            Rule::Approach => {
+                let (tolerance, mut near) = (self.tolerance(node), Vec::new());
+                let beside = [2.0 * tolerance, 0.0, f64::INFINITY];
+                self.tree.around_line(nodes[node], self.site.direction(), beside, |number| near.push(number));
+                near.retain(|&number| way_to(number).aside <= tolerance);
+                if near.is_empty() {
+                    near.extend(0..self.partners.len() as u32);
+                }
+                near.sort_unstable();
+                near.into_iter().map(way_to).min_by(|a, b| {
+                    let straight = |way: &Way| way.aside.max(tolerance);
+                    let far = |way: &Way| way.pair.distance.abs();
+                    straight(a).total_cmp(&straight(b)).then(far(a).total_cmp(&far(b)))
+                })
+            }
             Rule::ClosestPoint => {
-                let far = |way: &Way| way.aside.hypot(way.pair.distance);
-                ways.min_by(|a, b| far(a).total_cmp(&far(b)))
+                let mut nearest: Option<(f64, u32)> = None;
+                self.tree.near(nodes[node], |number| {
+                    let way = way_to(number);
+                    let own = (way.aside.hypot(way.pair.distance), number);
+                    let found = nearest.map_or(own, |one| if own < one { own } else { one });
+                    nearest = Some(found);
+                    found.0 * found.0 * (1.0 + ROUNDING)
+                });
+                nearest.map(|(_, number)| way_to(number))
             }
         };
         nearest.ok_or_else(|| wrong(self.site.field("boundary"), format!("`{}` has no nodes", self.other.name)))
@@ -303,6 +332,16 @@ impl Search<'_> {
                 site.approach.name()
             );
             return Err(wrong(format!("{}.approach", site.obstacle), message));
+        }
+        let [Some(own_body), Some(other_body)] = [self.own, self.other].map(|side| site.body.region_of(side)) else {
+            return Ok(());
+        };
+        let skins = TwoSkins { skins: site.body.skins(), own: own_body, other: other_body };
+        if !skins.can_touch(mesh.nodes()[node], mesh.nodes()[way.pair.partner], way.pair.normal) {
+            let message = format!(
+                "a body lies between node {node} of `{own}` at {place} and the node of `{other}` across it; {PAIR_UP}"
+            );
+            return Err(unpaired(site, message));
         }
         Ok(())
     }
@@ -340,8 +379,24 @@ impl Search<'_> {
             pair_of[node] = Some(*pair);
             is_paired[pair.partner] = true;
         }
+        let numbers: Vec<u32> = (0..self.own.facets().count() as u32).collect();
+        // A node that a facet faces lies in the box around the facet and its pairs.
+        let facets = Tree::new(&numbers, |number| {
+            let facet = self.own.facet(number as usize);
+            let (low, high) = extent(&facet.iter().map(|&node| nodes[node]).collect::<Vec<_>>());
+            let pairs = facet.iter().filter_map(|&node| pair_of[node]);
+            let far = pairs.fold(0.0, |far: f64, pair| far.max(pair.distance.abs()));
+            let room = far + 2.0 * distance(low, high);
+            [low.map(|at| at - room), high.map(|at| at + room)]
+        });
         for &(partner, facing) in self.partners.iter().filter(|entry| !is_paired[entry.0]) {
-            for facet in self.own.facets() {
+            let mut near = Vec::new();
+            facets.near(nodes[partner], |number| {
+                near.push(number);
+                0.0
+            });
+            near.sort_unstable();
+            for facet in near.into_iter().map(|number| self.own.facet(number as usize)) {
                 let across = Across::of(self.own.kind, facet, nodes, &pair_of, nodes[partner]);
                 let Some(across) = across.filter(|across| dot(across.normal, facing) < 0.0) else { continue };
                 let (own, other) = (&self.own.name, &self.other.name);

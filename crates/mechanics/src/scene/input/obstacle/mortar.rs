@@ -87,6 +87,10 @@ pub(crate) fn means(
         .carried_by(may_carry)
         .with_coefficients(&has_coefficient);
     let mortar = along.map_or(mortar, |direction| mortar.along(direction));
+    let mortar = match [slave, master].map(|boundary| body.region_of(boundary)) {
+        [Some(own), Some(other)] if own != other => mortar.between(body.skins(), [own, other]),
+        _ => mortar,
+    };
     mortar.found().map_err(|error| match error {
         Error::Mesh { message } => wrong(path, message),
         other => other,

@@ -1,0 +1,163 @@
+//! The skin of a body, and which places of two skins can touch each other: those with nothing solid between them.
+
+use super::facet::area_vector;
+use crate::fem::geometry::{cross, dot, length, minus, unit};
+use crate::fem::mesh::{Boundary, extent};
+use crate::fem::surface::{Tree, distance_from};
+
+/// Two bodies that overlap can touch up to this share of the thickness of the thinner one: behind its middle the other
+/// side of its skin is nearer.
+const OVERLAP: f64 = 0.5;
+
+/// A crossing nearer to an end of a way than this share of it is at the end, which the skin itself forms.
+const AT_END: f64 = 1e-9;
+
+/// A line at an angle below this to a piece runs along it, in radians.
+const ALONG: f64 = 1e-9;
+
+/// A point beside a piece by less than this share of it is on its edge.
+const ON_EDGE: f64 = 1e-9;
+
+/// All facets of a body, cut into edges or triangles, with a tree of boxes around these.
+#[derive(Debug)]
+pub(crate) struct Skin {
+    pub surface: Boundary,
+    pieces: Vec<Piece>,
+    tree: Tree,
+}
+
+/// An edge, the second end twice, or a triangle of a facet, seen from outside.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    facet: usize,
+    corners: [[f64; 3]; 3],
+}
+
+/// The sense in which a line crosses a skin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sense {
+    Into,
+    OutOf,
+}
+
+impl Skin {
+    /// The skin of a surface that is seen from outside, at these places of the nodes.
+    pub fn new(surface: Boundary, nodes: &[[f64; 3]]) -> Self {
+        let mut pieces = Vec::with_capacity(surface.connectivity.len());
+        for (facet, named) in surface.facets().enumerate() {
+            for cell in surface.kind.straight_cells(named) {
+                let last = cell.len() - 1;
+                let fan = (1..last.max(2)).map(|at| [cell[0], cell[at], cell[(at + 1).min(last)]]);
+                pieces.extend(fan.map(|corners| Piece { facet, corners: corners.map(|node| nodes[node]) }));
+            }
+        }
+        let numbers: Vec<u32> = (0..pieces.len() as u32).collect();
+        let tree = Tree::new(&numbers, |number| {
+            let (low, high) = extent(&pieces[number as usize].corners);
+            [low, high]
+        });
+        Skin { surface, pieces, tree }
+    }
+
+    /// The distance of a point, in length, and the number of the nearest facet.
+    pub fn nearest(&self, at: [f64; 3]) -> (f64, usize) {
+        let (mut least, mut nearest) = (f64::INFINITY, 0);
+        self.tree.near(at, |number| {
+            let piece = &self.pieces[number as usize];
+            let far = distance_from(&piece.corners, at);
+            if far < least {
+                (least, nearest) = (far, piece.facet);
+            }
+            least * least
+        });
+        (least, nearest)
+    }
+
+    /// Returns `true` if a line from a point along a unit vector crosses the skin in this sense at a distance between
+    /// two.
+    fn is_crossed(&self, from: [f64; 3], way: [f64; 3], [low, high]: [f64; 2], sense: Sense) -> bool {
+        let mut is_crossed = false;
+        self.tree.around_line(from, way, [AT_END * high, 0.0, high], |number| {
+            let found = || self.pieces[number as usize].crossing(from, way);
+            is_crossed = is_crossed || found().is_some_and(|(at, of)| of == sense && low < at && at < high);
+        });
+        is_crossed
+    }
+
+    /// Returns `true` for a point inside the body, by the next crossing of a line along a unit vector.
+    fn contains(&self, at: [f64; 3], way: [f64; 3]) -> bool {
+        let mut next: Option<(f64, Sense)> = None;
+        self.tree.around_line(at, way, [0.0, 0.0, f64::INFINITY], |number| {
+            let found = self.pieces[number as usize].crossing(at, way).filter(|found| found.0 > 0.0);
+            next = match (next, found) {
+                (Some(one), Some(other)) => Some(if other.0 < one.0 { other } else { one }),
+                (one, other) => one.or(other),
+            };
+        });
+        next.is_some_and(|(_, sense)| sense == Sense::OutOf)
+    }
+}
+
+impl Piece {
+    /// The distance at which a line from a point along a unit vector crosses it, negative behind the point, and the
+    /// sense.
+    fn crossing(&self, from: [f64; 3], way: [f64; 3]) -> Option<(f64, Sense)> {
+        let [a, b, c] = self.corners;
+        let is_edge = b == c;
+        let normal = if is_edge { area_vector(&[a, b]) } else { cross(minus(b, a), minus(c, a)) };
+        let turned = dot(normal, way);
+        if turned.abs() <= ALONG * length(normal) {
+            return None;
+        }
+        let at = dot(normal, minus(a, from)) / turned;
+        let place = [0, 1, 2].map(|axis| from[axis] + at * way[axis]);
+        let is_inside = if is_edge {
+            let along = minus(b, a);
+            let share = dot(minus(place, a), along) / dot(along, along);
+            (-ON_EDGE..=1.0 + ON_EDGE).contains(&share)
+        } else {
+            let least = -ON_EDGE * dot(normal, normal);
+            [(a, b), (b, c), (c, a)].iter().all(|&(p, q)| dot(cross(minus(q, p), minus(place, p)), normal) >= least)
+        };
+        is_inside.then_some((at, if turned > 0.0 { Sense::OutOf } else { Sense::Into }))
+    }
+}
+
+/// The skins of all bodies, and the numbers of two of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TwoSkins<'a> {
+    pub skins: &'a [Skin],
+    pub own: usize,
+    pub other: usize,
+}
+
+impl TwoSkins<'_> {
+    /// Returns `true` if nothing solid lies between `from` on the skin of the own body, with a vector out of it, and
+    /// `to` on that of the other.
+    ///
+    /// Bodies that are apart touch if the way meets no body, a third one included. Bodies that overlap touch if the way
+    /// is short against the thickness of both: it would lead out of the own body soon after `to`, or out of the other
+    /// soon after `from`, if the two places stood back to back.
+    pub fn can_touch(&self, from: [f64; 3], to: [f64; 3], outward: [f64; 3]) -> bool {
+        let way = minus(to, from);
+        let far = length(way);
+        let (way, back) = (unit(way), unit(minus(from, to)));
+        if dot(way, outward) > 0.0 {
+            let between = [AT_END * far, (1.0 - AT_END) * far];
+            let middle = [0, 1, 2].map(|axis| f64::midpoint(from[axis], to[axis]));
+            let blocks = |(body, skin): (usize, &Skin)| {
+                let is_crossed = |sense: Sense| skin.is_crossed(from, way, between, sense);
+                let is_third = body != self.own && body != self.other;
+                (body != self.other && is_crossed(Sense::Into))
+                    || (body != self.own && is_crossed(Sense::OutOf))
+                    || (is_third && skin.contains(middle, way))
+            };
+            return !self.skins.iter().enumerate().any(blocks);
+        }
+        let thin = [AT_END * far, far / OVERLAP];
+        let is_thin = |body: usize, at: [f64; 3], inward: [f64; 3]| {
+            self.skins.get(body).is_some_and(|skin| skin.is_crossed(at, inward, thin, Sense::OutOf))
+        };
+        !is_thin(self.own, from, way) && !is_thin(self.other, to, back)
+    }
+}
