@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use super::about::about;
 use super::failure::{failed, sentence};
-use super::input::{Input, scene_of};
+use super::input::Input;
 use super::options::{Ccx, Format};
 use super::outcome::{Ending, Outcome, unfit};
 use super::settings::settings;
@@ -80,26 +80,43 @@ fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, text: &mut
     std::iter::once(folder.clone())
         .chain(of_steps)
         .try_for_each(|folder| remove_files(&folder, &["report.html", "report.json"]))?;
+    let mut answers: Vec<(Answer, Requests)> = Vec::new();
+    let ending = steps_solved(options, [&file, &folder], watch, text, &mut answers);
+    // A step without an answer leaves those of the steps before it.
+    if !answers.is_empty() {
+        CalculixFiles::new(&answers)?.write(&stem)?;
+    }
+    ending
+}
+
+/// Solves the steps of a deck in turn, up to the first without an answer that is certified.
+fn steps_solved(
+    options: &Ccx,
+    [file, folder]: [&Path; 2],
+    watch: &Watch,
+    text: &mut String,
+    answers: &mut Vec<(Answer, Requests)>,
+) -> Result<Ending, Error> {
     let deck = &options.limits.deck;
-    let steps = match deck.step {
-        Some(step) => step..=step,
-        None => 1..=Requests::of_deck(&file, &deck.permits(), None)?.steps.max(1),
-    };
-    let is_one = steps.clone().count() == 1;
-    let mut answers = Vec::new();
-    for step in steps {
-        let folder = if is_one { folder.clone() } else { folder.join(format!("step-{step}")) };
-        let requests = Requests::of_deck(&file, &deck.permits(), Some(step))?;
+    let (mut step, mut earlier) = (deck.step.unwrap_or(1), Vec::new());
+    loop {
+        let (scene, requests) = Scene::read_step(file, &deck.permits(), step, &earlier)?;
+        let of_step =
+            if requests.steps > 1 && deck.step.is_none() { folder.join(format!("step-{step}")) } else { folder.into() };
         let mut options = options.clone();
         options.limits.deck.step = Some(step);
-        let (ending, answer) = solved(&options, &file, folder, &requests, watch, text)?;
+        let (ending, answer) = solved(&options, file, of_step, (scene, &requests), watch, text)?;
         if ending != Ending::Certified || watch.is_stopped() {
             return Ok(ending);
         }
+        earlier.push(answer.displacements_of_deck(&requests)?);
+        let is_last = deck.step.is_some() || step >= requests.steps;
         answers.push((answer, requests));
+        if is_last {
+            return Ok(Ending::Certified);
+        }
+        step += 1;
     }
-    CalculixFiles::new(&answers)?.write(&stem)?;
-    Ok(Ending::Certified)
 }
 
 /// Solves one step of a deck, and writes page and report into a folder.
@@ -107,13 +124,12 @@ fn solved(
     options: &Ccx,
     file: &Path,
     folder: PathBuf,
-    requests: &Requests,
+    (scene, requests): (Scene, &Requests),
     watch: &Watch,
     text: &mut String,
 ) -> Result<(Ending, Answer), Error> {
     let (clock, limits) = (Instant::now(), &options.limits);
     let Some(solve) = options.solve(file.to_path_buf(), folder) else { return unfit("ccx", "no options of `solve`") };
-    let scene = scene_of(file, limits)?;
     assembly_seconds(&scene, &solve, watch)?;
     let input = Input::of_scene(&scene, file, limits, clock.elapsed().as_secs_f64())?;
     if requests.steps > 1 {

@@ -4,6 +4,7 @@ mod answers;
 mod auto;
 mod blocks;
 mod drop_in;
+mod drop_in_references;
 mod drop_in_steps;
 mod exit_codes;
 mod files_read;

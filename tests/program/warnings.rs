@@ -63,6 +63,26 @@ fn a_deck_that_is_answered_in_another_way_is_named_with_its_line() {
     assert!(message.contains("stack.inp:23: C3D8R is answered by Hex8"), "{message}");
 }
 
+/// A cube whose node 7 is pushed in: its Jacobian is negative there, and positive at all points of integration.
+#[test]
+fn an_element_that_is_folded_at_a_corner_alone_is_solved_and_named() {
+    let desk = Desk::new();
+    desk.write(
+        "cube.inp",
+        "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 0, 0, 1\n6, 1, 0, 1\n7, .6, .6, .6\n8, 0, 1, 1\n\
+         *ELEMENT, TYPE=C3D8, ELSET=E\n31, 1, 2, 3, 4, 5, 6, 7, 8\n*MATERIAL, NAME=M\n*ELASTIC\n200., 0.3\n\
+         *SOLID SECTION, ELSET=E, MATERIAL=M\n*BOUNDARY\n1, 1, 3\n2, 1, 3\n3, 1, 3\n4, 1, 3\n\
+         *STEP\n*STATIC\n*DLOAD\nE, P2, 1.\n*END STEP\n",
+    );
+    let report = desk.run(&["solve", "cube.inp", "--format", "json"]).ends_with(0).json();
+    let text = desk.run(&["solve", "cube.inp"]).ends_with(0).stdout;
+    let message = warned(&(report, text), "folded-corner");
+    assert!(
+        message.contains("the Jacobian determinant of element 31 is -2.50e-2 at its node at [0.6, 0.6, 0.6]"),
+        "{message}"
+    );
+}
+
 /// The block lies below its obstacle, but the scene says that the obstacle approaches from above: its closed nodes
 /// would be in tension.
 #[test]

@@ -197,12 +197,6 @@ fn couplings_that_cannot_be_read_are_refused_with_their_line() {
             1,
             "the displacements that are prescribed at reference nodes contradict this equation",
         ),
-        (
-            String::from("*RIGID BODY, NSET=END, REF NODE=9001\n*EQUATION\n1\n9001, 1, 1.\n"),
-            "",
-            2,
-            "node 9001 is the reference of a rigid body or a bolt; equations and springs do not contain such a node",
-        ),
     ] {
         let load = if load.is_empty() { "*CLOAD\nEND, 1, 1.\n" } else { load };
         let (at, message) = refusal(&(deck.clone() + &cards + &step(load)));

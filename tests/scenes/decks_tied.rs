@@ -135,7 +135,6 @@ fn ties_that_cannot_be_read_are_refused_with_their_line() {
         ("*EQUATION\n1\n999, 1, 1.\n", 2, "the deck has no node 999"),
         ("*EQUATION\n0\n", 1, "the equation has no term"),
         ("*RIGID BODY, NSET=END\n", 0, "no reference node; write REF NODE=NUMBER"),
-        ("*RIGID BODY, NSET=Y0, REF NODE=1\n", 0, "`Y0` has nodes of 2 bodies; a rigid body is read in one body"),
         ("*RIGID BODY, NSET=END, REF NODE=9999\n", 0, "the deck has no node 9999"),
         (
             "*RIGID BODY, NSET=END, REF NODE=1\n*TRANSFORM, NSET=Z0\n1., 0., 0., 0., 1., 0.\n",
@@ -148,7 +147,9 @@ fn ties_that_cannot_be_read_are_refused_with_their_line() {
             8,
             "node 5000 is the reference of two rigid bodies, or of a bolt too",
         ),
-        ("*RIGID BODY, ELSET=LEFT, REF NODE=1\n", 0, "the parameter ELSET, which is not read"),
+        ("*RIGID BODY, ELSET=LEFT, REF NODE=1\n", 0, "there is no set of elements `LEFT`"),
+        ("*RIGID BODY, REF NODE=1\n", 0, "is read with one set, of nodes or of elements"),
+        ("*RIGID BODY, NSET=END, REF NODE=1, ROT NODE=1\n", 0, "ROT NODE must be a node of its own"),
     ] {
         let (at, message) = refusal(&(deck.clone() + cards + &step("*CLOAD\nEND, 1, 1.\n")));
         assert!(at == last + line && message.contains(phrase), "{cards}: {at} of {last}: {message}");

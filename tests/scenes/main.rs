@@ -5,6 +5,7 @@ mod concave_obstacles;
 mod contact_scenes;
 mod contacts_found;
 mod decks;
+mod decks_as_written;
 mod decks_bolted;
 mod decks_coupled;
 mod decks_refused;

@@ -138,7 +138,14 @@ fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
         )];
     };
     let extent = match estimate.width {
-        Some(width) => format!("width {}", within(width, estimate.width_uncertainty, &units.length)),
+        Some(width) => {
+            let width = within(width, estimate.width_uncertainty, &units.length);
+            // About an axis only the section has a width.
+            match contact.width {
+                Some(_) => format!("width {width}"),
+                None => format!("width in the section {width}, the radius of a disc"),
+            }
+        }
         None => format!("area {}", within(estimate.area, Some(estimate.area_uncertainty), &square)),
     };
     let peak = within(pressure, estimate.pressure_uncertainty, &units.pressure());

@@ -130,23 +130,29 @@ impl Cell {
         at
     }
 
-    /// Checks that the determinant of the Jacobian is positive at the nodes and the quadrature points of `table`.
+    /// Checks that the determinant of the Jacobian is positive at the quadrature points of `table`, and not zero at the
+    /// nodes; returns the worst node at which it is negative, if there is one.
     ///
     /// # Errors
     /// `NonPositiveJacobian` with the worst point.
-    pub fn check(&self, table: &Tabulated) -> Result<(), NonPositiveJacobian> {
-        let mut worst = NonPositiveJacobian { value: f64::INFINITY, point: 0 };
-        for (point, tabulated) in table.nodes.iter().chain(&table.points).enumerate() {
+    pub fn check(&self, table: &Tabulated) -> Result<Option<NonPositiveJacobian>, NonPositiveJacobian> {
+        let determinants = table.nodes.iter().chain(&table.points).enumerate().map(|(point, tabulated)| {
             let value = determinant(&self.jacobian(&tabulated.derivative), self.reference.dimension);
+            NonPositiveJacobian { value, point }
+        });
+        let worst = |one: NonPositiveJacobian, other: NonPositiveJacobian| {
             // A determinant that is not a number is not positive either.
-            if value.is_nan() || value < worst.value {
-                worst = NonPositiveJacobian { value, point };
-            }
-            if value.is_nan() {
-                break;
-            }
-        }
-        if worst.value > NO_VOLUME { Ok(()) } else { Err(worst) }
+            if one.value.is_nan() || one.value <= other.value { one } else { other }
+        };
+        let Some(found) =
+            determinants.clone().reduce(worst).filter(|found| found.value.is_nan() || found.value <= NO_VOLUME)
+        else {
+            return Ok(None);
+        };
+        let is_solved = |one: NonPositiveJacobian| {
+            if one.point < table.nodes.len() { one.value.abs() > NO_VOLUME } else { one.value > NO_VOLUME }
+        };
+        if determinants.into_iter().all(is_solved) { Ok(Some(found)) } else { Err(found) }
     }
 
     /// J_ij = dx_j/dxi_i, in the unit of the cell: the tangents along the reference coordinates.

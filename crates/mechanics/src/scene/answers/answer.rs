@@ -191,6 +191,12 @@ impl Answer {
         [self.multiplier.as_slice(), &self.of_ties].concat()
     }
 
+    /// The multiplier of the equation of a tie; `None` for one without, as if it follows from others.
+    pub(crate) fn multiplier_of_tie(&self, tie: usize) -> Option<f64> {
+        let rows = self.model.parts.ties.of_tie.get(tie)?;
+        self.of_ties.get(rows.start).filter(|_| !rows.is_empty()).copied()
+    }
+
     /// The answer with other multipliers of the rows: only its pressures are computed again.
     ///
     /// # Errors

@@ -2,5 +2,6 @@
 
 pub(crate) mod answer;
 pub(crate) mod depths;
+pub(crate) mod of_deck;
 pub(crate) mod patch;
 pub(crate) mod segments;

@@ -111,7 +111,14 @@ pub(crate) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a
     mesh.boundary(name).ok_or_else(|| {
         let names: Vec<&str> = mesh.boundaries().iter().map(|boundary| boundary.name.as_str()).collect();
         let meant = nearly(name, names.iter().copied());
-        wrong(path, format!("there is no boundary `{name}`; there are {}{meant}", names.join(", ")))
+        let there = match names.is_empty() {
+            true => {
+                "the mesh has none: name them in Gmsh by physical groups, or in the scene by the `parts` of the mesh"
+                    .into()
+            }
+            false => format!("there are {}", names.join(", ")),
+        };
+        wrong(path, format!("there is no boundary `{name}`; {there}{meant}"))
     })
 }
 

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::deck::{DeckScene, is_deck};
+use super::deck::{DeckScene, Reading, is_deck};
 use super::files::Named;
 use super::json::{line_and_column, parsed, plain, start_of};
 use crate::error::Error;
@@ -20,7 +20,8 @@ impl Scene {
     pub fn located(error: Error, file: &Path, step: Option<usize>) -> Error {
         if is_deck(file) {
             // Only the lines of its entries are wanted.
-            return match DeckScene::read(file, "", (&["outside", "friction"], step)) {
+            let reading = Reading { permits: &["outside", "friction"], step, earlier: &[] };
+            return match DeckScene::read(file, "", reading) {
                 Ok(deck) => deck.located(error),
                 Err(_) => error,
             };

@@ -212,6 +212,21 @@ pub enum Warning {
         /// Number of the load on a single node, from 0.
         load: usize,
     },
+    /// An element is folded at a corner, but not where it is integrated.
+    #[error(
+        "the Jacobian determinant of element {element} is {value:.2e} at its node at {at:?}, but positive where it is integrated, and so \
+         it is for {count} elements: they are solved; stresses at such a corner are not to be trusted; move the node"
+    )]
+    FoldedCorner {
+        /// The number of the first such element: that of a deck, or its place in the mesh from 0.
+        element: usize,
+        /// The node, one coordinate for each axis, in length.
+        at: Vec<f64>,
+        /// The determinant there, relative to the size of the element to the power of its dimension, negative.
+        value: f64,
+        /// Number of such elements.
+        count: usize,
+    },
     /// A body is cut at a plane of symmetry, but nothing holds the cut.
     #[error(
         "no support holds the boundary `{boundary}`: the body can move across this cut, so that it is not half of a \
@@ -295,6 +310,7 @@ impl Warning {
             Warning::DoubledObstacle { .. } => "doubled-obstacle",
             Warning::LoadOnSupport { .. } => "load-on-support",
             Warning::PointLoad { .. } => "point-load",
+            Warning::FoldedCorner { .. } => "folded-corner",
             Warning::FreeSymmetry { .. } => "free-symmetry",
             Warning::CoincidentNodes { .. } => "coincident-nodes",
             Warning::Deck { .. } => "deck",

@@ -36,6 +36,12 @@ impl Shortening {
         Shortening { tie, terms: row.terms.clone(), own: row.own.clone(), force }
     }
 
+    /// The unit vector from the first side to the other.
+    pub fn towards(&self) -> [f64; 3] {
+        let own = self.terms[self.own.clone()].iter();
+        unit(own.fold([0.0; 3], |sum, (_, vector)| [0, 1, 2].map(|axis| sum[axis] + vector[axis])))
+    }
+
     /// Its value at values of the unknowns, in length.
     pub fn value(&self, places: (&DofMap, &Unknowns), dimension: usize, values: &[f64]) -> f64 {
         let (entries, prescribed) = in_unknowns(&self.terms, places, dimension);

@@ -53,6 +53,9 @@ pub struct Resultant {
     /// The shortening of a bolt by its preload, in length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortening: Option<f64>,
+    /// The tension of a bolt, in force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tension: Option<f64>,
 }
 
 /// Displacement and rotation of a rigid face.
@@ -130,6 +133,7 @@ impl Sum {
             travel: None,
             motion: None,
             shortening: None,
+            tension: None,
         }
     }
 }
@@ -300,9 +304,10 @@ impl Model {
             let sum = self.sum_of(&self.parts.tie_forces(of_ties, Some(index)));
             let on = self.name_of_body(first.map(|term| term.0));
             let shortening = ties.shortenings.iter().find(|one| one.tie == index);
+            let tension = shortening.map(|one| dot(sum.force(), one.towards()));
             let shortening =
                 shortening.map(|one| one.value((self.dofs(), &self.parts.unknowns), self.body().dimension(), unknowns));
-            Resultant { on, shortening, ..sum.resultant(self, format!("ties[{index}]")) }
+            Resultant { on, shortening, tension, ..sum.resultant(self, format!("ties[{index}]")) }
         };
         ties.of_tie.iter().enumerate().map(of_tie).collect()
     }

@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::Parts;
 use super::rows::ContactRow;
+use super::ties::terms_of;
 use crate::error::Error;
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::geometry::dot;
 use crate::fem::{Boundary, DofMap, ElasticBody};
 use crate::scene::Warning;
 use crate::scene::input::entry::COORDINATE_ROUNDING;
-use crate::scene::input::schema::{Place, Scene, SupportSpec, SymmetryPlane};
+use crate::scene::input::schema::{EquationSpec, Place, Scene, SupportSpec, SymmetryPlane, TieSpec};
 
 /// A load on the free dofs below this share of the whole load is rounding.
 const NOTHING: f64 = 1e-9;
@@ -29,6 +31,14 @@ impl Scene {
         let mut warnings = self.free_symmetries(body);
         let tied = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));
         warnings.extend(coincident_nodes(body, &tied.flat_map(Boundary::nodes).collect()));
+        warnings.extend(self.folded_corners(body));
+        // An equation hands a force on one of its nodes over to the others.
+        let mut joined = HashSet::new();
+        for tie in &self.ties {
+            if let TieSpec::Equation(EquationSpec { terms, .. }) = tie {
+                joined.extend(terms_of(terms, "ties", body)?.into_iter().map(|(node, _)| node));
+            }
+        }
         for index in 0..self.loads.len() {
             let mut load = vec![0.0; body.nodal_dofs()];
             self.add_load(body, index, &mut load)?;
@@ -38,12 +48,39 @@ impl Scene {
                 warnings.push(Warning::LoadOnSupport { load: index });
             } else if self.loads[index].is_at_points()
                 && body.dimension() > 1
-                && is_on_one_node(&load, body.dimension())
+                && node_alone(&load, body.dimension()).is_some_and(|node| !joined.contains(&node))
             {
                 warnings.push(Warning::PointLoad { load: index });
             }
         }
         Ok(warnings)
+    }
+
+    /// Elements whose Jacobian is negative at a node, although it is positive where they are integrated.
+    fn folded_corners(&self, body: &ElasticBody) -> Option<Warning> {
+        let mesh = body.mesh();
+        let mut tables: Vec<(ElementKind, Tabulated)> = Vec::new();
+        let (mut first, mut count) = (None, 0);
+        for (element, nodes) in mesh.elements().enumerate() {
+            let kind = mesh.kind_of(element);
+            let table = match tables.iter().position(|(of, _)| *of == kind) {
+                Some(place) => place,
+                None => {
+                    tables.push((kind, Tabulated::new(kind.reference(), Rule::Straight)));
+                    tables.len() - 1
+                }
+            };
+            let mut coordinates = [[0.0; 3]; MAX_NODES];
+            coordinates.iter_mut().zip(nodes).for_each(|(at, &node)| *at = mesh.nodes()[node]);
+            if let Ok(Some(folded)) = Cell::new(kind.reference(), &coordinates).check(&tables[table].1) {
+                count += 1;
+                first = first.or(Some((element, nodes.get(folded.point).copied(), folded.value)));
+            }
+        }
+        let (element, node, value) = first?;
+        let at = node.map_or_else(Vec::new, |node| mesh.nodes()[node][..body.dimension()].to_vec());
+        let element = mesh.element_numbers().and_then(|numbers| numbers.get(element).copied()).unwrap_or(element);
+        Some(Warning::FoldedCorner { element, at, value, count })
     }
 
     /// Cuts at planes of symmetry that no support holds.
@@ -62,9 +99,11 @@ impl Scene {
     }
 }
 
-/// Returns `true` if a nodal load is zero on all nodes but one.
-fn is_on_one_node(load: &[f64], dimension: usize) -> bool {
-    load.chunks(dimension).filter(|force| force.iter().any(|&component| component != 0.0)).count() == 1
+/// The node of a nodal load that is zero on all others.
+fn node_alone(load: &[f64], dimension: usize) -> Option<usize> {
+    let forces = load.chunks(dimension).enumerate();
+    let mut loaded = forces.filter(|(_, force)| force.iter().any(|&component| component != 0.0)).map(|(node, _)| node);
+    loaded.next().filter(|_| loaded.next().is_none())
 }
 
 /// Nodes of one body at the same place, unless both are on tied surfaces: the mesh is connected only in the drawing.

@@ -2,7 +2,7 @@
 
 use signorini_mechanics::Error;
 use signorini_mechanics::fem::Formulation;
-use signorini_mechanics::scene::{Answer, ContactRow, Requests};
+use signorini_mechanics::scene::{Answer, ContactRow, ReferenceValues, Requests};
 
 /// CalculiX computes a wedge of two degrees of a body of revolution, and prints its forces and volumes in tables.
 const WEDGES: f64 = 180.0;
@@ -17,11 +17,13 @@ pub(super) struct Content<'a> {
     pub nodes: Vec<(usize, usize)>,
     /// The same of each element.
     pub elements: Vec<(usize, usize)>,
+    /// The nodes that move or are moved, but are no nodes of the mesh.
+    pub references: Vec<ReferenceValues>,
 }
 
 impl<'a> Content<'a> {
     /// # Errors
-    /// [`Error::Mesh`] if the mesh of the answer does not come from a deck.
+    /// [`Error::Mesh`] if the mesh of the answer does not come from a deck, and those of its forces.
     pub fn new(answer: &'a Answer, requests: &'a Requests) -> Result<Self, Error> {
         let mesh = answer.model().mesh();
         let (Some(numbers), Some(elements)) = (mesh.node_numbers(), mesh.element_numbers()) else {
@@ -29,7 +31,8 @@ impl<'a> Content<'a> {
             return Err(Error::Mesh { message: message.into() });
         };
         let (nodes, elements) = (increasing(&numbers), increasing(elements));
-        Ok(Content { answer, requests, numbers, nodes, elements })
+        let references = answer.of_references(requests)?;
+        Ok(Content { answer, requests, numbers, nodes, elements, references })
     }
 
     /// The displacement of each node of the mesh, in length, zero beyond the dimension.
@@ -65,11 +68,29 @@ impl<'a> Content<'a> {
     pub fn temperatures(&self) -> Vec<[f64; 1]> {
         let mut values = vec![[0.0]; self.nodes.len()];
         for &(number, temperature) in &self.requests.temperatures {
-            if let Ok(place) = self.nodes.binary_search_by_key(&number, |node| node.0) {
-                values[self.nodes[place].1] = [temperature];
+            if let Some(node) = self.node(number) {
+                values[node] = [temperature];
             }
         }
         values
+    }
+
+    /// The place of a node in the mesh.
+    pub fn node(&self, number: usize) -> Option<usize> {
+        let place = self.nodes.binary_search_by_key(&number, |node| node.0).ok()?;
+        Some(self.nodes[place].1)
+    }
+
+    /// The values of a node of the deck among those of all nodes of the mesh, or those of a reference node. Nothing
+    /// moves or loads another node without elements.
+    pub fn of_node<const N: usize>(
+        &self,
+        number: usize,
+        of_mesh: &[[f64; N]],
+        of_reference: impl Fn(&ReferenceValues) -> [f64; N],
+    ) -> [f64; N] {
+        let reference = || self.references.iter().find(|reference| reference.number == number).map(&of_reference);
+        self.node(number).map(|node| of_mesh[node]).or_else(reference).unwrap_or([0.0; N])
     }
 
     /// The share of forces and volumes in tables: that of a wedge of a body of revolution.

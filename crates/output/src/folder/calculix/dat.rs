@@ -1,5 +1,6 @@
 //! `NAME.dat`: tables of nodes, elements and contacts.
 
+use std::collections::HashMap;
 use std::io::{self, Write};
 
 use super::content::Content;
@@ -83,9 +84,21 @@ pub(super) fn tables(content: &Content) -> Result<Vec<Table>, Error> {
     let mut tables = Vec::new();
     for table in wanted {
         match table.label.as_str() {
-            "U" => tables.extend(content.of_vectors(table, &content.displacements(), 1.0)?),
-            "RF" => tables.extend(content.of_vectors(table, &content.forces()?, content.share())?),
-            "NT" => tables.extend(content.of_nodes(table, &content.temperatures(), 1.0)?),
+            "U" => {
+                let of_mesh = content.displacements();
+                let value = |number| content.of_node(number, &of_mesh, |node| first(node.displacement));
+                tables.extend(content.of_vectors(table, value)?);
+            }
+            "RF" => {
+                let (of_mesh, share) = (content.forces()?, content.share());
+                let value = |number| content.of_node(number, &of_mesh, |node| first(node.force));
+                tables.extend(content.of_vectors(table, |number| value(number).map(|part| share * part))?);
+            }
+            "NT" => {
+                let given: HashMap<usize, f64> = content.requests.temperatures.iter().copied().collect();
+                let value = |number: &usize| (*number, [given.get(number).copied().unwrap_or_default()]);
+                tables.extend(with_sum(table, increasing(&table.numbers).iter().map(value).collect())?);
+            }
             "S" | "E" => tables.push(content.of_points(table)?),
             "EVOL" | "ELSE" => tables.extend(content.of_elements(table)?),
             "CDIS" | "CSTR" => tables.push(content.of_contacts(table)?),
@@ -96,31 +109,19 @@ pub(super) fn tables(content: &Content) -> Result<Vec<Table>, Error> {
 }
 
 impl Content<'_> {
-    /// Vectors of nodes along their local axes if the table asks for it, and their sum along x, y and z, times `share`.
-    fn of_vectors(&self, table: &RequestedTable, vectors: &[[f64; 3]], share: f64) -> Result<Vec<Table>, Error> {
-        let mut tables = self.of_nodes(table, vectors, share)?;
+    /// Vectors of nodes along their local axes if the table asks for it, and their sum along x, y and z.
+    fn of_vectors(&self, table: &RequestedTable, vector: impl Fn(usize) -> [f64; 3]) -> Result<Vec<Table>, Error> {
+        let numbers = increasing(&table.numbers);
+        let mut tables = with_sum(table, numbers.iter().map(|&number| (number, vector(number))).collect())?;
         if table.parts && table.is_local {
-            let nodes = placed(&table.numbers, &self.nodes).into_iter();
-            for (line, (number, node)) in tables.iter_mut().take(1).flat_map(|values| &mut values.lines).zip(nodes) {
+            for (line, number) in tables.iter_mut().take(1).flat_map(|values| &mut values.lines).zip(numbers) {
                 if let Some(axes) = self.requests.axes.get(&number) {
-                    line.values = axes.map(|axis| share * dot(axis, vectors[node])).to_vec();
+                    line.values = axes.map(|axis| dot(axis, vector(number))).to_vec();
                     line.is_local = true;
                 }
             }
         }
         Ok(tables)
-    }
-
-    /// Values of nodes and their sum, times `share`.
-    fn of_nodes<const N: usize>(
-        &self,
-        table: &RequestedTable,
-        values: &[[f64; N]],
-        share: f64,
-    ) -> Result<Vec<Table>, Error> {
-        let found = placed(&table.numbers, &self.nodes);
-        let lines = found.into_iter().map(|(number, node)| (number, values[node].map(|value| share * value)));
-        with_sum(table, lines.collect())
     }
 
     fn of_elements(&self, table: &RequestedTable) -> Result<Vec<Table>, Error> {
@@ -219,6 +220,17 @@ fn with_sum<const N: usize>(table: &RequestedTable, values: Vec<(usize, [f64; N]
         tables.push(Table::new(of_sum, vec![("      ".into(), sum)])?);
     }
     Ok(tables)
+}
+
+fn increasing(numbers: &[usize]) -> Vec<usize> {
+    let mut numbers = numbers.to_vec();
+    numbers.sort_unstable();
+    numbers
+}
+
+/// The displacement or the force of a reference node, without its rotation or moment.
+fn first([x, y, z, ..]: [f64; 6]) -> [f64; 3] {
+    [x, y, z]
 }
 
 /// Those of the numbers that are in the mesh, increasing, each with its place there.

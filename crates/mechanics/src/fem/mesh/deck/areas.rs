@@ -14,11 +14,11 @@ impl Deck {
         of_faces.chain(surface.bare.iter().copied()).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// The nodes of the faces of a surface, each with the integral of its shape function over them: an area, or a
-    /// length in the plane. At a corner of a quadratic face it may be zero or negative.
-    pub fn areas(&self, surface: &Surface) -> BTreeMap<usize, f64> {
-        let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
-        for &face in &surface.faces {
+    /// The nodes of faces, each with the integrals of its shape function and of that times the outward normal: an area,
+    /// or a length in the plane. At a corner of a quadratic face it may be zero or negative.
+    pub fn areas(&self, faces: &[(usize, usize)]) -> BTreeMap<usize, (f64, [f64; 3])> {
+        let mut areas: BTreeMap<usize, (f64, [f64; 3])> = BTreeMap::new();
+        for &face in faces {
             let reference = self.element_list[face.0].kind.facet().reference();
             let nodes: Vec<usize> = self.nodes_of_face(face).collect();
             let mut coordinates = [[0.0; 3]; MAX_NODES];
@@ -26,9 +26,11 @@ impl Deck {
             let cell = Cell::new(reference, &coordinates);
             let unit = cell.unit().powi(reference.dimension as i32);
             for point in &Tabulated::with_rule(reference, reference.quadrature.to_vec()).points {
-                let area = length(cell.area_vector(&point.derivative)) * point.weight * unit;
+                let vector = cell.area_vector(&point.derivative).map(|part| part * point.weight * unit);
                 for (&node, share) in nodes.iter().zip(point.shape) {
-                    *areas.entry(node).or_default() += share * area;
+                    let (area, outward) = areas.entry(node).or_default();
+                    *area += share * length(vector);
+                    outward.iter_mut().zip(vector).for_each(|(sum, part)| *sum += share * part);
                 }
             }
         }

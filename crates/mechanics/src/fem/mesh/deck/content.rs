@@ -1,17 +1,18 @@
 //! The content of a deck: nodes, elements, sets, surfaces.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
 use super::card::{Card, Place, key};
 
-use super::kinds::{DeckElementType, Space, element_type};
+use super::kinds::{DeckElementType, Space, element_type, refusal};
 use super::sets::{Numbered, Sets};
 use super::source::Source;
 use super::springs::{SpringElement, SpringElements, SpringType};
 use super::surfaces::{FacePressure, Surfaces};
 use crate::error::Error;
 use crate::fem::element::ElementKind;
+use crate::fem::geometry::{length, minus};
 use crate::fem::mesh::MAX_NODES;
 use signorini_qp::Forest;
 
@@ -53,6 +54,7 @@ pub(crate) struct Deck {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DeckElement {
     pub of_type: &'static DeckElementType,
+    /// The element of this library for it; any for one that is left out.
     pub kind: ElementKind,
     pub place: Place,
     /// Index of the first node of the element in the connectivity of the deck.
@@ -115,6 +117,7 @@ impl Deck {
         cards.iter().filter(|card| card.is("ELEMENT")).try_for_each(|card| deck.read_springs(card))?;
         for card in &cards {
             if card.is("NSET") {
+                deck.add_nodes_of_elements(card)?;
                 deck.node_sets.read(&deck.source, card, &deck.nodes)?;
             } else if card.is("ELSET") && deck.begins_with_spring(card) {
                 deck.springs.sets.read(&deck.source, card, &deck.springs.numbers)?;
@@ -122,6 +125,7 @@ impl Deck {
                 deck.element_sets.read(&deck.source, card, &deck.elements)?;
             }
         }
+        deck.leave_out(&cards)?;
         for card in &cards {
             if card.is("SURFACE") {
                 deck.read_surface(card)?;
@@ -142,7 +146,9 @@ impl Deck {
     }
 
     fn read_nodes(&mut self, card: &Card) -> Result<(), Error> {
-        let first = self.nodes.len();
+        let mut members = Vec::with_capacity(card.lines.len());
+        // The first line of each kind is named.
+        let (mut again, mut longer) = (None, None);
         for line in &card.lines {
             let mut fields = self.source.fields(line);
             let number = fields.whole("the number of a node")?;
@@ -150,19 +156,102 @@ impl Deck {
             for (value, name) in at.iter_mut().zip(["x", "y", "z"]) {
                 *value = fields.finite_or_zero(format_args!("the {name} of node {number}"))?;
             }
-            fields.end()?;
-            if !self.nodes.add(number) {
-                return Err(fields.fault(format!("node {number} is given twice")));
+            if fields.has_more() && longer.is_none() {
+                longer =
+                    Some((line.place, format!("values follow the coordinates of node {number}, and are passed over")));
             }
-            if self.nodes.len() > MAX_NODES {
-                return Err(fields.fault(format!("the deck has more than the {MAX_NODES} nodes that are allowed")));
+            let place = match self.nodes.place(number) {
+                Some(place) => place,
+                None if self.nodes.len() == MAX_NODES => {
+                    return Err(fields.fault(format!("the deck has more than the {MAX_NODES} nodes that are allowed")));
+                }
+                None => {
+                    self.nodes.add(number);
+                    self.at.push(at);
+                    self.node_places.push(line.place);
+                    self.nodes.len() - 1
+                }
+            };
+            let moved = length(minus(at, self.at[place]));
+            if moved > 0.0 && again.is_none() {
+                let message =
+                    format!("node {number} is given twice, {moved:.6e} apart; the last place counts, as in CalculiX");
+                again = Some((line.place, message));
             }
-            self.at.push(at);
-            self.node_places.push(line.place);
+            (self.at[place], self.node_places[place]) = (at, line.place);
+            members.push(place);
         }
+        self.source.noted.extend(again.into_iter().chain(longer));
         if let Some(set) = self.node_sets.name_in(&self.source, card)? {
-            self.node_sets.extend(set, first..self.nodes.len());
+            members.sort_unstable();
+            members.dedup();
+            self.node_sets.extend(set, members);
         }
+        Ok(())
+    }
+
+    /// Adds the nodes of a set of elements to the set of nodes that a card makes of them.
+    fn add_nodes_of_elements(&mut self, card: &Card) -> Result<(), Error> {
+        let (Some(elements), Some(name)) = (card.value("ELSET"), self.node_sets.name_in(&self.source, card)?) else {
+            return Ok(());
+        };
+        let members = self.element_sets.members(elements, &self.elements);
+        let members = members.map_err(|message| self.source.fault(card.place, message))?;
+        let nodes: BTreeSet<usize> = members.iter().flat_map(|&element| self.nodes_of(element)).copied().collect();
+        self.node_sets.extend(name, nodes);
+        Ok(())
+    }
+
+    /// Leaves out lines and sheets that no section names and that lie on elements of more dimensions, as mesh
+    /// generators write them beside a body. Their sets lose them; sets of their nodes stay.
+    ///
+    /// # Errors
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for other elements that are not read.
+    fn leave_out(&mut self, cards: &[Card]) -> Result<(), Error> {
+        let dimension = |element: usize| self.element_list[element].of_type.dimension();
+        let most = (0..self.elements.len()).map(dimension).max().unwrap_or_default();
+        let mut named = vec![false; self.elements.len()];
+        for card in cards.iter().filter(|card| card.is("SOLIDSECTION")) {
+            let set = card.value("ELSET").and_then(|name| self.element_sets.named(name));
+            set.into_iter().flat_map(|set| &set.members).for_each(|&element| named[element] = true);
+        }
+        let is_beside = |element: usize| dimension(element) < most && !named[element];
+        let mut of_body = vec![false; self.nodes.len()];
+        for element in (0..self.elements.len()).filter(|&element| !is_beside(element)) {
+            self.nodes_of(element).iter().for_each(|&node| of_body[node] = true);
+        }
+        let is_left_out =
+            |element: usize| is_beside(element) && self.nodes_of(element).iter().all(|&node| of_body[node]);
+        let (out, kept): (Vec<usize>, Vec<usize>) = (0..self.elements.len()).partition(|&element| is_left_out(element));
+        if let Some(wrong) =
+            kept.iter().map(|&element| self.element_list[element]).find(|one| one.of_type.kind().is_none())
+        {
+            let is_card = |card: &&Card| {
+                card.is("ELEMENT") && card.value("TYPE").is_some_and(|own| key(own) == wrong.of_type.name)
+            };
+            let place = cards.iter().find(is_card).map_or(wrong.place, |card| card.place);
+            let message = format!(
+                "{}; such elements are left out if no section names them and all their nodes belong to the body",
+                refusal(wrong.of_type.name)
+            );
+            return Err(self.source.fault(place, message));
+        }
+        let Some(&first) = out.first() else { return Ok(()) };
+        let types: BTreeSet<&str> = out.iter().map(|&element| self.element_list[element].of_type.name).collect();
+        let types = types.into_iter().collect::<Vec<_>>().join(", ");
+        let message =
+            format!("{} elements of {types} lie on the body, no section names them: they are left out", out.len());
+        self.source.noted.push((self.element_list[first].place, message));
+        let (list, connectivity) = (std::mem::take(&mut self.element_list), std::mem::take(&mut self.connectivity));
+        let mut places = vec![None; list.len()];
+        for (place, &element) in kept.iter().enumerate() {
+            let DeckElement { start, of_type, .. } = list[element];
+            places[element] = Some(place);
+            self.element_list.push(DeckElement { start: self.connectivity.len(), ..list[element] });
+            self.connectivity.extend(&connectivity[start..start + of_type.nodes]);
+        }
+        self.elements.renumber(&places);
+        self.element_sets.renumber(&places);
         Ok(())
     }
 
@@ -173,7 +262,9 @@ impl Deck {
         if SpringType::named(&key(name)).is_some() {
             return Ok(());
         }
-        let (of_type, kind) = element_type(&key(name)).map_err(|message| self.source.fault(card.place, message))?;
+        let of_type = element_type(&key(name)).map_err(|message| self.source.fault(card.place, message))?;
+        let kind = of_type.kind().unwrap_or(ElementKind::ALL[0]);
+        let mut longer = None;
         let first = self.elements.len();
         // An element may go on in the next lines.
         let mut open: Option<(usize, Place)> = None;
@@ -196,7 +287,11 @@ impl Deck {
                 let node = fields.whole(format_args!("a node of element {number}"))?;
                 self.connectivity.push(node);
             }
-            fields.end()?;
+            if fields.has_more() && longer.is_none() {
+                let message =
+                    format!("values follow the {} nodes of element {number}, and are passed over", of_type.nodes);
+                longer = Some((line.place, message));
+            }
             open = (self.connectivity.len() < wanted).then_some((number, place));
         }
         if let Some((number, place)) = open {
@@ -204,6 +299,7 @@ impl Deck {
             let message = format!("element {number} has {found} nodes, but {} has {}", of_type.name, of_type.nodes);
             return Err(self.source.fault(place, message));
         }
+        self.source.noted.extend(longer);
         if let Some(set) = self.element_sets.name_in(&self.source, card)? {
             self.element_sets.extend(set, first..self.elements.len());
         }

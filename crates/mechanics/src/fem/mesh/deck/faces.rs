@@ -87,6 +87,11 @@ impl Deck {
     /// The faces of an element, or of the elements of a set: `S1` or `P1` and so on.
     fn faces(&self, target: &str, label: &str, letter: char) -> Result<Vec<(usize, usize)>, String> {
         let elements = self.element_sets.members(target, &self.elements)?;
+        if elements.is_empty() {
+            return Err(format!(
+                "the set `{target}` has no elements of a body; name faces of the elements of the body"
+            ));
+        }
         let number = key(label).strip_prefix(letter).and_then(|number| number.parse::<usize>().ok());
         let mut faces = Vec::with_capacity(elements.len());
         for element in elements {
@@ -105,6 +110,13 @@ impl Deck {
         Ok(faces)
     }
 
+    /// The faces of a surface on the outside of the bodies, and those that two elements share.
+    pub fn outside_and_inside(&self, surface: &Surface) -> (Vec<Face>, Vec<Face>) {
+        let nodes: Vec<usize> = surface.faces.iter().flat_map(|&face| self.nodes_of_face(face)).collect();
+        let outside: HashSet<Face> = self.faces_on(&nodes).into_iter().collect();
+        surface.faces.iter().partition(|face| outside.contains(face))
+    }
+
     /// Makes a surface of the faces of each value of a card *DLOAD. A face that occurs again is in a second surface:
     /// pressures add up.
     pub(super) fn read_pressures(&mut self, index: usize, card: &Card) -> Result<(), Error> {
@@ -119,6 +131,8 @@ impl Deck {
             let value = fields.finite("the pressure")?;
             fields.end()?;
             let faces = self.faces(&target, &label, 'P').map_err(|message| fields.fault(message))?;
+            let repeated = self.element_sets.repetition(&target, &self.elements);
+            self.source.noted.extend(repeated.map(|message| (line.place, message)));
             match groups.last_mut().filter(|group| group.value == value) {
                 Some(group) => {
                     group.name = None;

@@ -73,14 +73,8 @@ impl<'a> Fields<'a> {
     pub fn finite(&mut self, what: impl Display) -> Result<f64, Error> {
         let field = self.next().filter(|field| !field.is_empty());
         let Some(field) = field else { return Err(self.fault(format!("{what} is missing"))) };
-        let value: Option<f64> = number(field).or_else(|| {
-            // The exponent of a double precision number of Fortran.
-            number(
-                &field.iter().map(|&byte| if matches!(byte, b'd' | b'D') { b'e' } else { byte }).collect::<Vec<u8>>(),
-            )
-        });
-        match value {
-            Some(value) if value.is_finite() => Ok(value),
+        match number(field).or_else(|| number(&with_exponent(field))) {
+            Some(value) if f64::is_finite(value) => Ok(value),
             _ => Err(self.wrong(field, what, "a finite number")),
         }
     }
@@ -97,6 +91,11 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
+    /// Passes over further fields; `true` if there is one that is not empty.
+    pub fn has_more(&mut self) -> bool {
+        std::iter::from_fn(|| self.next()).any(|field| !field.is_empty())
+    }
+
     pub fn fault(&self, message: impl Into<String>) -> Error {
         self.source.fault(self.place, message)
     }
@@ -109,4 +108,19 @@ impl<'a> Fields<'a> {
 /// A number as text; also one that is only part of a field in other languages, such as `1.` and `.3`.
 fn number<T: FromStr>(field: &[u8]) -> Option<T> {
     std::str::from_utf8(field).ok().and_then(|text| text.parse().ok())
+}
+
+/// A number of Fortran with the letter of its exponent: `1d5` and `1+5` are `1e5`.
+fn with_exponent(field: &[u8]) -> Vec<u8> {
+    let mut text = Vec::with_capacity(field.len() + 1);
+    for &byte in field {
+        match byte {
+            b'd' | b'D' => text.push(b'e'),
+            b'+' | b'-' if text.last().is_some_and(|last| last.is_ascii_digit() || *last == b'.') => {
+                text.extend([b'e', byte]);
+            }
+            _ => text.push(byte),
+        }
+    }
+    text
 }

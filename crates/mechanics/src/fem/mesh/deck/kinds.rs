@@ -13,6 +13,9 @@ pub(crate) enum Space {
     PlaneStrain,
     Axisymmetric,
     Solid,
+    /// Lines and sheets, which mesh generators write beside a body: they are left out where they lie on it.
+    Line,
+    Sheet,
 }
 
 /// An element type of decks, with the element of this library for it.
@@ -38,9 +41,9 @@ const REDUCED_QUADRATIC: &str = "with full instead of reduced integration, and t
 const EXPANDED: &str = "with no stress across the plane at any point; CalculiX takes solid elements, which are a little stiffer near supports";
 const WEDGE: &str = "of a full circle; CalculiX takes a wedge of two degrees with flat sides, so that forces of pressures differ by 2e-4";
 
-/// All elements that are read.
-pub(crate) static TYPES: [DeckElementType; 25] = {
-    use Space::{Axisymmetric, PlaneStrain, PlaneStress, Solid};
+/// All elements that are read, and those that are left out where they lie on a body.
+pub(crate) static TYPES: [DeckElementType; 38] = {
+    use Space::{Axisymmetric, Line, PlaneStrain, PlaneStress, Sheet, Solid};
     [
         element("C3D4", Solid, 4, &[]),
         element("C3D8", Solid, 8, &[]),
@@ -67,26 +70,50 @@ pub(crate) static TYPES: [DeckElementType; 25] = {
         element("CAX6", Axisymmetric, 6, &[WEDGE]),
         element("CAX8", Axisymmetric, 8, &[WEDGE]),
         element("CAX8R", Axisymmetric, 8, &[REDUCED_QUADRATIC, WEDGE]),
+        element("T2D2", Line, 2, &[]),
+        element("T3D2", Line, 2, &[]),
+        element("T3D3", Line, 3, &[]),
+        element("B31", Line, 2, &[]),
+        element("B32", Line, 3, &[]),
+        element("S3", Sheet, 3, &[]),
+        element("S4", Sheet, 4, &[]),
+        element("S4R", Sheet, 4, &[]),
+        element("S6", Sheet, 6, &[]),
+        element("S8", Sheet, 8, &[]),
+        element("S8R", Sheet, 8, &[]),
+        element("M3D3", Sheet, 3, &[]),
+        element("M3D4", Sheet, 4, &[]),
     ]
 };
 
 impl DeckElementType {
-    /// The nearest element of this library: the one with as many nodes and dimensions.
+    /// Number of dimensions of the element itself.
+    pub fn dimension(&self) -> usize {
+        match self.space {
+            Space::Solid => 3,
+            Space::Line => 1,
+            _ => 2,
+        }
+    }
+
+    /// The nearest element of this library: the one with as many nodes and dimensions; `None` for what is left out.
     pub fn kind(&self) -> Option<ElementKind> {
-        let dimension = if self.space == Space::Solid { 3 } else { 2 };
-        ElementKind::ALL.into_iter().find(|kind| kind.nodes() == self.nodes && kind.dimension() == dimension)
+        let is_read = !matches!(self.space, Space::Line | Space::Sheet);
+        let is_near = |kind: &ElementKind| kind.nodes() == self.nodes && kind.dimension() == self.dimension();
+        ElementKind::ALL.into_iter().find(|kind| is_read && is_near(kind))
     }
 }
 
 /// The element of this name in capitals.
 ///
 /// # Errors
-/// A sentence that names what it is and what is read.
-pub(super) fn element_type(name: &str) -> Result<(&'static DeckElementType, ElementKind), String> {
-    let found = TYPES.iter().find(|element| element.name == name);
-    if let Some(found) = found.and_then(|element| Some((element, element.kind()?))) {
-        return Ok(found);
-    }
+/// As [`refusal`].
+pub(super) fn element_type(name: &str) -> Result<&'static DeckElementType, String> {
+    TYPES.iter().find(|element| element.name == name).ok_or_else(|| refusal(name))
+}
+
+/// A sentence that names what an element is that is not read, and what is read.
+pub(super) fn refusal(name: &str) -> String {
     let family = match name {
         _ if name.starts_with("C3D6") || name.starts_with("C3D15") => "wedges",
         _ if name.starts_with("C3D") => "elements in space of another form",
@@ -99,6 +126,7 @@ pub(super) fn element_type(name: &str) -> Result<(&'static DeckElementType, Elem
         _ if name.starts_with('M') => "membranes or masses",
         _ => "elements of this type",
     };
-    let names: Vec<&str> = TYPES.iter().map(|element| element.name).collect();
-    Err(format!("the element type {name} is not read: {family} are not modelled; there are {}", names.join(", ")))
+    let read = TYPES.iter().filter(|element| element.kind().is_some());
+    let names: Vec<&str> = read.map(|element| element.name).collect();
+    format!("the element type {name} is not read: {family} are not modelled; there are {}", names.join(", "))
 }

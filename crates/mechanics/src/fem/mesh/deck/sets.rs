@@ -18,11 +18,19 @@ pub(crate) struct Numbered {
 impl Numbered {
     /// Adds the thing of this number; `false` if there is one.
     pub fn add(&mut self, number: usize) -> bool {
-        if self.places.insert(number, self.numbers.len()).is_some() {
+        if self.places.contains_key(&number) {
             return false;
         }
+        self.places.insert(number, self.numbers.len());
         self.numbers.push(number);
         true
+    }
+
+    /// Leaves out those that have no new place; the others keep their order.
+    pub fn renumber(&mut self, places: &[Option<usize>]) {
+        let all = std::mem::take(self);
+        let kept = all.numbers.into_iter().zip(places).filter(|(_, place)| place.is_some());
+        kept.for_each(|(number, _)| _ = self.add(number));
     }
 
     pub fn len(&self) -> usize {
@@ -50,6 +58,8 @@ impl Numbered {
 pub(crate) struct NamedSet {
     pub name: String,
     pub members: Vec<usize>,
+    /// A member that is given several times; it counts once.
+    pub repeated: Option<usize>,
 }
 
 /// Sets of one kind of thing; names that differ only in case or blanks are one name.
@@ -71,12 +81,31 @@ impl Sets {
         let next = self.all.len();
         let place = *self.places.entry(key(name)).or_insert(next);
         if place == next {
-            self.all.push(NamedSet { name: name.into(), members: Vec::new() });
+            self.all.push(NamedSet { name: name.into(), members: Vec::new(), repeated: None });
         }
-        let own = &mut self.all[place].members;
+        let NamedSet { members: own, repeated, .. } = &mut self.all[place];
         own.extend(members);
         own.sort_unstable();
+        *repeated = repeated.or(own.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0]));
         own.dedup();
+    }
+
+    /// A sentence for a set that is loaded, although a member is given in it several times.
+    pub fn repetition(&self, target: &str, of: &Numbered) -> Option<String> {
+        let NamedSet { name, repeated, .. } = self.named(target)?;
+        let number = of.numbers[(*repeated)?];
+        Some(format!(
+            "{} {number} is in the set `{name}` several times; it is loaded once, CalculiX loads it each time",
+            self.of
+        ))
+    }
+
+    /// Renumbers the members; those without a new place are left out.
+    pub fn renumber(&mut self, places: &[Option<usize>]) {
+        for set in &mut self.all {
+            set.members = set.members.iter().filter_map(|&member| places[member]).collect();
+            set.repeated = set.repeated.and_then(|member| places[member]);
+        }
     }
 
     pub fn named(&self, name: &str) -> Option<&NamedSet> {
@@ -104,7 +133,7 @@ impl Sets {
             let message = format!("{} has no name; write {}=NAME", card.name, self.parameter());
             return Err(source.fault(card.place, message));
         };
-        let mut members = Vec::new();
+        let (mut members, mut repeated) = (Vec::new(), None);
         for line in &card.lines {
             let mut fields = source.fields(line);
             if card.has("GENERATE") {
@@ -114,10 +143,11 @@ impl Sets {
             while fields.clone().next().is_some() {
                 if let Some(target) = fields.text() {
                     members.extend(self.members(&target, of).map_err(|message| fields.fault(message))?);
+                    repeated = repeated.or(self.named(&target).and_then(|set| set.repeated));
                 }
             }
         }
-        self.extend(name, members);
+        self.extend(name, members.into_iter().chain(repeated));
         Ok(())
     }
 

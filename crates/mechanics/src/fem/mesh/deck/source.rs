@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::card::{Card, Line, Place};
+use super::card::{Card, Line, Place, key};
 use crate::error::Error;
 use signorini_qp as qp;
 use signorini_qp::file::read_capped;
@@ -18,6 +18,13 @@ const MOST_FILES: usize = 1000;
 /// Longest message, in characters.
 const LONGEST: usize = 500;
 
+/// The parameters of cards that have no value.
+const FLAGS: [&str; 9] =
+    ["GENERATE", "NLGEOM", "INTERNAL", "UNSORTED", "DIRECT", "PERTURBATION", "SMALLSLIDING", "FIXED", "TIMERESET"];
+
+/// The mark with which some editors begin a file of UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Error for a file without a keyword; it quotes no content, which may be private.
 const NO_DECK: &str = "this is not an input deck: a keyword, as *NODE, must begin here";
 
@@ -27,6 +34,8 @@ pub(crate) struct Source {
     /// The deck itself, then the files that it includes, each with its content.
     files: Vec<(PathBuf, Vec<u8>)>,
     pub cards: Vec<Card>,
+    /// What is read, but may not be meant: a sentence with its place.
+    pub noted: Vec<(Place, String)>,
     bytes: u64,
 }
 
@@ -112,10 +121,10 @@ impl Reader<'_> {
         self.open.push(path.canonicalize().unwrap_or_else(|_| path.into()));
         let file = source.files.len() as u32;
         source.files.push((path.into(), Vec::new()));
-        // A keyword whose line ends with a comma goes on in the next line.
+        // A keyword whose line ends with a comma goes on in the next line, if that is a parameter.
         let mut keyword: Option<(Place, String)> = None;
-        let mut start = 0;
-        for (index, whole) in content.split(|&byte| byte == b'\n').enumerate() {
+        let mut start = if content.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+        for (index, whole) in content[start..].split(|&byte| byte == b'\n').enumerate() {
             let (text, place) = (whole.trim_ascii(), Place { file, line: index as u32 + 1 });
             let begin = start + (whole.len() - whole.trim_ascii_start().len());
             start += whole.len() + 1;
@@ -123,17 +132,20 @@ impl Reader<'_> {
                 continue;
             }
             match keyword.take() {
-                None if text.starts_with(b"*") => keyword = Some((place, String::from_utf8_lossy(text).into_owned())),
-                None => match source.cards.last_mut() {
-                    Some(card) => card.lines.push(Line { place, start: begin, end: begin + text.len() }),
-                    None => return Err(source.fault(place, NO_DECK)),
-                },
-                Some((at, begun)) => keyword = Some((at, begun + &String::from_utf8_lossy(text))),
+                Some((at, begun)) if begun.ends_with(',') && is_parameter(text) => {
+                    keyword = Some((at, begun + &String::from_utf8_lossy(text)));
+                    continue;
+                }
+                Some((at, begun)) => self.card(source, at, &begun)?,
+                None => {}
             }
-            if keyword.as_ref().is_some_and(|(_, text)| !text.ends_with(','))
-                && let Some((place, text)) = keyword.take()
-            {
-                self.card(source, place, &text)?;
+            if text.starts_with(b"*") {
+                keyword = Some((place, String::from_utf8_lossy(text).into_owned()));
+                continue;
+            }
+            match source.cards.last_mut() {
+                Some(card) => card.lines.push(Line { place, start: begin, end: begin + text.len() }),
+                None => return Err(source.fault(place, NO_DECK)),
             }
         }
         if let Some((place, text)) = keyword {
@@ -150,6 +162,13 @@ impl Reader<'_> {
         let mut names = HashSet::new();
         if let Some((name, _)) = card.parameters.iter().find(|(name, _)| !names.insert(name.as_str())) {
             return Err(source.fault(place, format!("{} has {name} twice", card.name)));
+        }
+        if text.ends_with(',') {
+            let message = format!(
+                "{} ends in a comma, but no parameter follows: the next line is read as data, or as a card of its own",
+                card.name
+            );
+            source.noted.push((place, message));
         }
         if !card.is("INCLUDE") {
             source.cards.push(card);
@@ -176,4 +195,10 @@ impl Reader<'_> {
         let content = source.content(&path).map_err(|error| source.fault(place, error.to_string()))?;
         self.file(source, &path, content)
     }
+}
+
+/// Returns `true` for a line that goes on with the parameters of a keyword: its first one has a value, or needs none.
+fn is_parameter(text: &[u8]) -> bool {
+    let first = String::from_utf8_lossy(text.split(|&byte| byte == b',').next().unwrap_or_default()).into_owned();
+    !text.starts_with(b"*") && (first.contains('=') || FLAGS.contains(&key(&first).as_str()))
 }

@@ -159,7 +159,12 @@ fn kind(file: &GmshFile, elements: &[Element]) -> Result<ElementKind, Error> {
         [(cell, _, line)] => accepted(cell).map_err(|reason| file.fault(line, reason)),
         [_, (.., line), ..] => {
             let found: Vec<String> = counts.iter().map(|(cell, count, _)| format!("{count} {}", cell.plural)).collect();
-            Err(file.fault(line, format!("the body mixes {}; it must have one kind of element", found.join(", "))))
+            let message = format!(
+                "the body mixes {}; it must have one kind of element: mesh it again (in Gmsh, `Recombine` all of it, or nothing), or name \
+                 a `group` of one kind",
+                found.join(", ")
+            );
+            Err(file.fault(line, message))
         }
     }
 }

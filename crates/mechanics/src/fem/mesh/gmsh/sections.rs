@@ -48,6 +48,10 @@ pub(super) fn read(file: &Path, content: &[u8]) -> Result<GmshFile, Error> {
             (b"Elements", Some(Version::V4)) => version4::elements(&mut source, &entities, &mut content)?,
             (b"Nodes", _) => version2::nodes(&mut source, &mut content)?,
             (b"Elements", _) => version2::elements(&mut source, &mut content)?,
+            (b"ParametricNodes", _) => {
+                let message = "the section $ParametricNodes is not read; save the mesh without parametric coordinates (in Gmsh, `Mesh.SaveParametric = 0`)";
+                return Err(source.fault(message));
+            }
             (b"PartitionedEntities", _) => {
                 return Err(source.fault("the mesh is partitioned; save it in one part"));
             }

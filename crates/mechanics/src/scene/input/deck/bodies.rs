@@ -32,8 +32,13 @@ pub(super) fn name_of_node(deck: &Deck, node: usize) -> Option<String> {
 
 /// The names of a surface in each body that has some of its faces, with the bodies.
 pub(super) fn names_of_surface(deck: &Deck, surface: &Surface) -> Vec<(usize, String)> {
-    let bodies: BTreeSet<usize> = surface.faces.iter().map(|&(element, _)| deck.body_of_element[element]).collect();
-    bodies.into_iter().map(|body| (body, name_in(body, &surface.name))).collect()
+    names_of_faces(deck, &surface.name, &surface.faces)
+}
+
+/// The names of a surface in each body that has some of these faces of it, with the bodies.
+pub(super) fn names_of_faces(deck: &Deck, surface: &str, faces: &[(usize, usize)]) -> Vec<(usize, String)> {
+    let bodies: BTreeSet<usize> = faces.iter().map(|&(element, _)| deck.body_of_element[element]).collect();
+    bodies.into_iter().map(|body| (body, name_in(body, surface))).collect()
 }
 
 /// The body of a surface and its name in the scene.

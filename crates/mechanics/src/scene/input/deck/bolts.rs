@@ -47,6 +47,11 @@ impl Bolts {
         Ok(bolts)
     }
 
+    /// The nodes whose direction 1 is the shortening of a bolt, in the order of the bolts.
+    pub fn references(&self) -> impl Iterator<Item = usize> + '_ {
+        self.all.iter().map(|bolt| bolt.reference)
+    }
+
     /// Returns `true` for a node whose direction 1 is the shortening of a bolt.
     pub fn is_reference(&self, node: usize) -> bool {
         self.all.iter().any(|bolt| bolt.reference == node)

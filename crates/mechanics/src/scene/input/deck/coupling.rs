@@ -1,8 +1,10 @@
-//! Couplings: the cards *COUPLING, each followed by *KINEMATIC or *DISTRIBUTING, as equations between the nodes of a
-//! surface and the displacement U and the rotation R of a reference node.
+//! Couplings: the cards *RIGID BODY, and *COUPLING, each followed by *KINEMATIC or *DISTRIBUTING, as equations between
+//! nodes and the displacement U and the rotation R of a reference node.
 //!
 //! # Source
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, keywords *COUPLING, *KINEMATIC, *DISTRIBUTING.
+
+use std::collections::BTreeSet;
 
 use super::sums::{Equation, Sum};
 use crate::error::Error;
@@ -22,21 +24,35 @@ pub(super) enum Kind {
     Distributing([bool; 3]),
 }
 
-/// A reference node that is joined to the nodes of a surface.
+/// The nodes that a coupling joins to its reference node.
+#[derive(Clone, Debug)]
+pub(super) enum Joined {
+    /// Those of the surface of this name.
+    Surface(String),
+    /// Those of a set, with its name.
+    Nodes(String, Vec<usize>),
+}
+
+/// A reference node that is joined to other nodes.
 #[derive(Clone, Debug)]
 pub(super) struct Coupling {
     pub reference: usize,
-    pub surface: String,
+    /// The node whose displacements are the rotations of the reference node, if they have one of their own.
+    pub rotation: Option<usize>,
+    pub nodes: Joined,
     pub kind: Kind,
     pub place: Place,
 }
 
-/// The couplings of a deck.
+/// The couplings of a deck, rigid bodies first.
 ///
 /// # Errors
 /// An error with the line for a surface or a node that does not exist, and for directions outside 1 to 6.
 pub(super) fn couplings(deck: &Deck) -> Result<Vec<Coupling>, Error> {
-    let mut couplings = Vec::new();
+    let rigid_bodies = deck.source.cards.iter().filter(|card| card.is("RIGIDBODY"));
+    let rigid_bodies =
+        rigid_bodies.map(|card| rigid_body(deck, card).map_err(|message| deck.source.fault(card.place, message)));
+    let mut couplings = rigid_bodies.collect::<Result<Vec<Coupling>, Error>>()?;
     let mut open: Option<&Card> = None;
     for card in &deck.source.cards {
         let is_kind = card.is("KINEMATIC") || card.is("DISTRIBUTING");
@@ -54,6 +70,43 @@ pub(super) fn couplings(deck: &Deck) -> Result<Vec<Coupling>, Error> {
         Some(of) => Err(deck.source.fault(of.place, "*KINEMATIC or *DISTRIBUTING must follow *COUPLING")),
         None => Ok(couplings),
     }
+}
+
+/// All displacements of the nodes of a card *RIGID BODY follow its reference node.
+fn rigid_body(deck: &Deck, card: &Card) -> Result<Coupling, String> {
+    let (name, mut nodes) = match [card.value("NSET"), card.value("ELSET")] {
+        [Some(set), None] => (set, deck.node_sets.members(set, &deck.nodes)?),
+        [None, Some(set)] => {
+            let elements = deck.element_sets.members(set, &deck.elements)?;
+            let nodes: BTreeSet<usize> = elements.iter().flat_map(|&element| deck.nodes_of(element)).copied().collect();
+            ("", nodes.into_iter().collect())
+        }
+        _ => {
+            return Err(
+                "*RIGID BODY is read with one set, of nodes or of elements; write NSET=NAME or ELSET=NAME".into()
+            );
+        }
+    };
+    let reference = |parameter: &str| match card.value(parameter) {
+        None => Ok(None),
+        Some(value) => match deck.node_sets.members(value, &deck.nodes)?[..] {
+            [node] => Ok(Some(node)),
+            _ => Err(format!("{parameter}={value} is not one node")),
+        },
+    };
+    let (Some(centre), rotation) = (reference("REFNODE")?, reference("ROTNODE")?) else {
+        return Err("*RIGID BODY has no reference node; write REF NODE=NUMBER".into());
+    };
+    if rotation.is_some_and(|node| node == centre || deck.body_of_node[node].is_some()) {
+        return Err("ROT NODE must be a node of its own, which belongs to no element".into());
+    }
+    // The reference nodes do not follow themselves.
+    nodes.retain(|&node| deck.body_of_node[node].is_some() || (node != centre && Some(node) != rotation));
+    if nodes.iter().all(|&node| deck.body_of_node[node].is_none()) {
+        return Err("the set of *RIGID BODY has no nodes of elements; nothing would follow the reference node".into());
+    }
+    let (nodes, kind) = (Joined::Nodes(name.into(), nodes), Kind::Kinematic([true; 3]));
+    Ok(Coupling { reference: centre, rotation, nodes, kind, place: card.place })
 }
 
 fn coupling(deck: &Deck, of: &Card, kind: &Card) -> Result<Coupling, Error> {
@@ -88,7 +141,10 @@ fn coupling(deck: &Deck, of: &Card, kind: &Card) -> Result<Coupling, Error> {
         Kind::Distributing(_) if deck.body_of_node[reference].is_some() => {
             fault("the reference node of *DISTRIBUTING must belong to no element")
         }
-        _ => Ok(Coupling { reference, surface: surface.into(), kind, place: of.place }),
+        _ => {
+            let nodes = Joined::Surface(surface.into());
+            Ok(Coupling { reference, rotation: None, nodes, kind, place: of.place })
+        }
     }
 }
 
@@ -116,7 +172,8 @@ impl Coupling {
     pub fn equations(&self, deck: &Deck) -> Result<Vec<Equation>, Error> {
         let fault = |message: String| deck.source.fault(self.place, message);
         if deck.is_axisymmetric() {
-            let message = "this coupling is not read in an axisymmetric model; *KINEMATIC with directions 1, 2 is";
+            let message = "in an axisymmetric model only *RIGID BODY and *KINEMATIC with directions 1, 2 are read, on nodes of one body, with a \
+                           reference node that nothing else names";
             return Err(fault(message.into()));
         }
         let sums = match self.kind {
@@ -124,6 +181,14 @@ impl Coupling {
             Kind::Distributing(about) => self.distributing(deck, about).map_err(fault)?,
         };
         Ok(sums.into_iter().map(|sum| Equation { sum, place: self.place }).collect())
+    }
+
+    /// The nodes that it joins, by their places.
+    pub fn nodes(&self, deck: &Deck) -> Result<Vec<usize>, String> {
+        match &self.nodes {
+            Joined::Surface(name) => Ok(deck.nodes_of_surface(deck.surface_or(name)?)),
+            Joined::Nodes(_, nodes) => Ok(nodes.clone()),
+        }
     }
 
     /// The rotations of this model.
@@ -135,7 +200,7 @@ impl Coupling {
     fn kinematic(&self, deck: &Deck, axes: [bool; 3]) -> Result<Vec<Sum>, String> {
         let centre = deck.place_of_node(self.reference);
         let mut sums = Vec::new();
-        for node in deck.nodes_of_surface(deck.surface_or(&self.surface)?) {
+        for node in self.nodes(deck)? {
             let away = minus(deck.place_of_node(node), centre);
             for axis in (0..deck.dimension()).filter(|&axis| axes[axis]) {
                 let mut sum = Sum::default();
@@ -155,10 +220,13 @@ impl Coupling {
     /// moment M' about the centre. The work of these forces is that of F and M, so that U and R are means of the
     /// displacements of the nodes.
     fn distributing(&self, deck: &Deck, about: [bool; 3]) -> Result<Vec<Sum>, String> {
-        let areas = deck.areas(deck.surface_or(&self.surface)?);
-        let whole: f64 = areas.values().sum();
+        let Joined::Surface(surface) = &self.nodes else {
+            return Err("forces are distributed over a surface of faces".into());
+        };
+        let areas = deck.areas(&deck.surface_or(surface)?.faces);
+        let whole: f64 = areas.values().map(|(area, _)| area).sum();
         let nodes: Vec<(usize, f64, [f64; 3])> =
-            areas.into_iter().map(|(node, area)| (node, area / whole, deck.place_of_node(node))).collect();
+            areas.into_iter().map(|(node, (area, _))| (node, area / whole, deck.place_of_node(node))).collect();
         let mean = |axis: usize| nodes.iter().map(|(_, share, at)| share * at[axis]).sum::<f64>();
         let centre = [0, 1, 2].map(mean);
         let mut of_area = [0.0; 6];
@@ -173,10 +241,7 @@ impl Coupling {
         let determinant = |of: &[(f64, [f64; 3]); 3]| of.iter().map(|(about, _)| about).product::<f64>();
         let has_extent = |of: &_| determinant(of) > ON_LINE * trace(&of_area).powi(3);
         let Some(principal) = principal(&of_area).filter(has_extent) else {
-            return Err(format!(
-                "the nodes of the surface `{}` lie on a line, about which no moment acts",
-                self.surface
-            ));
+            return Err(format!("the nodes of the surface `{surface}` lie on a line, about which no moment acts"));
         };
         let lever = minus(deck.place_of_node(self.reference), centre);
         let mut sums = Vec::new();

@@ -21,7 +21,7 @@ const READ: [Read; 37] = [
     read("HEADING", &[], &[]),
     read("NODE", &["NSET"], &[]),
     read("ELEMENT", &["TYPE", "ELSET"], &[]),
-    read("NSET", &["NSET", "GENERATE"], &["INTERNAL", "UNSORTED"]),
+    read("NSET", &["NSET", "GENERATE", "ELSET"], &["INTERNAL", "UNSORTED"]),
     read("ELSET", &["ELSET", "GENERATE"], &["INTERNAL", "UNSORTED"]),
     read("SURFACE", &["NAME", "TYPE"], &["INTERNAL"]),
     read("MATERIAL", &["NAME"], &[]),
@@ -30,7 +30,7 @@ const READ: [Read; 37] = [
     read("EXPANSION", &["TYPE", "ZERO"], &[]),
     read("SOLIDSECTION", &["ELSET", "MATERIAL", "ORIENTATION"], &[]),
     read("ORIENTATION", &["NAME", "SYSTEM"], &[]),
-    read("BOUNDARY", &["OP", "AMPLITUDE", "TYPE"], &[]),
+    read("BOUNDARY", &["OP", "AMPLITUDE", "TYPE", "FIXED"], &[]),
     read("CLOAD", &["OP", "AMPLITUDE"], &[]),
     read("DLOAD", &["OP", "AMPLITUDE"], &[]),
     read("DSLOAD", &["OP", "AMPLITUDE"], &[]),
@@ -45,7 +45,7 @@ const READ: [Read; 37] = [
     read("TIE", &["POSITIONTOLERANCE"], &["NAME", "ADJUST"]),
     read("EQUATION", &[], &[]),
     read("TRANSFORM", &["NSET", "TYPE"], &[]),
-    read("RIGIDBODY", &["NSET", "REFNODE", "ROTNODE"], &[]),
+    read("RIGIDBODY", &["NSET", "ELSET", "REFNODE", "ROTNODE"], &[]),
     read("PRE-TENSIONSECTION", &["SURFACE", "NODE"], &[]),
     read("COUPLING", &["REFNODE", "SURFACE"], &["CONSTRAINTNAME"]),
     read("KINEMATIC", &[], &[]),
@@ -106,7 +106,11 @@ const ABSENT: [(&str, &str); 32] = [
     ("DYNAMIC", "motions of decks are not read; a scene has an `analysis`"),
     ("MODALDYNAMIC", "motions of decks are not read; a scene has an `analysis`"),
     ("STEADYSTATEDYNAMICS", "vibrations are not computed"),
-    ("FREQUENCY", "natural frequencies are not computed"),
+    (
+        "FREQUENCY",
+        "natural frequencies are those of a scene; write *STATIC in its place, turn the deck into one by `signorini new`, and solve that by \
+         `signorini modes`",
+    ),
     ("BUCKLE", "buckling is not computed"),
     ("HEATTRANSFER", "heat is not modelled; temperatures may be given"),
     ("COUPLEDTEMPERATURE-DISPLACEMENT", "heat is not modelled; temperatures may be given"),
@@ -126,12 +130,12 @@ const BARE: [&str; 6] = ["MATERIAL", "STEP", "ENDSTEP", "CLEARANCE", "RIGIDBODY"
 const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC", "ENDSTEP"];
 
 /// Checks every card of a deck and the order of its steps; returns the names of what is passed over, each once with its
-/// first place.
+/// first place. What may not be meant is added to `noted`.
 ///
 /// # Errors
 /// An error with the line for a keyword or a parameter that changes the answer and is not read, and for a deck without
 /// a whole step.
-pub(super) fn judged(deck: &Deck) -> Result<Vec<(String, Place)>, Error> {
+pub(super) fn judged(deck: &Deck, noted: &mut Vec<(Place, String)>) -> Result<Vec<(String, Place)>, Error> {
     let mut passed: Vec<(String, Place)> = Vec::new();
     let mut pass = |name: String, place: Place| {
         if passed.iter().all(|(other, _)| *other != name) {
@@ -160,7 +164,11 @@ pub(super) fn judged(deck: &Deck) -> Result<Vec<(String, Place)>, Error> {
         }
         let most = if card.is("STATIC") || card.is("FRICTION") { 1 } else { usize::MAX };
         let most = if BARE.iter().any(|keyword| card.is(keyword)) { 0 } else { most };
-        if let Some(line) = card.lines.get(most) {
+        // Behind the last step stands what nobody reads.
+        let is_end = card.is("ENDSTEP") && deck.source.cards.iter().chain(&deck.later).next_back() == Some(card);
+        if let Some(line) = card.lines.get(most).filter(|_| is_end) {
+            noted.push((line.place, "this text follows the last *END STEP, and is passed over".into()));
+        } else if let Some(line) = card.lines.get(most) {
             return Err(deck
                 .source
                 .fault(line.place, format!("this line does not belong to {}; a keyword may be missing", card.name)));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::amplitudes::Amplitudes;
-use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
+use super::bodies::{name_of_node, names_of_faces, names_of_nodes};
 use super::forces::LastForces;
 use super::references::References;
 use super::scene_text::{Entry, object};
@@ -32,6 +32,7 @@ pub(super) struct Loads<'a, 'd> {
     forces: LastForces,
     loads: Vec<Entry>,
     on_volume: Vec<OnVolume>,
+    noted: &'a mut Vec<(Place, String)>,
 }
 
 impl<'a, 'd> Loads<'a, 'd> {
@@ -42,9 +43,11 @@ impl<'a, 'd> Loads<'a, 'd> {
         amplitudes: &Amplitudes,
         references: &'a mut References<'d>,
         transforms: &'a Transforms,
+        noted: &'a mut Vec<(Place, String)>,
     ) -> Result<Vec<Entry>, Error> {
         let forces = LastForces::of(deck);
-        let mut loads = Loads { deck, references, transforms, forces, loads: Vec::new(), on_volume: Vec::new() };
+        let (own, on_volume) = (Vec::new(), Vec::new());
+        let mut loads = Loads { deck, references, transforms, forces, loads: own, on_volume, noted };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
             let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
             // The step of the card before.
@@ -130,9 +133,11 @@ impl<'a, 'd> Loads<'a, 'd> {
         Ok(())
     }
 
-    fn nodes(&self, fields: &mut Fields) -> Result<(String, Vec<usize>), Error> {
+    fn nodes(&mut self, fields: &mut Fields) -> Result<(String, Vec<usize>), Error> {
         let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
         let nodes = self.deck.node_sets.members(&target, &self.deck.nodes).map_err(|message| fields.fault(message))?;
+        let repeated = self.deck.node_sets.repetition(&target, &self.deck.nodes);
+        self.noted.extend(repeated.map(|message| (fields.place, message)));
         Ok((target, nodes))
     }
 
@@ -247,9 +252,26 @@ impl<'a, 'd> Loads<'a, 'd> {
             let message = format!("the surface `{}` consists of nodes, on which no pressure acts", surface.name);
             return Err(self.deck.source.fault(place, message));
         }
-        for (_, boundary) in names_of_surface(self.deck, surface) {
+        let (outside, inside) = self.deck.outside_and_inside(surface);
+        for (_, boundary) in names_of_faces(self.deck, &surface.name, &outside) {
             self.loads.push(Entry::new(json!({"pressure": {"boundary": boundary, "value": value}}), place));
         }
+        if inside.is_empty() {
+            return Ok(());
+        }
+        if self.deck.dimension() < 3 {
+            let (element, face) = (self.deck.elements.numbers[inside[0].0], inside[0].1 + 1);
+            let message = format!(
+                "face {face} of element {element} lies within the body: two elements share it; such a face is pressed in space only"
+            );
+            return Err(self.deck.source.fault(place, message));
+        }
+        // The boundaries of a scene are on the outside: a face within the body is pressed at its nodes.
+        let forces = self.deck.areas(&inside).into_iter().filter_map(|(node, (_, outward))| {
+            Some((name_of_node(self.deck, node)?, outward.map(|part| -value * part)))
+        });
+        let forces: BTreeMap<String, [f64; 3]> = forces.collect();
+        self.loads.push(Entry::new(object("nodal-forces", json!(forces)), place));
         Ok(())
     }
 

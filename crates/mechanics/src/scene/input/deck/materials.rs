@@ -41,6 +41,8 @@ pub(super) struct Section {
 pub(super) struct Sections {
     pub all: Vec<Section>,
     pub of_element: Vec<usize>,
+    /// What is read, but may not be meant.
+    pub noted: Vec<(Place, String)>,
     /// The one thickness of a plane model.
     pub thickness: Option<(f64, Place)>,
 }
@@ -50,9 +52,10 @@ impl Sections {
     /// An error with the line for a material that is not read, a section without a set or a material, elements without
     /// a section, sections of different thickness.
     pub fn of(deck: &Deck, space: Space) -> Result<Self, Error> {
-        let (materials, orientations) = (materials(deck)?, orientations(deck)?);
+        let mut noted = Vec::new();
+        let (materials, orientations) = (materials(deck, &mut noted)?, orientations(deck)?);
         let names: Vec<&str> = materials.keys().map(String::as_str).collect();
-        let mut sections = Sections { all: Vec::new(), of_element: Vec::new(), thickness: None };
+        let mut sections = Sections { all: Vec::new(), of_element: Vec::new(), noted, thickness: None };
         let mut of_element: Vec<Option<usize>> = vec![None; deck.elements.len()];
         for card in deck.source.cards.iter().filter(|card| card.is("SOLIDSECTION")) {
             let (Some(group), Some(material)) = (card.value("ELSET"), card.value("MATERIAL")) else {
@@ -225,7 +228,7 @@ fn orientations(deck: &Deck) -> Result<HashMap<String, Orientation>, Error> {
 }
 
 /// The materials by their names in capitals.
-fn materials(deck: &Deck) -> Result<HashMap<String, Given>, Error> {
+fn materials(deck: &Deck, noted: &mut Vec<(Place, String)>) -> Result<HashMap<String, Given>, Error> {
     let mut materials: HashMap<String, Given> = HashMap::new();
     let mut current: Option<String> = None;
     for card in &deck.source.cards {
@@ -269,7 +272,8 @@ fn materials(deck: &Deck) -> Result<HashMap<String, Given>, Error> {
             material.expansion.replace(expansion).is_some()
         };
         if is_twice {
-            return fault(format!("the material has {} twice", card.name));
+            let message = format!("the material has {} twice; the last one counts, as in CalculiX", card.name);
+            noted.push((card.place, message));
         }
     }
     Ok(materials)

@@ -13,6 +13,7 @@ mod keywords;
 mod loads;
 mod materials;
 mod mpc;
+pub(crate) mod reference_node;
 mod references;
 pub(crate) mod requests;
 mod rigid;
@@ -24,6 +25,7 @@ mod temperatures;
 mod ties;
 mod transforms;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
@@ -35,7 +37,9 @@ use bodies::Body;
 use contacts::contacts;
 use loads::Loads;
 use materials::Sections;
+use reference_node::ReferenceNode;
 use references::References;
+use requests::Requests;
 use rigid::RigidBodies;
 use scene_text::SceneText;
 use signorini_qp as qp;
@@ -60,21 +64,38 @@ pub(crate) struct DeckScene {
     /// Its text, with a comment for each entry.
     pub text: String,
     pub warnings: Vec<Warning>,
+    /// Its nodes that are no nodes of the mesh.
+    pub references: Vec<ReferenceNode>,
+    deck: Deck,
     /// The lines of the deck for JSON paths; the first is that of the whole scene.
     places: Vec<(String, (PathBuf, usize))>,
 }
 
+/// How a deck is read.
+#[derive(Clone, Copy)]
+pub(crate) struct Reading<'a> {
+    /// Files that the deck includes may lie outside its folder with `outside`; friction is left out with `friction`;
+    /// small displacements are wanted with `linear`.
+    pub permits: &'a [&'a str],
+    /// The step, from 1; the last one without it.
+    pub step: Option<usize>,
+    /// The displacements at the ends of the steps before it, as far as they are known.
+    pub earlier: &'a [Displacements],
+}
+
+/// The displacement (length) and the rotation (radians) of nodes, by their numbers.
+pub type Displacements = HashMap<usize, [f64; 6]>;
+
 impl DeckScene {
-    /// The scene of the deck `file`, which it calls `named`. Files that the deck includes may lie outside its folder if
-    /// `permits` has `outside`; friction is left out if it has `friction`; small displacements are wanted if it has
-    /// `linear`.
+    /// The scene of the deck `file`, which it calls `named`.
     ///
     /// # Errors
     /// As [`Deck::read`]; [`qp::Error::FileSyntax`] with the line for what changes the answer and is not read.
-    pub fn read(file: &Path, named: &str, (permits, step): (&[&str], Option<usize>)) -> Result<Self, Error> {
+    pub fn read(file: &Path, named: &str, Reading { permits, step, earlier }: Reading) -> Result<Self, Error> {
         let within = file.parent().filter(|_| !permits.contains(&"outside"));
         let deck = Deck::read(file, within, step)?;
-        let passed = keywords::judged(&deck)?;
+        let mut noted = deck.source.noted.clone();
+        let passed = keywords::judged(&deck, &mut noted)?;
         if deck.bodies > MOST_BODIES {
             let message = format!(
                 "the deck has {} bodies that share no node; merge the nodes in the mesher: at most {MOST_BODIES} are allowed",
@@ -89,16 +110,19 @@ impl DeckScene {
         let rigid_bodies = RigidBodies::of(&deck)?;
         let transforms = Transforms::of(&deck, &rigid_bodies)?;
         let mut references = References::of(&deck, rigid_bodies, &transforms)?;
-        let supports = supports(&deck, &amplitudes, &mut references, &transforms)?;
-        let mut loads = Loads::of(&deck, &amplitudes, &mut references, &transforms)?;
+        noted.extend(nearest_elements(&deck));
+        noted.extend(sections.noted.iter().cloned());
+        let supports = supports(&deck, &amplitudes, &mut references, &transforms, earlier)?;
+        let mut loads = Loads::of(&deck, &amplitudes, &mut references, &transforms, &mut noted)?;
         let mut contacts = contacts(&deck, permits.contains(&"friction"))?;
         contacts.ties.extend(ties(&deck)?);
+        let mut reference_nodes = references.rigid_bodies.reference_nodes(&deck, contacts.ties.len());
         contacts.ties.extend(references.rigid_bodies.bolts.entries());
         let rigid_faces = references.rigid_bodies.entries();
-        let eliminated = references.eliminated()?;
+        let eliminated = references.eliminated(contacts.ties.len())?;
+        reference_nodes.extend(eliminated.nodes);
         contacts.ties.extend(eliminated.ties);
         loads.extend(eliminated.loads);
-        let mut noted = nearest_elements(&deck);
         noted.extend(contacts.warnings);
         noted.extend(eliminated.warnings);
         let mut text = SceneText::new(&deck, &comments(&deck, named, &noted, &passed));
@@ -129,7 +153,7 @@ impl DeckScene {
         });
         let warnings = nonlinear.into_iter().chain(noted.into_iter().map(warning)).collect();
         let places = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
-        Ok(DeckScene { text, warnings, places })
+        Ok(DeckScene { text, warnings, references: reference_nodes, deck, places })
     }
 
     /// An error of a value of the scene with the line of the deck that it comes from.
@@ -170,9 +194,31 @@ impl Scene {
     pub fn read_deck(path: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Scene, Error> {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let deck = DeckScene::read(path, &named, (permits, step))?;
-        let scene = Scene::from_json(&deck.text, &named)?;
-        Ok(Scene { folder: path.parent().map(Path::to_path_buf), noted: deck.warnings, ..scene })
+        let deck = DeckScene::read(path, &named, Reading { permits, step, earlier: &[] })?;
+        Scene::of_text(path, &named, &deck)
+    }
+
+    fn of_text(path: &Path, named: &str, deck: &DeckScene) -> Result<Scene, Error> {
+        let scene = Scene::from_json(&deck.text, named)?;
+        Ok(Scene { folder: path.parent().map(Path::to_path_buf), noted: deck.warnings.clone(), ..scene })
+    }
+
+    /// Reads one step of a deck, from 1, as [`Scene::read_deck`] does, and what it asks for. `earlier` are the
+    /// displacements at the ends of the steps before it, which a card `*BOUNDARY, FIXED` holds
+    /// ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
+    ///
+    /// # Errors
+    /// As [`Scene::read_deck`]; [`qp::Error::FileSyntax`] with the line for results of a set that does not exist.
+    pub fn read_step(
+        path: impl AsRef<Path>,
+        permits: &[&str],
+        step: usize,
+        earlier: &[Displacements],
+    ) -> Result<(Scene, Requests), Error> {
+        let path = path.as_ref();
+        let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let deck = DeckScene::read(path, &named, Reading { permits, step: Some(step), earlier })?;
+        Ok((Scene::of_text(path, &named, &deck)?, Requests::of(&deck.deck, deck.references)?))
     }
 
     /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is
@@ -181,7 +227,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read_deck`].
     pub fn text_of_deck(file: &Path, named: &str, permits: &[&str], step: Option<usize>) -> Result<String, Error> {
-        DeckScene::read(file, named, (permits, step)).map(|scene| scene.text)
+        DeckScene::read(file, named, Reading { permits, step, earlier: &[] }).map(|scene| scene.text)
     }
 
     /// Returns `true` for the name of an input deck, which ends with `.inp`: such a file is read by
@@ -252,6 +298,7 @@ fn model(space: Space) -> &'static str {
         Space::PlaneStrain => "plane-strain",
         Space::Axisymmetric => "axisymmetric",
         Space::Solid => "space",
+        Space::Line | Space::Sheet => "none",
     }
 }
 

@@ -2,9 +2,9 @@
 //! *CONTACT PRINT.
 
 use std::collections::{BTreeSet, HashMap};
-use std::path::Path;
 
 use super::amplitudes::{Amplitudes, periods};
+use super::reference_node::ReferenceNode;
 use super::rigid::RigidBodies;
 use super::temperatures::Temperatures;
 use super::transforms::Transforms;
@@ -30,6 +30,8 @@ pub struct Requests {
     pub step: usize,
     /// Number of steps of the deck.
     pub steps: usize,
+    /// The nodes that are no nodes of the mesh, but move or are moved.
+    pub(crate) references: Vec<ReferenceNode>,
     /// The time at the end of the step, since the start of the first one.
     pub time: f64,
     /// The time that the step takes.
@@ -77,24 +79,21 @@ const KINDS: [&[&str]; 6] = [
 const OTHERS: [&str; 4] = ["FACEPRINT", "SECTIONPRINT", "SECTIONFILE", "ENERGYPRINT"];
 
 impl Requests {
-    /// Reads what a deck asks for at the end of a step, from 1, or of the last one. Files that it includes may lie
-    /// outside its folder if `permits` has `outside`.
+    /// What a deck asks for at the end of its step; `references` are its reference nodes.
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read;
     /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a set that does not exist, and for
     /// what is not read.
-    pub fn of_deck(file: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Self, Error> {
-        let file = file.as_ref();
-        let deck = Deck::read(file, file.parent().filter(|_| !permits.contains(&"outside")), step)?;
-        let end = Temperatures::of(&deck, &Amplitudes::of(&deck)?)?.end;
+    pub(super) fn of(deck: &Deck, references: Vec<ReferenceNode>) -> Result<Self, Error> {
+        let end = Temperatures::of(deck, &Amplitudes::of(deck)?)?.end;
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
-        let transforms = Transforms::of(&deck, &RigidBodies::of(&deck)?)?;
+        let transforms = Transforms::of(deck, &RigidBodies::of(deck)?)?;
         let (fields, tables, others) = (BTreeSet::new(), Vec::new(), Vec::new());
-        let (axes, periods) = (transforms.by_number(&deck), periods(&deck)?);
+        let (axes, periods) = (transforms.by_number(deck), periods(deck)?);
         let (time, period) = (periods.iter().sum(), periods.last().copied().unwrap_or(1.0));
         let (step, steps) = (deck.step, deck.steps);
-        let mut requests = Requests { fields, tables, others, temperatures, axes, step, steps, time, period };
+        let mut requests =
+            Requests { fields, tables, others, temperatures, axes, step, steps, references, time, period };
         let is_one_of = |card: &Card, keywords: &[&str]| keywords.iter().any(|keyword| card.is(keyword));
         for (index, card) in deck.source.cards.iter().enumerate() {
             // The requests of a kind in a later step replace those of the steps before it.
@@ -106,14 +105,14 @@ impl Requests {
                 continue;
             }
             if is_one_of(card, &FIELDS) {
-                requests.fields.extend(labels(&deck, card).into_iter().map(|(label, _)| label));
+                requests.fields.extend(labels(deck, card).into_iter().map(|(label, _)| label));
                 if card.says("GLOBAL", "NO") && !requests.axes.is_empty() {
                     requests.others.push(format!("GLOBAL=NO of {} ({})", card.name, deck.source.named(card.place)));
                 }
             } else if is_one_of(card, &OTHERS) {
                 requests.others.push(format!("{} ({})", card.name, deck.source.named(card.place)));
             } else if is_one_of(card, &TABLES) {
-                requests.add_tables(&deck, card)?;
+                requests.add_tables(deck, card)?;
             }
         }
         Ok(requests)
@@ -138,12 +137,6 @@ impl Requests {
             }
             set = key(name);
             let members = sets.members(name, of).map_err(fault)?;
-            let loose = members.iter().filter(|&&node| card.is("NODEPRINT") && deck.body_of_node[node].is_none());
-            match loose.count() {
-                0 => {}
-                1 => self.others.push(format!("values of a node without elements ({place})")),
-                count => self.others.push(format!("values of {count} nodes without elements ({place})")),
-            }
             numbers = members.iter().map(|&member| of.numbers[member]).collect();
         }
         let contact = match [card.value("SLAVE"), card.value("MASTER")] {

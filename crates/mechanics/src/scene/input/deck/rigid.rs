@@ -1,5 +1,5 @@
-//! Rigid bodies: the cards *RIGID BODY, and *KINEMATIC of all displacements, with the displacements, rotations, forces
-//! and moments of their reference nodes.
+//! Rigid bodies: couplings whose nodes belong to one body and follow in all displacements, with the displacements,
+//! rotations, forces and moments of their reference nodes.
 
 use std::collections::HashMap;
 
@@ -7,10 +7,11 @@ use serde_json::{Value, json};
 
 use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
 use super::bolts::Bolts;
-use super::coupling::{Coupling, couplings};
+use super::coupling::{Coupling, Joined, couplings};
+use super::reference_node::{Amount, Part, ReferenceNode};
 use super::scene_text::Entry;
 use crate::error::Error;
-use crate::fem::mesh::deck::{Card, Deck, Place};
+use crate::fem::mesh::deck::{Deck, Place};
 
 /// The motions of a rigid body: displacements along x, y and z, then rotations about them.
 const MOTIONS: [&str; 6] = ["x", "y", "z", "x", "y", "z"];
@@ -39,72 +40,68 @@ pub(super) struct RigidBodies {
 
 impl RigidBodies {
     /// # Errors
-    /// An error with the line for a rigid body without a set of nodes of one body, or without a reference node of its
-    /// own, and for a coupling that is not read.
+    /// An error with the line for a coupling or a bolt that is not read.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
         let dimension = deck.dimension();
         let (couplings, bolts) = (couplings(deck)?, Bolts::of(deck)?);
-        let mut bodies = RigidBodies { all: Vec::new(), by_node: HashMap::new(), bolts, couplings, dimension };
-        for card in deck.source.cards.iter().filter(|card| card.is("RIGIDBODY")) {
-            bodies.add(deck, card).map_err(|message| deck.source.fault(card.place, message))?;
-        }
-        Ok(bodies)
+        Ok(RigidBodies { all: Vec::new(), by_node: HashMap::new(), bolts, couplings, dimension })
     }
 
-    fn add(&mut self, deck: &Deck, card: &Card) -> Result<(), String> {
-        let Some(set) = card.value("NSET") else {
-            return Err("*RIGID BODY is read with a set of nodes; write NSET=NAME".into());
-        };
-        let members = deck.node_sets.members(set, &deck.nodes)?;
-        let mut names = names_of_nodes(deck, set, &members);
-        if names.len() != 1 {
-            let message = format!("`{set}` has nodes of {} bodies; a rigid body is read in one body", names.len());
-            return Err(message);
-        }
-        let reference = |parameter: &str| match card.value(parameter) {
-            None => Ok(None),
-            Some(value) => {
-                let number = value.parse().map_err(|_| format!("{parameter}={value} is not the number of a node"))?;
-                let missing = || format!("the deck has no node {number}");
-                deck.nodes.place(number).map(Some).ok_or_else(missing)
-            }
-        };
-        let (centre, rotation) = (reference("REFNODE")?, reference("ROTNODE")?);
-        let Some(centre) = centre else {
-            return Err("*RIGID BODY has no reference node; write REF NODE=NUMBER".into());
-        };
-        let on = ("nodes", Value::from(names.remove(0)));
-        self.add_body(deck, on, [Some(centre), rotation], card.place)
-    }
-
-    /// Makes a coupling a rigid body, if the nodes of its surface belong to one body and all follow in all directions;
-    /// `false` for another.
+    /// Makes a coupling a rigid body, if its nodes belong to one body and all follow in all directions; `false` for
+    /// another.
     ///
     /// # Errors
     /// An error with the line for a reference node of two rigid bodies.
     pub fn takes(&mut self, deck: &Deck, coupling: &Coupling) -> Result<bool, Error> {
         let fault = |message: String| deck.source.fault(coupling.place, message);
-        let surface = deck.surface_or(&coupling.surface).map_err(fault)?;
-        let on = match (&names_of_surface(deck, surface)[..], &surface.bare[..]) {
-            ([(_, name)], []) => ("boundary", Value::from(name.as_str())),
-            (faces, [_, ..]) => {
-                let nodes = deck.nodes_of_surface(surface);
-                let bodies = nodes.iter().map(|&node| deck.body_of_node[node]);
-                let names: Vec<String> = nodes.iter().filter_map(|&node| name_of_node(deck, node)).collect();
-                let is_one =
-                    faces.len() < 2 && bodies.clone().all(|body| body.is_some() && bodies.clone().next() == Some(body));
-                match is_one {
-                    true => ("nodes", names.into()),
-                    false => return Ok(false),
+        let mut nodes = coupling.nodes(deck).map_err(fault)?;
+        nodes.retain(|&node| node != coupling.reference || deck.body_of_node[node].is_some());
+        let body = nodes.first().and_then(|&node| deck.body_of_node[node]);
+        if body.is_none() || nodes.iter().any(|&node| deck.body_of_node[node] != body) || !coupling.is_rigid(deck) {
+            return Ok(false);
+        }
+        let by_number = || nodes.iter().filter_map(|&node| name_of_node(deck, node)).collect::<Vec<String>>();
+        let on = match &coupling.nodes {
+            Joined::Surface(name) => {
+                let surface = deck.surface_or(name).map_err(fault)?;
+                // A boundary has the faces on the outside alone.
+                match surface.bare.is_empty() && deck.outside_and_inside(surface).1.is_empty() {
+                    true => ("boundary", names_of_surface(deck, surface).remove(0).1.into()),
+                    false => ("nodes", by_number().into()),
                 }
             }
-            _ => return Ok(false),
+            Joined::Nodes(set, _) if deck.node_sets.named(set).is_some() => {
+                ("nodes", names_of_nodes(deck, set, &nodes).remove(0).into())
+            }
+            Joined::Nodes(..) => ("nodes", by_number().into()),
         };
-        let is_rigid = coupling.is_rigid(deck);
-        if is_rigid {
-            self.add_body(deck, on, [Some(coupling.reference), None], coupling.place).map_err(fault)?;
-        }
-        Ok(is_rigid)
+        self.add_body(deck, on, [Some(coupling.reference), coupling.rotation], coupling.place).map_err(fault)?;
+        Ok(true)
+    }
+
+    /// The reference nodes of rigid bodies and bolts, with what an answer says of them; `first_bolt` is the tie of the
+    /// first bolt.
+    pub fn reference_nodes(&self, deck: &Deck, first_bolt: usize) -> Vec<ReferenceNode> {
+        let of_body = |(&node, &(body, first)): (&usize, &(usize, usize))| {
+            let mut of_node = ReferenceNode::new(deck.nodes.numbers[node]);
+            for kind in (first..6).filter(|&kind| self.exists(kind)) {
+                of_node.displacement[kind - first] = Amount::one(Part::Motion(body, kind));
+                of_node.force[kind - first] = Amount::one(Part::Force(body, kind, self.all[body].centre));
+            }
+            of_node
+        };
+        let of_bolt = |(bolt, node): (usize, usize)| {
+            let mut of_node = ReferenceNode::new(deck.nodes.numbers[node]);
+            of_node.displacement[0] = Amount::one(Part::Shortening(first_bolt + bolt));
+            of_node.force[0] = Amount::one(Part::Tension(first_bolt + bolt));
+            of_node
+        };
+        self.by_node.iter().map(of_body).chain(self.bolts.references().enumerate().map(of_bolt)).collect()
+    }
+
+    /// Returns `true` for a motion that the rigid bodies of this model have.
+    fn exists(&self, kind: usize) -> bool {
+        kind < self.dimension || kind == 5 || (self.dimension == 3 && kind < 6)
     }
 
     /// Adds a body with its reference node and the node of its rotations.
@@ -129,7 +126,8 @@ impl RigidBodies {
 
     /// Returns `true` for a node that moves a rigid body or a coupling.
     pub fn is_reference(&self, node: usize) -> bool {
-        let is_coupled = || self.couplings.iter().any(|coupling| coupling.reference == node);
+        let is_coupled =
+            || self.couplings.iter().any(|coupling| coupling.reference == node || coupling.rotation == Some(node));
         self.by_node.contains_key(&node) || self.bolts.is_reference(node) || is_coupled()
     }
 
@@ -140,8 +138,7 @@ impl RigidBodies {
     fn motion(&mut self, node: usize, direction: usize) -> Result<Option<(&mut RigidBody, usize)>, String> {
         let Some(&(body, first)) = self.by_node.get(&node) else { return Ok(None) };
         let kind = first + direction - 1;
-        let exists = kind < self.dimension || kind == 5 || (self.dimension == 3 && kind < 6);
-        match exists {
+        match self.exists(kind) {
             true => Ok(Some((&mut self.all[body], kind))),
             false => Err(format!("a rigid body of this model has no motion in direction {direction} of this node")),
         }

@@ -15,6 +15,8 @@ const CANCELLED: f64 = 1e-13;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Sum {
     pub terms: BTreeMap<Component, f64>,
+    /// The components that are replaced by their values, with their coefficients.
+    pub replaced: BTreeMap<Component, f64>,
     pub constant: f64,
     /// The largest part of the constant.
     pub scale: f64,
@@ -36,9 +38,17 @@ impl Sum {
         vector.into_iter().enumerate().for_each(|(axis, part)| self.add((node, axis), part));
     }
 
+    /// Calls a component by another name.
+    pub fn rename(&mut self, component: Component, name: Component) {
+        if let Some(coefficient) = self.terms.remove(&component) {
+            self.add(name, coefficient);
+        }
+    }
+
     /// Replaces a component by its value.
     pub fn insert(&mut self, component: Component, value: f64) {
         if let Some(coefficient) = self.terms.remove(&component) {
+            self.replaced.insert(component, coefficient);
             self.constant += coefficient * value;
             self.scale = self.scale.max((coefficient * value).abs());
         }
@@ -55,6 +65,9 @@ impl Sum {
     /// Adds a multiple of another sum.
     pub fn add_multiple(&mut self, factor: f64, other: &Sum) {
         other.terms.iter().for_each(|(component, coefficient)| self.add(*component, factor * coefficient));
+        for (component, coefficient) in &other.replaced {
+            *self.replaced.entry(*component).or_default() += factor * coefficient;
+        }
         self.constant += factor * other.constant;
         self.scale = self.scale.max((factor * other.scale).abs());
     }

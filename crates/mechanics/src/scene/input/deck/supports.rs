@@ -4,12 +4,14 @@ use std::collections::HashMap;
 
 use serde_json::{Value, json};
 
+use super::Displacements;
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_nodes};
 use super::references::References;
 use super::scene_text::Entry;
 use super::transforms::Transforms;
 use crate::error::Error;
+use crate::fem::geometry::{COORDINATES, dot};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
 /// The directions of a node in a scene; those of a deck are numbered from 1.
@@ -18,6 +20,15 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// Names of dofs in decks of Abaqus, with the first directions that they hold.
 const NAMED: [(&str, &[usize]); 5] =
     [("ENCASTRE", &[0, 1, 2]), ("PINNED", &[0, 1, 2]), ("XSYMM", &[0]), ("YSYMM", &[1]), ("ZSYMM", &[2])];
+
+/// The cards *BOUNDARY of a deck, with what they refer to.
+struct Boundaries<'a> {
+    deck: &'a Deck,
+    amplitudes: &'a Amplitudes,
+    transforms: &'a Transforms,
+    /// The displacements at the ends of the steps before.
+    earlier: &'a [Displacements],
+}
 
 /// A line: the displacements that it prescribes for some nodes.
 struct Prescribed {
@@ -69,9 +80,10 @@ pub(super) fn supports(
     amplitudes: &Amplitudes,
     references: &mut References,
     transforms: &Transforms,
+    earlier: &[Displacements],
 ) -> Result<Vec<Entry>, Error> {
     let mut lines = Vec::new();
-    for line in in_force(deck, amplitudes)? {
+    for line in in_force(&Boundaries { deck, amplitudes, transforms, earlier })? {
         lines.extend(off_references(deck, line, references)?);
     }
     replace(&mut lines);
@@ -160,7 +172,8 @@ fn off_references(deck: &Deck, line: Prescribed, references: &mut References) ->
 }
 
 /// All lines that OP=NEW does not remove.
-fn in_force(deck: &Deck, amplitudes: &Amplitudes) -> Result<Vec<Prescribed>, Error> {
+fn in_force(given: &Boundaries) -> Result<Vec<Prescribed>, Error> {
+    let Boundaries { deck, amplitudes, .. } = given;
     let mut lines: Vec<Prescribed> = Vec::new();
     // The number of lines before the last step that has begun.
     let mut of_model = None;
@@ -182,13 +195,44 @@ fn in_force(deck: &Deck, amplitudes: &Amplitudes) -> Result<Vec<Prescribed>, Err
             of_model = of_model.map(|_| 0);
         }
         for line in read(deck, card, index, amplitudes.factor(deck, card)?)? {
-            if of_model.is_none() && line.values.iter().flatten().any(|&value| value != 0.0) {
-                return Err(deck.source.fault(line.place, "a displacement other than 0 must stand in the step"));
+            match card.has("FIXED") {
+                true => lines.extend(given.fixed(line, card.step)?),
+                false => lines.push(line),
             }
-            lines.push(line);
         }
     }
     Ok(lines)
+}
+
+impl Boundaries<'_> {
+    /// A line of FIXED, a line for each node: it holds what it names where the step before ended.
+    ///
+    /// # Errors
+    /// An error with the line if that is not known.
+    fn fixed(&self, line: Prescribed, step: usize) -> Result<Vec<Prescribed>, Error> {
+        let before = match step {
+            0 | 1 => None,
+            _ => Some(self.earlier.get(step - 2).ok_or_else(|| {
+                let message = format!(
+                    "FIXED holds the displacement at the end of step {}, which only `signorini ccx` knows, that solves all steps; or \
+                     write the displacement itself, without FIXED",
+                    step - 1
+                );
+                self.deck.source.fault(line.place, message)
+            })?),
+        };
+        let of_node = |&node: &usize| {
+            let number = self.deck.nodes.numbers[node];
+            let at = before.and_then(|before| before.get(&number)).copied().unwrap_or_default();
+            let axes =
+                self.transforms.axes(self.deck, node).map_err(|message| self.deck.source.fault(line.place, message));
+            let along = axes?.unwrap_or(COORDINATES).map(|axis| dot(axis, [at[0], at[1], at[2]]));
+            let held = |given: [Option<f64>; 3], at: [f64; 3]| [0, 1, 2].map(|axis| given[axis].map(|_| at[axis]));
+            let (values, turns) = (held(line.values, along), held(line.turns, [at[3], at[4], at[5]]));
+            Ok(Prescribed { target: number.to_string(), nodes: vec![node], values, turns, ..line })
+        };
+        line.nodes.iter().map(of_node).collect()
+    }
 }
 
 fn support(values: &[Option<f64>; 3], mut targets: Vec<String>) -> Value {
