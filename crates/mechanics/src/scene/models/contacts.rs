@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::Error;
-use crate::fem::geometry::{distance, length, minus};
+use crate::fem::geometry::{distance, length};
 use crate::fem::mortar::Seen;
 use crate::fem::{Boundary, ElasticBody, Mortar, Region};
 use crate::scene::input::obstacle::ShapeSpec;
@@ -26,6 +26,10 @@ impl Scene {
         let regions = body.regions().to_vec();
         let named: Vec<[Option<usize>; 2]> = self.named_pairs(&body);
         let skins = Arc::clone(body.skins());
+        let boxes: Vec<[[f64; 3]; 2]> =
+            regions.iter().map(|region| body.mesh().extent_of(region.nodes()).into()).collect();
+        let facets: Vec<f64> = skins.iter().map(|skin| largest_facet(&nodes, &skin.surface)).collect();
+        let travel = self.largest_travel();
         for second in 1..skins.len() {
             for first in 0..second {
                 let pair = [Some(first), Some(second)];
@@ -38,9 +42,16 @@ impl Scene {
                     Mortar::new((&nodes, sides[own]), (&nodes, sides[other]), *body.formulation())
                         .between(&skins, [bodies[own], bodies[other]])
                 };
-                let size = size_of(&body, &regions[first]).min(size_of(&body, &regions[second]));
-                let least = sides.iter().map(|side| largest_facet(&nodes, side)).fold(0.0, f64::max);
-                let widest = (REACH * size).max(least + self.largest_travel());
+                let size = bodies
+                    .map(|body| distance(boxes[body][0], boxes[body][1]))
+                    .into_iter()
+                    .fold(f64::INFINITY, f64::min);
+                let least = facets[first].max(facets[second]);
+                let widest = (REACH * size).max(least + travel);
+                // A curved facet leaves the box of its nodes.
+                if apart(boxes[first], boxes[second]) > widest + least {
+                    continue;
+                }
                 let both = |reach: f64| -> Result<[Seen; 2], Error> {
                     Ok([between([0, 1]).within(reach).seen()?, between([1, 0]).within(reach).seen()?])
                 };
@@ -95,10 +106,9 @@ impl Scene {
     }
 }
 
-/// The diagonal of the box around a body.
-fn size_of(body: &ElasticBody, region: &Region) -> f64 {
-    let (low, high) = body.mesh().extent_of(region.nodes());
-    length(minus(high, low))
+/// The distance of two boxes.
+fn apart([low, high]: [[f64; 3]; 2], [other_low, other_high]: [[f64; 3]; 2]) -> f64 {
+    length([0, 1, 2].map(|axis| (low[axis] - other_high[axis]).max(other_low[axis] - high[axis]).max(0.0)))
 }
 
 /// The length of the largest facet.
