@@ -12,8 +12,8 @@ const OVERLAP: f64 = 0.5;
 /// A side of a body turns away from a way if the angle between its normal and the way is above 60 degrees.
 const SIDEWAYS: f64 = 0.5;
 
-/// Two overlapping bodies touch along the shortest way out of each other: no side that turns away from the way is nearer
-/// to its middle than this share of it, as its ends are.
+/// Two overlapping bodies touch along the shortest way out of each other: no side that turns away from the way is
+/// nearer to its middle than this share of it, as its ends are.
 const BESIDE: f64 = 0.5;
 
 /// A crossing nearer to an end of a way than this share of it is at the end, which the skin itself forms.
