@@ -202,7 +202,11 @@ impl Mortar<'_> {
     /// What the surfaces see of each other within reach, with nothing solid between.
     pub(super) fn sight<'f>(&self, sides: &'f Sides<'f>) -> Sight<'f> {
         let (tree, mut all_met) = (sides.tree(), BTreeSet::new());
-        let can_touch = |[from, to]: [[f64; 3]; 2], outward: [f64; 3]| {
+        let is_clear = |[from, to]: [[f64; 3]; 2], outward: [f64; 3]| {
+            self.between.is_none_or(|between| between.is_clear(from, to, outward))
+        };
+        let can_touch = |one: &Shared, outward: [f64; 3]| {
+            let [from, to] = one.middles();
             self.between.is_none_or(|between| between.can_touch(from, to, outward))
         };
         let mut nearest: BTreeMap<usize, Opposite> = BTreeMap::new();
@@ -213,7 +217,10 @@ impl Mortar<'_> {
             let (mut met, mut shared) = (BTreeSet::new(), Vec::new());
             let near = site.near(&tree, self.reach).into_iter().map(|number| (number, &sides.master[number as usize]));
             for (number, other) in near.filter(|(_, other)| facet.faces(other)) {
-                let found = self.shared(&site, other).filter(|one| can_touch(one.middles(), site.direction));
+                let found = self.shared(&site, other);
+                if found.as_ref().is_some_and(|one| !can_touch(one, site.direction)) {
+                    continue;
+                }
                 all_met.extend(found.iter().map(|_| number));
                 shared.extend(found);
                 for (&node, &place) in other.nodes.iter().zip(other.places()) {
@@ -221,7 +228,7 @@ impl Mortar<'_> {
                     let Some(found) = found else { continue };
                     let is_nearest = nearest.get(&node).is_none_or(|nearest| found.gap.abs() < nearest.gap.abs());
                     let foot = [0, 1, 2].map(|axis| place[axis] - found.gap * found.normal[axis]);
-                    if is_nearest && can_touch([foot, place], found.normal) {
+                    if is_nearest && is_clear([foot, place], found.normal) {
                         nearest.insert(node, found);
                     }
                 }

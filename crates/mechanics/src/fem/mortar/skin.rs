@@ -9,6 +9,13 @@ use crate::fem::surface::{Tree, distance_from};
 /// side of its skin is nearer.
 const OVERLAP: f64 = 0.5;
 
+/// A side of a body turns away from a way if the angle between its normal and the way is above 60 degrees.
+const SIDEWAYS: f64 = 0.5;
+
+/// Two overlapping bodies touch along the shortest way out of each other: no side that turns away from the way is
+/// nearer to its middle than this share of it, as its ends are.
+const BESIDE: f64 = 0.5;
+
 /// A crossing nearer to an end of a way than this share of it is at the end, which the skin itself forms.
 const AT_END: f64 = 1e-9;
 
@@ -84,6 +91,18 @@ impl Skin {
         is_crossed
     }
 
+    /// Returns `true` if a piece that turns away from a unit vector is nearer to a point than `limit`, in length.
+    fn has_side_near(&self, at: [f64; 3], way: [f64; 3], limit: f64) -> bool {
+        let mut has_side = false;
+        self.tree.near(at, |number| {
+            let piece = &self.pieces[number as usize];
+            let turns_away = || dot(unit(piece.normal()), way).abs() < SIDEWAYS;
+            has_side = has_side || (distance_from(&piece.corners, at) < limit && turns_away());
+            limit * limit
+        });
+        has_side
+    }
+
     /// Returns `true` for a point inside the body, by the next crossing of a line along a unit vector.
     fn contains(&self, at: [f64; 3], way: [f64; 3]) -> bool {
         let mut next: Option<(f64, Sense)> = None;
@@ -99,19 +118,23 @@ impl Skin {
 }
 
 impl Piece {
+    /// A vector out of the body: as long as an edge, or twice the area of a triangle.
+    fn normal(&self) -> [f64; 3] {
+        let [a, b, c] = self.corners;
+        if b == c { area_vector(&[a, b]) } else { cross(minus(b, a), minus(c, a)) }
+    }
+
     /// The distance at which a line from a point along a unit vector crosses it, negative behind the point, and the
     /// sense.
     fn crossing(&self, from: [f64; 3], way: [f64; 3]) -> Option<(f64, Sense)> {
-        let [a, b, c] = self.corners;
-        let is_edge = b == c;
-        let normal = if is_edge { area_vector(&[a, b]) } else { cross(minus(b, a), minus(c, a)) };
+        let ([a, b, c], normal) = (self.corners, self.normal());
         let turned = dot(normal, way);
         if turned.abs() <= ALONG * length(normal) {
             return None;
         }
         let at = dot(normal, minus(a, from)) / turned;
         let place = [0, 1, 2].map(|axis| from[axis] + at * way[axis]);
-        let is_inside = if is_edge {
+        let is_inside = if b == c {
             let along = minus(b, a);
             let share = dot(minus(place, a), along) / dot(along, along);
             (-ON_EDGE..=1.0 + ON_EDGE).contains(&share)
@@ -138,7 +161,7 @@ impl TwoSkins<'_> {
     /// Bodies that are apart touch if the way meets no body, a third one included. Bodies that overlap touch if the way
     /// is short against the thickness of both: it would lead out of the own body soon after `to`, or out of the other
     /// soon after `from`, if the two places stood back to back.
-    pub fn can_touch(&self, from: [f64; 3], to: [f64; 3], outward: [f64; 3]) -> bool {
+    pub fn is_clear(&self, from: [f64; 3], to: [f64; 3], outward: [f64; 3]) -> bool {
         let way = minus(to, from);
         let far = length(way);
         let (way, back) = (unit(way), unit(minus(from, to)));
@@ -159,5 +182,17 @@ impl TwoSkins<'_> {
             self.skins.get(body).is_some_and(|skin| skin.is_crossed(at, inward, thin, Sense::OutOf))
         };
         !is_thin(self.own, from, way) && !is_thin(self.other, to, back)
+    }
+
+    /// The same for the middles of parts of two facets, which are not at an edge of a body, with a unit vector out of
+    /// the own one: bodies that overlap do not touch along a way if they part sooner to a side of it.
+    pub fn can_touch(&self, from: [f64; 3], to: [f64; 3], outward: [f64; 3]) -> bool {
+        let way = minus(to, from);
+        let middle = [0, 1, 2].map(|axis| f64::midpoint(from[axis], to[axis]));
+        let is_beside = |body: usize| {
+            self.skins.get(body).is_some_and(|skin| skin.has_side_near(middle, outward, BESIDE * length(way)))
+        };
+        let parts_sideways = dot(way, outward) < 0.0 && [self.own, self.other].into_iter().any(is_beside);
+        !parts_sideways && self.is_clear(from, to, outward)
     }
 }

@@ -337,7 +337,7 @@ impl Search<'_> {
             return Ok(());
         };
         let skins = TwoSkins { skins: site.body.skins(), own: own_body, other: other_body };
-        if !skins.can_touch(mesh.nodes()[node], mesh.nodes()[way.pair.partner], way.pair.normal) {
+        if !skins.is_clear(mesh.nodes()[node], mesh.nodes()[way.pair.partner], way.pair.normal) {
             let message = format!(
                 "a body lies between node {node} of `{own}` at {place} and the node of `{other}` across it; {PAIR_UP}"
             );
