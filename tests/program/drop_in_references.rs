@@ -50,7 +50,7 @@ BASE, 1, 3
 fn thirds(dat: &str, title: &str) -> Vec<f64> {
     let tables = dat.split(title).skip(1);
     let values = tables.map(|table| table.lines().nth(2).unwrap_or_else(|| panic!("{dat}")).split_whitespace());
-    values.map(|line| line.rev().next().and_then(|word| word.parse().ok()).unwrap_or(f64::NAN)).collect()
+    values.map(|mut line| line.next_back().and_then(|word| word.parse().ok()).unwrap_or(f64::NAN)).collect()
 }
 
 #[track_caller]

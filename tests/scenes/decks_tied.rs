@@ -147,7 +147,7 @@ fn ties_that_cannot_be_read_are_refused_with_their_line() {
             8,
             "node 5000 is the reference of two rigid bodies, or of a bolt too",
         ),
-        ("*RIGID BODY, ELSET=LEFT, REF NODE=1\n", 0, "there is no set of elements `LEFT`"),
+        ("*RIGID BODY, ELSET=NOWHERE, REF NODE=1\n", 0, "there is no set of elements `NOWHERE`"),
         ("*RIGID BODY, REF NODE=1\n", 0, "is read with one set, of nodes or of elements"),
         ("*RIGID BODY, NSET=END, REF NODE=1, ROT NODE=1\n", 0, "ROT NODE must be a node of its own"),
     ] {
