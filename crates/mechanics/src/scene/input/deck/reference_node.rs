@@ -11,9 +11,9 @@ pub(crate) enum Part {
     Motion(usize, usize),
     /// The force of a rigid face along x, y or z, or from 3 its moment about its centre, which is given.
     Force(usize, usize, [f64; 3]),
-    /// Of the bolt of a tie.
+    /// The shortening of the bolt of a tie.
     Shortening(usize),
-    /// Of the bolt of a tie.
+    /// The tension of the bolt of a tie.
     Tension(usize),
 }
 
