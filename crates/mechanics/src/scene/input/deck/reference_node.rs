@@ -1,4 +1,10 @@
-//! What an answer says of reference nodes, which are no nodes of its mesh: displacements and forces as sums of its parts.
+//! What an answer says of reference nodes, which are no nodes of its mesh: displacements and forces as sums of its
+//! parts.
+
+use std::collections::HashMap;
+
+/// The displacement along x, y, z (length) and the rotation about them (radians) of nodes, by their numbers.
+pub type Displacements = HashMap<usize, [f64; 6]>;
 
 /// A part of the answer to the scene of a deck.
 #[derive(Clone, Copy, Debug, PartialEq)]
