@@ -138,14 +138,10 @@ fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
         )];
     };
     let extent = match estimate.width {
-        Some(width) => {
-            let width = within(width, estimate.width_uncertainty, &units.length);
-            // About an axis only the section has a width.
-            match contact.width {
-                Some(_) => format!("width {width}"),
-                None => format!("width in the section {width}, the radius of a disc"),
-            }
+        Some(width) if contact.width.is_none() => {
+            format!("width in the section {}", within(width, estimate.width_uncertainty, &units.length))
         }
+        Some(width) => format!("width {}", within(width, estimate.width_uncertainty, &units.length)),
         None => format!("area {}", within(estimate.area, Some(estimate.area_uncertainty), &square)),
     };
     let peak = within(pressure, estimate.pressure_uncertainty, &units.pressure());

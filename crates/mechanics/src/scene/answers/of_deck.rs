@@ -5,8 +5,7 @@ use std::collections::HashMap;
 use super::answer::Answer;
 use crate::error::Error;
 use crate::fem::geometry::cross;
-use crate::scene::input::deck::Displacements;
-use crate::scene::input::deck::reference_node::{Amount, Part};
+use crate::scene::input::deck::reference_node::{Amount, Displacements, Part};
 use crate::scene::input::deck::requests::Requests;
 use crate::scene::models::resultants::Resultant;
 

@@ -25,7 +25,6 @@ mod temperatures;
 mod ties;
 mod transforms;
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
@@ -37,7 +36,7 @@ use bodies::Body;
 use contacts::contacts;
 use loads::Loads;
 use materials::Sections;
-use reference_node::ReferenceNode;
+use reference_node::{Displacements, ReferenceNode};
 use references::References;
 use requests::Requests;
 use rigid::RigidBodies;
@@ -82,9 +81,6 @@ pub(crate) struct Reading<'a> {
     /// The displacements at the ends of the steps before it, as far as they are known.
     pub earlier: &'a [Displacements],
 }
-
-/// The displacement (length) and the rotation (radians) of nodes, by their numbers.
-pub type Displacements = HashMap<usize, [f64; 6]>;
 
 impl DeckScene {
     /// The scene of the deck `file`, which it calls `named`.

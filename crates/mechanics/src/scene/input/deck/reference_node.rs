@@ -1,4 +1,10 @@
-//! What an answer says of reference nodes, which are no nodes of its mesh: displacements and forces as sums of its parts.
+//! What an answer says of reference nodes, which are no nodes of its mesh: displacements and forces as sums of its
+//! parts.
+
+use std::collections::HashMap;
+
+/// The displacement along x, y, z (length) and the rotation about them (radians) of nodes, by their numbers.
+pub type Displacements = HashMap<usize, [f64; 6]>;
 
 /// A part of the answer to the scene of a deck.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,9 +17,9 @@ pub(crate) enum Part {
     Motion(usize, usize),
     /// The force of a rigid face along x, y or z, or from 3 its moment about its centre, which is given.
     Force(usize, usize, [f64; 3]),
-    /// Of the bolt of a tie.
+    /// The shortening of the bolt of a tie.
     Shortening(usize),
-    /// Of the bolt of a tie.
+    /// The tension of the bolt of a tie.
     Tension(usize),
 }
 

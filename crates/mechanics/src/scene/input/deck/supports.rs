@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use serde_json::{Value, json};
 
-use super::Displacements;
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_nodes};
+use super::reference_node::Displacements;
 use super::references::References;
 use super::scene_text::Entry;
 use super::transforms::Transforms;
