@@ -421,7 +421,7 @@ fn every_link_to_a_heading_leads_to_an_existing_heading() {
 #[test]
 fn long_documents_stay_within_their_limits() {
     for (name, most_lines, most_letters) in
-        [("README.md", 140, 120), ("ARCHITECTURE.md", 120, 140), ("CHANGELOG.md", 220, 140)]
+        [("README.md", 140, 120), ("ARCHITECTURE.md", 120, 140), ("CHANGELOG.md", 200, 140)]
     {
         let text = read(name);
         let lines = text.lines().count();
