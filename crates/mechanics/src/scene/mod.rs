@@ -22,11 +22,9 @@ mod modes;
 mod motions;
 
 pub use answers::answer::{Answer, Forces};
-pub use answers::of_deck::ReferenceValues;
 pub use answers::segments::{ContactExtent, Segment};
 pub use derivatives::sensitivity::{ByParameter, Sensitivities, Sensitivity, outputs_of};
 pub use input::body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
-pub use input::deck::reference_node::Displacements;
 pub use input::deck::requests::{RequestedTable, Requests};
 pub(crate) use input::entry::refused;
 pub use input::obstacle::{Inertia, Obstacle, ObstacleRow, PlacedObstacle};

@@ -26,7 +26,8 @@ impl<'a> Sheet<'a> {
 
 fn between<'a>(slave: Sheet<'a>, master: Sheet<'a>, formulation: Formulation) -> Mortar<'a> {
     let (slave, master, reach) = (slave.mesh(), master.mesh(), f64::INFINITY);
-    Mortar { slave, master, formulation, direction: None, reach, may_carry: None, has_coefficient: None, between: None }
+    let (direction, between) = (None, None);
+    Mortar { slave, master, formulation, direction, reach, may_carry: None, has_coefficient: None, between }
 }
 
 /// The shares of the row of a node: of all slave nodes, and of all master nodes.

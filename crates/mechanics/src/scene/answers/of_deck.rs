@@ -5,30 +5,20 @@ use std::collections::HashMap;
 use super::answer::Answer;
 use crate::error::Error;
 use crate::fem::geometry::cross;
-use crate::scene::input::deck::reference_node::{Amount, Displacements, Part};
+use crate::scene::input::deck::reference_node::{Amount, Part};
 use crate::scene::input::deck::requests::Requests;
 use crate::scene::models::resultants::Resultant;
 
-/// A reference node of a deck: a node that moves or is moved, but is no node of the mesh.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ReferenceValues {
-    /// The number of the node.
-    pub number: usize,
-    /// Displacement along x, y and z, in length, then the rotation about them, in radians.
-    pub displacement: [f64; 6],
-    /// The force from outside along x, y and z, in force, then the moment about them, in force times length: of loads,
-    /// and of what holds prescribed displacements.
-    pub force: [f64; 6],
-}
-
 impl Answer {
-    /// The displacements and forces of the reference nodes of the deck that this is an answer to.
+    /// The displacement and the force of each reference node of the deck that this is an answer to, by its number: along
+    /// x, y and z, in length and in force, then the rotation about them, in radians, and the moment, in force times
+    /// length. The force comes from outside: from loads, and from what holds prescribed displacements.
     ///
     /// # Errors
     /// As [`Answer::forces`].
-    pub fn of_references(&self, requests: &Requests) -> Result<Vec<ReferenceValues>, Error> {
+    pub fn of_references(&self, requests: &Requests) -> Result<HashMap<usize, [[f64; 6]; 2]>, Error> {
         if requests.references.is_empty() {
-            return Ok(Vec::new());
+            return Ok(HashMap::new());
         }
         let numbers = self.model().mesh().node_numbers().unwrap_or_default();
         let places: HashMap<usize, usize> = numbers.into_iter().zip(0..).collect();
@@ -40,20 +30,19 @@ impl Answer {
             let along = |axis: usize| (0..3).map(|own| values[own] * axes[own][axis]).sum();
             [along(0), along(1), along(2), values[3], values[4], values[5]]
         };
-        let of_node = requests.references.iter().map(|node| ReferenceValues {
-            number: node.number,
-            displacement: values(node.number, &node.displacement),
-            force: values(node.number, &node.force),
-        });
+        let of_node = requests
+            .references
+            .iter()
+            .map(|node| (node.number, [&node.displacement, &node.force].map(|amounts| values(node.number, amounts))));
         Ok(of_node.collect())
     }
 
-    /// The displacement of each node of the deck that this is an answer to, and the rotation of its reference nodes, by
-    /// their numbers.
+    /// The displacement of each node of the deck that this is an answer to, in length, and the rotation of its reference
+    /// nodes, in radians, by their numbers: `[x, y, z, about x, about y, about z]`.
     ///
     /// # Errors
     /// As [`Answer::of_references`].
-    pub fn displacements_of_deck(&self, requests: &Requests) -> Result<Displacements, Error> {
+    pub fn displacements_of_deck(&self, requests: &Requests) -> Result<HashMap<usize, [f64; 6]>, Error> {
         let numbers = self.model().mesh().node_numbers().unwrap_or_default();
         let of_node = |(node, number): (usize, usize)| {
             let [x, y, z] = self.model().at_node(self.displacement(), node);
@@ -61,7 +50,7 @@ impl Answer {
         };
         let of_mesh = numbers.into_iter().enumerate().map(of_node);
         let references = self.of_references(requests)?;
-        Ok(references.into_iter().map(|node| (node.number, node.displacement)).chain(of_mesh).collect())
+        Ok(references.into_iter().map(|(number, [displacement, _])| (number, displacement)).chain(of_mesh).collect())
     }
 
     fn amount(&self, amount: &Amount, places: &HashMap<usize, usize>, resultants: &[Resultant]) -> f64 {

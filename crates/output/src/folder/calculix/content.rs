@@ -1,8 +1,10 @@
 //! What the files have in common: the numbers of the deck, and values in the order of the mesh.
 
+use std::collections::HashMap;
+
 use signorini_mechanics::Error;
 use signorini_mechanics::fem::Formulation;
-use signorini_mechanics::scene::{Answer, ContactRow, ReferenceValues, Requests};
+use signorini_mechanics::scene::{Answer, ContactRow, Requests};
 
 /// CalculiX computes a wedge of two degrees of a body of revolution, and prints its forces and volumes in tables.
 const WEDGES: f64 = 180.0;
@@ -17,8 +19,8 @@ pub(super) struct Content<'a> {
     pub nodes: Vec<(usize, usize)>,
     /// The same of each element.
     pub elements: Vec<(usize, usize)>,
-    /// The nodes that move or are moved, but are no nodes of the mesh.
-    pub references: Vec<ReferenceValues>,
+    /// The displacement and the force of each node that moves or is moved, but is no node of the mesh, by its number.
+    pub references: HashMap<usize, [[f64; 6]; 2]>,
 }
 
 impl<'a> Content<'a> {
@@ -87,9 +89,9 @@ impl<'a> Content<'a> {
         &self,
         number: usize,
         of_mesh: &[[f64; N]],
-        of_reference: impl Fn(&ReferenceValues) -> [f64; N],
+        of_reference: impl Fn(&[[f64; 6]; 2]) -> [f64; N],
     ) -> [f64; N] {
-        let reference = || self.references.iter().find(|reference| reference.number == number).map(&of_reference);
+        let reference = || self.references.get(&number).map(&of_reference);
         self.node(number).map(|node| of_mesh[node]).or_else(reference).unwrap_or([0.0; N])
     }
 

@@ -86,12 +86,12 @@ pub(super) fn tables(content: &Content) -> Result<Vec<Table>, Error> {
         match table.label.as_str() {
             "U" => {
                 let of_mesh = content.displacements();
-                let value = |number| content.of_node(number, &of_mesh, |node| first(node.displacement));
+                let value = |number| content.of_node(number, &of_mesh, |[displacement, _]| first(*displacement));
                 tables.extend(content.of_vectors(table, value)?);
             }
             "RF" => {
                 let (of_mesh, share) = (content.forces()?, content.share());
-                let value = |number| content.of_node(number, &of_mesh, |node| first(node.force));
+                let value = |number| content.of_node(number, &of_mesh, |[_, force]| first(*force));
                 tables.extend(content.of_vectors(table, |number| value(number).map(|part| share * part))?);
             }
             "NT" => {

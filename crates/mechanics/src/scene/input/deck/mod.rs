@@ -25,6 +25,7 @@ mod temperatures;
 mod ties;
 mod transforms;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
@@ -200,8 +201,8 @@ impl Scene {
     }
 
     /// Reads one step of a deck, from 1, as [`Scene::read_deck`] does, and what it asks for. `earlier` are the
-    /// displacements at the ends of the steps before it, which a card `*BOUNDARY, FIXED` holds
-    /// ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
+    /// displacements at the ends of the steps before it, of all nodes by their numbers, which a card `*BOUNDARY, FIXED`
+    /// holds ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
     ///
     /// # Errors
     /// As [`Scene::read_deck`]; [`qp::Error::FileSyntax`] with the line for results of a set that does not exist.
@@ -209,7 +210,7 @@ impl Scene {
         path: impl AsRef<Path>,
         permits: &[&str],
         step: usize,
-        earlier: &[Displacements],
+        earlier: &[HashMap<usize, [f64; 6]>],
     ) -> Result<(Scene, Requests), Error> {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();

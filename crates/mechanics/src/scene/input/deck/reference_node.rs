@@ -3,8 +3,8 @@
 
 use std::collections::HashMap;
 
-/// The displacement along x, y, z (length) and the rotation about them (radians) of nodes, by their numbers.
-pub type Displacements = HashMap<usize, [f64; 6]>;
+/// The displacement along x, y, z, in length, and the rotation about them, in radians, of nodes, by their numbers.
+pub(crate) type Displacements = HashMap<usize, [f64; 6]>;
 
 /// A part of the answer to the scene of a deck.
 #[derive(Clone, Copy, Debug, PartialEq)]
