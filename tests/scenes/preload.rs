@@ -3,7 +3,9 @@
 use serde_json::{Value, json};
 use signorini::Error;
 use signorini::scene::{Answer, Resultant};
+use support::draws::Draws;
 use support::scenes::{answer, build};
+use support::{cases, seed};
 
 /// Rounding of a solve with some hundred unknowns, relative to the largest value.
 const ROUNDING: f64 = 1e-11;
@@ -175,6 +177,32 @@ fn a_bolted_joint_carries_a_load_until_its_seat_opens() {
         near(seat(&answer), on_seat);
         near(tie(&answer).force[1].abs(), on_seat + load);
     }
+}
+
+/// Bolts in directions at random: those that point out of the first part draw together, the others are refused.
+#[test]
+fn no_bolt_pushes_its_parts_apart() {
+    let mut draws = Draws(seed(74));
+    let mut drawn = [0, 0];
+    for _ in 0..cases(30, 100) {
+        let direction = [0, 1, 2].map(|axis| draws.signed() * if axis == 2 { 1.0 } else { 0.3 });
+        let sides = if draws.below(2) == 0 { ["top", "far.bottom"] } else { ["far.bottom", "top"] };
+        let out = if sides[0] == "top" { direction[2] } else { -direction[2] };
+        let preload = json!({"boundary": sides[0], "to": sides[1], "force": 3, "direction": direction});
+        match build(&bar("hex8", [1, 1], 0.3, &preload)) {
+            Ok(_) => {
+                assert!(out > 0.0, "{direction:?}");
+                drawn[0] += 1;
+            }
+            Err(Error::Refused { code: "approach-away", path, .. }) if out < 0.0 => {
+                assert_eq!(path, "ties[0].preload.direction");
+                drawn[1] += 1;
+            }
+            // Nearly along the faces.
+            Err(error) => assert!(direction[2].abs() < 0.01, "{direction:?}: {error}"),
+        }
+    }
+    assert!(drawn.iter().all(|&count| count > 5), "{drawn:?}");
 }
 
 #[test]

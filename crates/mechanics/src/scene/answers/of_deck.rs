@@ -10,9 +10,9 @@ use crate::scene::input::deck::requests::Requests;
 use crate::scene::models::resultants::Resultant;
 
 impl Answer {
-    /// The displacement and the force of each reference node of the deck that this is an answer to, by its number: along
-    /// x, y and z, in length and in force, then the rotation about them, in radians, and the moment, in force times
-    /// length. The force comes from outside: from loads, and from what holds prescribed displacements.
+    /// The displacement and the force of each reference node of the deck that this is an answer to, by its number:
+    /// along x, y and z, in length and in force, then the rotation about them, in radians, and the moment, in force
+    /// times length. The force comes from outside: from loads, and from what holds prescribed displacements.
     ///
     /// # Errors
     /// As [`Answer::forces`].
@@ -37,8 +37,8 @@ impl Answer {
         Ok(of_node.collect())
     }
 
-    /// The displacement of each node of the deck that this is an answer to, in length, and the rotation of its reference
-    /// nodes, in radians, by their numbers: `[x, y, z, about x, about y, about z]`.
+    /// The displacement of each node of the deck that this is an answer to, in length, and the rotation of its
+    /// reference nodes, in radians, by their numbers: `[x, y, z, about x, about y, about z]`.
     ///
     /// # Errors
     /// As [`Answer::of_references`].

@@ -14,7 +14,7 @@ use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{cross, dot, length, unit};
 use crate::scene::Warning;
-use crate::scene::input::entry::{finite, vector, wrong};
+use crate::scene::input::entry::{finite, refused, vector, wrong};
 use crate::scene::input::obstacle::SideOrder;
 use crate::scene::input::schema::PreloadSpec;
 
@@ -54,7 +54,7 @@ impl PreloadSpec {
     ///
     /// # Errors
     /// [`Error::Scene`] for boundaries that do not face each other, for a preload without a force or a shortening or
-    /// with both, and for a direction along the faces.
+    /// with both, and for a direction along the faces; [`Error::Refused`] for one against the outward normal.
     pub(super) fn rows(
         &self,
         (path, tie): (&str, usize),
@@ -105,11 +105,19 @@ impl PreloadSpec {
             return Err(wrong(path, "has no length"));
         }
         let given = if facing.is_swapped { given.map(|part| 0.0 - part) } else { given };
-        // A direction along the faces would shear them.
-        match dot(given, outward).abs() > LEAST {
-            true => Ok(given),
-            false => Err(wrong(path, "lies along the faces of the cut; it must lead from one part to the other")),
+        let along = dot(given, outward);
+        if along.abs() <= LEAST {
+            // It would shear the faces.
+            return Err(wrong(path, "lies along the faces of the cut; it must lead from one part to the other"));
         }
+        if along < 0.0 {
+            let message = format!(
+                "leads from `{}` back into its own part, so that the tension would push the parts apart; turn its sign, or leave it out",
+                self.boundary
+            );
+            return Err(refused("approach-away", path, message));
+        }
+        Ok(given)
     }
 }
 

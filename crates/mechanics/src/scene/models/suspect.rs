@@ -34,9 +34,10 @@ impl Scene {
         warnings.extend(self.folded_corners(body));
         // An equation hands a force on one of its nodes over to the others.
         let mut joined = HashSet::new();
-        for tie in &self.ties {
+        for (index, tie) in self.ties.iter().enumerate() {
             if let TieSpec::Equation(EquationSpec { terms, .. }) = tie {
-                joined.extend(terms_of(terms, "ties", body)?.into_iter().map(|(node, _)| node));
+                let path = format!("ties[{index}].equation");
+                joined.extend(terms_of(terms, &path, body)?.into_iter().map(|(node, _)| node));
             }
         }
         for index in 0..self.loads.len() {

@@ -201,8 +201,9 @@ impl Scene {
     }
 
     /// Reads one step of a deck, from 1, as [`Scene::read_deck`] does, and what it asks for. `earlier` are the
-    /// displacements at the ends of the steps before it, of all nodes by their numbers, which a card `*BOUNDARY, FIXED`
-    /// holds ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
+    /// displacements at the ends of the steps before it, in length and radians, of all nodes by their numbers, which a
+    /// card `*BOUNDARY, FIXED` holds
+    /// ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
     ///
     /// # Errors
     /// As [`Scene::read_deck`]; [`qp::Error::FileSyntax`] with the line for results of a set that does not exist.

@@ -47,8 +47,8 @@ pub struct PreloadSpec {
     /// The length by which the bolt is shortened.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortening: Option<f64>,
-    /// The direction from the first part to the other, of any length; the mean outward normal of the face if it is left
-    /// out.
+    /// The direction from the first part to the other, of any length: it points out of the first part. If it is left
+    /// out, it is the mean outward normal of the face.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<Vec<f64>>,
 }
