@@ -12,6 +12,7 @@ pub use phase::{Phase, Temperature};
 pub(crate) use point::LocalPoint;
 pub use region::Region;
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use signorini_qp as qp;
@@ -43,6 +44,9 @@ pub struct ElasticBody {
     phases: Vec<Phase>,
     /// The phase of each element.
     of_elements: Vec<u32>,
+    /// Elements whose Jacobian is negative at a node alone: element, local node and determinant, relative to the size of
+    /// the element to the power of its dimension.
+    folded: Vec<(usize, usize, f64)>,
     skins: Skins,
 }
 
@@ -94,16 +98,25 @@ impl ElasticBody {
             }
         }
         let (regions, of_elements) = (vec![Region::whole(&mesh)], vec![0; mesh.element_count()]);
-        let body =
-            ElasticBody { mesh, formulation, regions, phases: vec![phase], of_elements, skins: Skins::default() };
+        let (phases, skins) = (vec![phase], Skins::default());
+        let mut body = ElasticBody { mesh, formulation, regions, phases, of_elements, folded: Vec::new(), skins };
         let tables = body.tabulated();
-        let fault = |index: usize| {
-            let BodyElement { nodes, kind, cell, .. } = body.element(index)?;
-            let reason = cell.check(tables.at(kind)).err()?;
-            Some(format!("element {index} (nodes {nodes:?}, from 0): {reason}"))
+        let judged = |mut run: Range<usize>| {
+            let mut folded = Vec::new();
+            let fault = run.find_map(|index| {
+                let BodyElement { nodes, kind, cell, .. } = body.element(index)?;
+                let found = cell.check(tables.at(kind));
+                folded.extend(found.as_ref().ok().copied().flatten().map(|one| (index, one.point, one.value)));
+                found.err().map(|reason| format!("element {index} (nodes {nodes:?}, from 0): {reason}"))
+            });
+            (fault, folded)
         };
-        let mut first: Option<String> = None;
-        in_order(body.mesh.element_count(), |mut run| run.find_map(fault), |found| first = first.take().or(found));
+        let (mut first, mut folded) = (None, Vec::new());
+        in_order(body.mesh.element_count(), judged, |(fault, own)| {
+            first = first.take().or(fault);
+            folded.extend(own);
+        });
+        body.folded = folded;
         first.map_or(Ok(body), fail)
     }
 
@@ -161,6 +174,7 @@ impl ElasticBody {
         let phases = self.phases.len() as u32;
         self.phases.extend_from_slice(&other.phases);
         self.of_elements.extend(other.of_elements.iter().map(|phase| phases + phase));
+        self.folded.extend(other.folded.iter().map(|&(element, node, value)| (elements + element, node, value)));
         Ok(self)
     }
 
@@ -204,6 +218,12 @@ impl ElasticBody {
     /// [`ElasticBody::beside`].
     pub fn regions(&self) -> &[Region] {
         &self.regions
+    }
+
+    /// The elements whose Jacobian is negative at a node, although it is positive where they are integrated: element,
+    /// local node and determinant, relative to the size of the element to the power of its dimension.
+    pub(crate) fn folded(&self) -> &[(usize, usize, f64)] {
+        &self.folded
     }
 
     /// The skin of each body, in their order; none in one dimension.

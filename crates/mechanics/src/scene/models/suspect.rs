@@ -6,7 +6,6 @@ use super::parts::Parts;
 use super::rows::ContactRow;
 use super::ties::terms_of;
 use crate::error::Error;
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::geometry::dot;
 use crate::fem::{Boundary, DofMap, ElasticBody};
 use crate::scene::Warning;
@@ -31,7 +30,7 @@ impl Scene {
         let mut warnings = self.free_symmetries(body);
         let tied = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));
         warnings.extend(coincident_nodes(body, &tied.flat_map(Boundary::nodes).collect()));
-        warnings.extend(self.folded_corners(body));
+        warnings.extend(folded_corner(body));
         // An equation hands a force on one of its nodes over to the others.
         let mut joined = HashSet::new();
         for (index, tie) in self.ties.iter().enumerate() {
@@ -57,33 +56,6 @@ impl Scene {
         Ok(warnings)
     }
 
-    /// Elements whose Jacobian is negative at a node, although it is positive where they are integrated.
-    fn folded_corners(&self, body: &ElasticBody) -> Option<Warning> {
-        let mesh = body.mesh();
-        let mut tables: Vec<(ElementKind, Tabulated)> = Vec::new();
-        let (mut first, mut count) = (None, 0);
-        for (element, nodes) in mesh.elements().enumerate() {
-            let kind = mesh.kind_of(element);
-            let table = match tables.iter().position(|(of, _)| *of == kind) {
-                Some(place) => place,
-                None => {
-                    tables.push((kind, Tabulated::new(kind.reference(), Rule::Straight)));
-                    tables.len() - 1
-                }
-            };
-            let mut coordinates = [[0.0; 3]; MAX_NODES];
-            coordinates.iter_mut().zip(nodes).for_each(|(at, &node)| *at = mesh.nodes()[node]);
-            if let Ok(Some(folded)) = Cell::new(kind.reference(), &coordinates).check(&tables[table].1) {
-                count += 1;
-                first = first.or(Some((element, nodes.get(folded.point).copied(), folded.value)));
-            }
-        }
-        let (element, node, value) = first?;
-        let at = node.map_or_else(Vec::new, |node| mesh.nodes()[node][..body.dimension()].to_vec());
-        let element = mesh.element_numbers().and_then(|numbers| numbers.get(element).copied()).unwrap_or(element);
-        Some(Warning::FoldedCorner { element, at, value, count })
-    }
-
     /// Cuts at planes of symmetry that no support holds.
     fn free_symmetries(&self, body: &ElasticBody) -> Vec<Warning> {
         let is_held = |name: &str| {
@@ -98,6 +70,15 @@ impl Scene {
         let free = names.filter(is_cut).filter(|name| !is_held(name) && !on_axis(name));
         free.map(|name| Warning::FreeSymmetry { boundary: name.to_string() }).collect()
     }
+}
+
+/// The first element whose Jacobian is negative at a node, although it is positive where it is integrated.
+fn folded_corner(body: &ElasticBody) -> Option<Warning> {
+    let (mesh, count) = (body.mesh(), body.folded().len());
+    let &(element, node, value) = body.folded().first()?;
+    let at = mesh.nodes()[mesh.element(element)[node]][..body.dimension()].to_vec();
+    let element = mesh.element_numbers().and_then(|numbers| numbers.get(element).copied()).unwrap_or(element);
+    Some(Warning::FoldedCorner { element, at, value, count })
 }
 
 /// The node of a nodal load that is zero on all others.
