@@ -44,8 +44,8 @@ pub struct ElasticBody {
     phases: Vec<Phase>,
     /// The phase of each element.
     of_elements: Vec<u32>,
-    /// Elements whose Jacobian is negative at a node alone: element, local node and determinant, relative to the size of
-    /// the element to the power of its dimension.
+    /// Elements whose Jacobian is negative at a node alone: element, local node and determinant, relative to the size
+    /// of the element to the power of its dimension.
     folded: Vec<(usize, usize, f64)>,
     skins: Skins,
 }

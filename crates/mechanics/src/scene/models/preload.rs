@@ -54,7 +54,8 @@ impl PreloadSpec {
     ///
     /// # Errors
     /// [`Error::Scene`] for boundaries that do not face each other, for a preload without a force or a shortening or
-    /// with both, and for a direction along the faces; [`Error::Refused`] for one against the outward normal.
+    /// with both, and for a direction along the faces; [`Error::Refused`] for one against the outward normal
+    /// with a positive amount.
     pub(super) fn rows(
         &self,
         (path, tie): (&str, usize),
@@ -110,7 +111,8 @@ impl PreloadSpec {
             // It would shear the faces.
             return Err(wrong(path, "lies along the faces of the cut; it must lead from one part to the other"));
         }
-        if along < 0.0 {
+        // In a deck both may be turned around: together they draw.
+        if along < 0.0 && self.force.or(self.shortening).is_some_and(|amount| amount > 0.0) {
             let message = format!(
                 "leads from `{}` back into its own part, so that the tension would push the parts apart; turn its sign, or leave it out",
                 self.boundary
