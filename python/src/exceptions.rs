@@ -50,6 +50,10 @@ pub fn exception(
                 about.set_item("tolerance", tolerance)?;
                 "NotCertified"
             }
+            Error::BeyondSmallDisplacements { solution, .. } => {
+                about.set_item("solution", with_answer(*solution)?)?;
+                "BeyondSmallDisplacements"
+            }
             Error::Qp(qp::Error::Undecided { .. }) => "Undecided",
             Error::Qp(qp::Error::TooLarge { bytes, allowed, .. }) => {
                 about.set_item("bytes", bytes)?;

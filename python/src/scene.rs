@@ -39,8 +39,9 @@ use crate::work::{End, Place, run};
 /// without_friction : bool, optional
 ///     True leaves the friction of a deck out. False (the default) refuses such a deck.
 /// linear : bool, optional
-///     A deck that asks for large displacements (NLGEOM) is solved with small ones. True does so whatever its strains
-///     are. False (the default) refuses strains and rotations above 5 %.
+///     True gives the solution of small displacements whatever its strains and rotations are. False (the default)
+///     raises `BeyondSmallDisplacements` if they are above 50 %, and refuses those above 5 % of a deck that asks for
+///     large displacements (NLGEOM).
 /// step : int, optional
 ///     The step of a deck, from 1. The last step by default.
 ///
@@ -127,9 +128,8 @@ impl Scene {
         let py = source.py();
         let is_mapping = source.cast::<PyDict>().is_ok();
         let is_deck = source.extract::<PathBuf>().is_ok_and(signorini::Scene::is_deck);
-        if !is_deck && (without_friction || linear || step.is_some()) {
-            let message =
-                "`without_friction`, `linear` and `step` are for decks of CalculiX, whose names end with .inp";
+        if !is_deck && (without_friction || step.is_some()) {
+            let message = "`without_friction` and `step` are for decks of CalculiX, whose names end with .inp";
             return Err(plain_exception(py, Error::Scene { path: "source".into(), message: message.into() }));
         }
         let (scene, file) = match (is_mapping, source.extract::<PathBuf>()) {
@@ -139,7 +139,7 @@ impl Scene {
                 (scene, None)
             }
             (false, Ok(path)) if is_deck => {
-                let named = [("outside", allow_outside), ("friction", without_friction), ("linear", linear)];
+                let named = [("outside", allow_outside), ("friction", without_friction)];
                 let permits: Vec<&str> =
                     named.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
                 (signorini::Scene::read_deck(&path, &permits, step), Some((path, step)))
@@ -151,7 +151,7 @@ impl Scene {
             }
         };
         let scene = scene.map_err(|error| plain_exception(py, error))?;
-        let inner = Arc::new(signorini::Scene { reads_outside: allow_outside, ..scene });
+        let inner = Arc::new(signorini::Scene { reads_outside: allow_outside, is_linear: linear, ..scene });
         Ok(Scene { inner, file, model: Mutex::new(None) })
     }
 
@@ -374,7 +374,12 @@ impl SceneSolution {
         solution: signorini::Solution,
         goal: Goal,
     ) -> PyResult<Py<PyAny>> {
-        let answer = Answer::of(model, &solution).map_err(|error| plain_exception(py, error))?;
+        let answer = Answer::of(model.clone(), &solution).map_err(|error| {
+            exception(py, error, |solution| {
+                let answer = Answer::of_any_size(model, &solution).map_err(|error| plain_exception(py, error))?;
+                Self::of(py, scene.clone_ref(py), answer, solution, goal)
+            })
+        })?;
         if answer.model().warnings().iter().any(|warning| warning.code() == "nonlinear") {
             // The report refuses large strains and rotations of a deck that asks for large displacements.
             Summary::of_answer(&answer, solution.clone(), goal, 0.0).map_err(|error| plain_exception(py, error))?;

@@ -350,6 +350,19 @@ TOP, 3, 3, 0.2
 """
 
 
+def test_a_solution_beyond_small_displacements_is_carried_by_its_exception(tmp_path: Path) -> None:
+    deck = tmp_path / "cube.inp"
+    deck.write_text(DECK.replace("0.01", "2."))
+    with pytest.raises(sg.BeyondSmallDisplacements, match="small displacements do not describe") as raised:
+        sg.Scene(deck, step=1).solve()
+    assert raised.value.code == "beyond-small-displacements"
+    carried = raised.value.solution
+    assert isinstance(carried, sg.SceneSolution) and carried.report()["status"] == "beyond-small-displacements"
+    solution = sg.Scene(deck, step=1, linear=True).solve()
+    np.testing.assert_array_equal(solution.displacement, carried.displacement)
+    assert solution.report()["status"] == "certified"
+
+
 def test_a_deck_is_read_up_to_a_step(tmp_path: Path) -> None:
     deck = tmp_path / "cube.inp"
     deck.write_text(DECK)

@@ -101,6 +101,7 @@ fn steps_solved(
     let (mut step, mut earlier) = (deck.step.unwrap_or(1), Vec::new());
     loop {
         let (scene, requests) = Scene::read_step(file, &deck.permits(), step, &earlier)?;
+        let scene = Scene { is_linear: deck.linear, ..scene };
         let of_step =
             if requests.steps > 1 && deck.step.is_none() { folder.join(format!("step-{step}")) } else { folder.into() };
         let mut options = options.clone();

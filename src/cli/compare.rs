@@ -29,14 +29,16 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     });
     let ((qp, of_qp), (active_set, of_active_set), (penalty, of_penalty)) = (qp?, active_set?, penalty?);
     let summaries = [of_qp, of_active_set, of_penalty];
+    // A certified answer of the QP may still be one that small displacements do not describe.
+    let status = [agreement.status(), summaries[0].status].into_iter().collect();
     let text = (&summaries, &agreement).text(&input.title, &input.units);
     let is_part = summaries[0].parts_of_whole.is_some();
     let methods = json!({ "methods": summaries, "agreement": agreement });
     let report = Report::new(&OfPart::new(methods, is_part, &["agreement"]), text)?;
-    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, agreement.status())) };
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     Wanted::write_answer(&folder, &summaries[0].solution, qp.as_ref())?;
     report.write(&folder)?;
-    let outcome = report.outcome(common.format, agreement.status());
+    let outcome = report.outcome(common.format, status);
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
     let answers = [qp, active_set, penalty];
     let wanted = common.wanted(Pictures::usual_of_series(answers[0].model()));

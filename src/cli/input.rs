@@ -78,10 +78,10 @@ impl Input {
         }
     }
 
-    /// An answer, joined with its scene; `None` for a problem directory.
+    /// An answer of any size, joined with its scene; `None` for a problem directory.
     pub fn answer(&self, solution: &Solution) -> Result<Option<Answer>, Error> {
         match &self.content {
-            Content::Scene(model) => Answer::of(model.clone(), solution).map(Some),
+            Content::Scene(model) => Answer::of_any_size(model.clone(), solution).map(Some),
             Content::Directory(_) => Ok(None),
         }
     }
@@ -152,7 +152,7 @@ pub(super) fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
         true => Scene { folder: Some(PathBuf::new()), ..Scene::read("/dev/stdin")? },
         false => Scene::read(path)?,
     };
-    Ok(Scene { reads_outside: limits.deck.allow_outside, ..scene })
+    Ok(Scene { reads_outside: limits.deck.allow_outside, is_linear: limits.deck.linear, ..scene })
 }
 
 /// Reads a scene and makes sure that it fits into these `limits`.

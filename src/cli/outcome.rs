@@ -115,7 +115,7 @@ impl Report {
     pub fn outcome(self, format: Format, status: Status) -> Outcome {
         let ending = match status {
             Status::Certified => Ending::Certified,
-            Status::NotCertified | Status::Unstable => Ending::NotCertified,
+            Status::NotCertified | Status::Unstable | Status::BeyondSmallDisplacements => Ending::NotCertified,
         };
         Outcome { ending, ..self.printed(format) }
     }

@@ -7,10 +7,12 @@ use signorini::{
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 use signorini::fem::{ClosedSurface, GmshFile};
 use signorini::qp::{self, read_problem};
+use signorini::scene::Answer;
 use signorini::study::Sweep;
 use support::oracles::Dense;
 
@@ -56,6 +58,8 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     let soft: [&[f64]; 2] = [&[1.0, -1.0], &[-1.0, 1.0 + f64::EPSILON]];
     let held_within_rounding = Dense::new(&soft, &[1.0, 1.0], &[&[0.0, -1.0]], &[0.5]).problem()?;
     let plane = scene(("[4]", "[4]"))?.build()?;
+    let soft = Arc::new(scene(("\"young\": 1000", "\"young\": 1"))?.build()?);
+    let beyond = Answer::of(soft.clone(), &solve_qp(soft.problem())?);
     let refused = solve(plane.problem(), &Settings::default().with_memory(1.0)).unwrap_err();
     let qp::Error::NoRoom { factor, .. } = refused else { panic!("{refused}") };
     // One solve has room, a thousand answers have none.
@@ -90,6 +94,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
             ("setting", solve(&spring_and_wall, &settings(|settings| settings.threads = Some(0))).unwrap_err().into()),
         ),
         ("NotCondensed", ("not-condensed", still.map(drop).unwrap_err().into())),
+        ("BeyondSmallDisplacements", ("beyond-small-displacements", beyond.map(drop).unwrap_err())),
         ("TooLarge", ("too-large", scene(("[4]", "[4000]"))?.check_size(1e3).unwrap_err())),
         ("TooManyAnswers", ("too-large", Sweep::over_gaps(&plane, &[0.0; 1000], &for_one).unwrap_err())),
         ("Numerical", ("numerical", solve(&oblique, &Settings::with_method(Method::Mprgp)).unwrap_err().into())),

@@ -136,6 +136,7 @@ fn bricks_of_a_file_have_finer_meshes() {
     desk.write("box.msh", std::fs::read(mesh).unwrap());
     let mut scene = estimated(2);
     scene["body"] = json!({"gmsh": {"file": "box.msh"}});
+    scene["obstacles"][0]["shape"]["sphere"]["apex"] = json!([0.5, 0.5, 0.99]);
     desk.write("scene.json", scene.to_string());
     let run = desk.run(&["solve", "scene.json", "--total-error", "0.2", "--format", "json"]);
     assert!(run.ends_with(0).json()["levels"].as_array().unwrap().len() > 1);

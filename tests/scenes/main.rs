@@ -33,6 +33,7 @@ mod rings;
 mod scene_errors;
 mod scene_model;
 mod slender;
+mod small_displacements;
 mod springs;
 mod surfaces;
 mod symmetry;

@@ -63,6 +63,16 @@ pub enum Error {
         /// A sentence on what would go wrong and where, with numbers, and on what to change.
         message: String,
     },
+    /// An answer that small displacements do not describe: it solves their equations, and the body would deform
+    /// otherwise.
+    #[error("{message}")]
+    BeyondSmallDisplacements {
+        /// A sentence on the strain, rotation or depth with its place, on the likely cause, and on what to change.
+        message: String,
+        /// The answer of small displacements;
+        /// [`Answer::of_any_size`](crate::scene::Answer::of_any_size) joins it with its model.
+        solution: Box<Solution>,
+    },
     /// A scene with values that do not describe a problem.
     #[error("{} `{path}`: {message}", if path.starts_with("--") { "option" } else { "scene, at" })]
     Scene {
@@ -78,6 +88,7 @@ impl Error {
     pub fn into_best(self) -> Option<Solution> {
         match self {
             Error::Qp(error) => error.into_best(),
+            Error::BeyondSmallDisplacements { solution, .. } => Some(*solution),
             _ => None,
         }
     }
@@ -91,6 +102,7 @@ impl Error {
             Error::Mesh { .. } => "mesh",
             Error::SceneSyntax { .. } | Error::Scene { .. } => "scene",
             Error::Refused { code, .. } => code,
+            Error::BeyondSmallDisplacements { .. } => "beyond-small-displacements",
         }
     }
 
@@ -99,6 +111,7 @@ impl Error {
     pub fn status(&self) -> &'static str {
         match self {
             Error::Qp(error) => error.status(),
+            Error::BeyondSmallDisplacements { .. } => "beyond-small-displacements",
             _ => "bad_input",
         }
     }
@@ -108,6 +121,7 @@ impl Error {
     pub fn failure(&self) -> Failure {
         match self {
             Error::Qp(error) => error.failure(),
+            Error::BeyondSmallDisplacements { .. } => Failure::NotCertified,
             _ => Failure::BadInput,
         }
     }

@@ -22,6 +22,7 @@ from signorini import qp
 from signorini._errors import (
     BadInput,
     BadType,
+    BeyondSmallDisplacements,
     FileError,
     Infeasible,
     InternalError,
@@ -71,6 +72,7 @@ from signorini._studies import Sweep, Tradeoff, sweep, tradeoff
 __all__ = [
     "BadInput",
     "BadType",
+    "BeyondSmallDisplacements",
     "Certificate",
     "Comparison",
     "Event",

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from signorini._signorini import Solution
+    from signorini._signorini import SceneSolution, Solution
 
 
 class SignoriniError(Exception):
@@ -140,6 +140,22 @@ class NotCertified(SignoriniError):
     condition: str = ""
     value: float = 0.0
     tolerance: float = 0.0
+
+
+class BeyondSmallDisplacements(SignoriniError):
+    """A solution of a scene that the equations of small displacements do not describe.
+
+    A strain is above 50 %, a rotation above 0.5 rad, or a contact row starts deeper inside its obstacle than its body is
+    thick. The sentence names the place and the likely cause. `Scene(..., linear=True)` gives the solution all the same.
+
+    Attributes
+    ----------
+    solution : SceneSolution
+        The solution of small displacements, with its certificate.
+    """
+
+    code = "beyond-small-displacements"
+    solution: SceneSolution
 
 
 class Undecided(SignoriniError):

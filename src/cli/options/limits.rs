@@ -14,8 +14,8 @@ pub(in crate::cli) struct DeckOptions {
     /// Take a deck with friction without it: the answer is that of a frictionless contact
     #[arg(long)]
     pub without_friction: bool,
-    /// Answer a deck that asks for large displacements (NLGEOM) with small ones, also where strains or rotations exceed
-    /// 5 %
+    /// Give the answer of small displacements whatever its strains and rotations are; without it, those above 50 % end
+    /// with exit code 4, and those above 5 % of a deck that asks for large displacements (NLGEOM) are refused
     #[arg(long)]
     pub linear: bool,
     /// Step of a deck, from 1 [default: the last one; of `ccx`: all in turn]
@@ -26,14 +26,13 @@ pub(in crate::cli) struct DeckOptions {
 impl DeckOptions {
     /// A given option that only decks have.
     pub fn of_decks_only(&self) -> Option<&'static str> {
-        let named =
-            [("--step", self.step.is_some()), ("--linear", self.linear), ("--without-friction", self.without_friction)];
+        let named = [("--step", self.step.is_some()), ("--without-friction", self.without_friction)];
         named.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
     }
 
     /// The names of the permissions for the reading of a deck.
     pub fn permits(&self) -> Vec<&'static str> {
-        let named = [("outside", self.allow_outside), ("friction", self.without_friction), ("linear", self.linear)];
+        let named = [("outside", self.allow_outside), ("friction", self.without_friction)];
         named.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
     }
 }

@@ -7,8 +7,10 @@ use serde::Serialize;
 
 use super::exact_path::ExactPath;
 use super::kept_answers::{KeptAnswers, points};
-use super::summary::{LargestDisplacement, OF_MESHED_PART};
-use super::warnings::{AnswerWarning, check_approach, check_deformation, initial_overlap, of_scene, point_support};
+use super::summary::{LargestDisplacement, OF_MESHED_PART, Status};
+use super::warnings::{
+    AnswerWarning, BEYOND, check_approach, check_deformation, initial_overlap, of_scene, point_support,
+};
 use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
@@ -66,6 +68,9 @@ impl Summary {
         if summary.solution.lost_pivot().is_some() && !model.is_supported() {
             // The small pivot belongs to a rigid-body mode that only contact holds: no digit is lost.
             summary.warnings.clear();
+        }
+        if !model.is_linear() && warnings.iter().any(|warning| warning.code == BEYOND) {
+            summary.status = Status::BeyondSmallDisplacements;
         }
         summary.warnings.extend(warnings);
         let contact = &mut summary.contact;
@@ -139,7 +144,7 @@ impl SweepPoint {
     /// The point of a model that was built in `assemble_seconds`.
     fn of((model, assemble_seconds): (Model, f64), solution: Solution, settings: &Settings) -> Result<Self, Error> {
         let gap = model.gap();
-        let answer = Answer::of(Arc::new(model), &solution)?;
+        let answer = Answer::of_any_size(Arc::new(model), &solution)?;
         let summary = Summary::of_answer(&answer, solution, settings.goal(), assemble_seconds)?;
         Ok(SweepPoint { gap, force: None, summary, answer })
     }

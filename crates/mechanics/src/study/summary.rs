@@ -17,6 +17,9 @@ pub enum Status {
     /// A motion with an energy growth that its loads do not explain: not reliable, even if every single step is
     /// accurate.
     Unstable,
+    /// The answer solves the equations of small displacements, which do not describe it.
+    #[serde(rename = "beyond-small-displacements")]
+    BeyondSmallDisplacements,
 }
 
 impl Status {
@@ -26,6 +29,7 @@ impl Status {
             Status::Certified => "certified",
             Status::NotCertified => "not certified",
             Status::Unstable => "unstable: do not trust this motion",
+            Status::BeyondSmallDisplacements => "beyond small displacements: do not use this answer",
         }
     }
 }
@@ -339,7 +343,7 @@ impl Summary {
 
     /// Returns `true` if the answer meets its goal.
     pub fn is_certified(&self) -> bool {
-        self.status == Status::Certified
+        self.solution.certificate.met.is_some()
     }
 }
 

@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::fem::body::BodyElement;
-use crate::fem::geometry::{along_axis, dot, length};
+use crate::fem::geometry::{along_axis, dot};
 use crate::scene::models::overlap::Overlap;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
 use signorini_qp::{Certificate, ContactProblem, Solution};
@@ -16,6 +15,9 @@ const ROUNDING_OF_PLACES: f64 = 1e-12;
 
 /// Strains above this are no longer small, as the equations assume.
 const LARGE_STRAIN: f64 = 0.1;
+
+/// Code of the warning about an answer that small displacements do not describe.
+pub(super) const BEYOND: &str = "beyond-small-displacements";
 
 /// Strains or rotations above this change the answer to a deck with large displacements by some percent.
 const LARGE_DEFORMATION: f64 = 0.05;
@@ -407,10 +409,13 @@ fn behind(model: &Model, row: &ContactRow) -> String {
     )
 }
 
-/// Warns that strains are too large for the equations of small strains.
+/// Warns that strains are too large for the equations of small strains, or far beyond them.
 fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
     let (model, body) = (answer.model(), answer.model().body());
-    let Deformation { element, strain, .. } = Deformation::largest(answer)?;
+    if let Some(message) = answer.beyond_small_displacements() {
+        return Some(AnswerWarning { code: BEYOND, message });
+    }
+    let (strain, element) = answer.deformation()?.strain;
     if strain <= LARGE_STRAIN {
         return None;
     }
@@ -424,50 +429,10 @@ fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "large-strain", message })
 }
 
-/// The deformation at the centres of elements.
-struct Deformation {
-    /// The element with the largest strain.
-    element: usize,
-    /// The largest component of a strain, by magnitude.
-    strain: f64,
-    /// The largest rotation, in radians if it is small.
-    rotation: f64,
-}
-
-impl Deformation {
-    /// The largest of all elements; `None` without elements.
-    fn largest(answer: &Answer) -> Option<Self> {
-        let (body, displacement) = (answer.model().body(), answer.displacement());
-        let tables = body.tabulated();
-        let of_element = |(element, of): (usize, BodyElement)| {
-            let (point, own) =
-                (body.point(&of.cell, &tables.at(of.kind).centroid), body.gather(displacement, of.nodes));
-            let strain = point.strain(&own, of.cell.unit());
-            let strain = strain.iter().fold(0.0, |largest: f64, component| largest.max(component.abs()));
-            Deformation { element, strain, rotation: length(point.rotation(&own, of.cell.unit())) }
-        };
-        body.elements().enumerate().map(of_element).reduce(|one, other| {
-            let rotation = one.rotation.max(other.rotation);
-            Deformation { rotation, ..if other.strain > one.strain { other } else { one } }
-        })
-    }
-}
-
-impl std::fmt::Display for Deformation {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let [strain, rotation] = [self.strain, self.rotation].map(|part| 100.0 * part);
-        let degrees = self.rotation.to_degrees();
-        write!(
-            f,
-            "at the centres of elements the largest strain is {strain:.2} %, the largest rotation {rotation:.2} % ({degrees:.2} degrees)"
-        )
-    }
-}
-
 /// The warning of a model about an answer: one about large displacements has their size.
 fn of_model(answer: &Answer, warning: &Warning) -> AnswerWarning {
     let deformation = match warning {
-        Warning::Nonlinear { .. } => Deformation::largest(answer),
+        Warning::Nonlinear { .. } => answer.deformation(),
         _ => None,
     };
     let message = deformation.map_or_else(|| warning.to_string(), |deformation| format!("{warning}: {deformation}"));
@@ -480,10 +445,10 @@ fn of_model(answer: &Answer, warning: &Warning) -> AnswerWarning {
 /// # Errors
 /// [`Error::Refused`] with the code `large-displacements`.
 pub(super) fn check_deformation(answer: &Answer) -> Result<(), Error> {
-    for warning in answer.model().warnings() {
-        let Warning::Nonlinear { is_wanted: false, .. } = warning else { continue };
-        let Some(deformation) = Deformation::largest(answer) else { continue };
-        if deformation.strain.max(deformation.rotation) > LARGE_DEFORMATION {
+    for warning in answer.model().warnings().iter().filter(|_| !answer.model().is_linear()) {
+        let Warning::Nonlinear { .. } = warning else { continue };
+        let Some(deformation) = answer.deformation() else { continue };
+        if deformation.largest() > LARGE_DEFORMATION {
             let message = format!(
                 "{warning}, but {deformation}: above {:.0} % of either large displacements have another answer; `--linear` gives that of small ones",
                 100.0 * LARGE_DEFORMATION

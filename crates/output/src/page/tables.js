@@ -72,6 +72,7 @@ const STATUS = {
   certified: "certified",
   not_certified: "not certified",
   unstable: "unstable: do not trust this motion",
+  "beyond-small-displacements": "beyond small displacements: do not use this answer",
 };
 
 function badge(host, status) {

@@ -23,7 +23,7 @@ use crate::fem::element::{
     Cell, ElementKind, MAX_NODES, PerKind, PerNode, ReferenceElement, Rule, Tabulated, TabulatedPoint,
 };
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::{Symmetric, trace};
+use crate::fem::geometry::{Symmetric, trace, unit};
 use crate::fem::material::{Material, Stiffness};
 use crate::fem::mesh::{Boundary, Mesh, fail};
 use crate::fem::mortar::Skin;
@@ -232,6 +232,13 @@ impl ElasticBody {
             let regions = self.regions.iter().filter(|_| self.dimension() > 1);
             regions.map(|region| Skin::new(self.mesh.surface(region.elements()), self.mesh.nodes())).collect()
         })
+    }
+
+    /// The thickness of the body behind a node of its skin, against a vector out of it, in length; `None` in one
+    /// dimension.
+    pub(crate) fn thickness_behind(&self, node: usize, outward: [f64; 3]) -> Option<f64> {
+        let skin = self.skins().get(self.region_at(node)?)?;
+        skin.thickness(self.mesh.nodes()[node], unit(outward.map(|part| -part)))
     }
 
     /// The number of the body that a node belongs to, both from 0; `None` without such a node.

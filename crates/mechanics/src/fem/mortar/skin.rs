@@ -31,6 +31,8 @@ pub(crate) struct Skin {
     pub surface: Boundary,
     pieces: Vec<Piece>,
     tree: Tree,
+    /// The size of the body, in length.
+    size: f64,
 }
 
 /// An edge, the second end twice, or a triangle of a facet, seen from outside.
@@ -63,7 +65,8 @@ impl Skin {
             let (low, high) = extent(&pieces[number as usize].corners);
             [low, high]
         });
-        Skin { surface, pieces, tree }
+        let (low, high) = extent(&pieces.iter().flat_map(|piece| piece.corners).collect::<Vec<_>>());
+        Skin { surface, pieces, tree, size: length(minus(high, low)) }
     }
 
     /// The distance of a point, in length, and the number of the nearest facet.
@@ -105,15 +108,26 @@ impl Skin {
 
     /// Returns `true` for a point inside the body, by the next crossing of a line along a unit vector.
     fn contains(&self, at: [f64; 3], way: [f64; 3]) -> bool {
+        self.next_crossing(at, way, 0.0).is_some_and(|(_, sense)| sense == Sense::OutOf)
+    }
+
+    /// The length of a line from a point of the skin along a unit vector into the body, up to where it leaves the body.
+    pub fn thickness(&self, at: [f64; 3], inward: [f64; 3]) -> Option<f64> {
+        let rounding = AT_END * self.size;
+        self.next_crossing(at, inward, rounding).filter(|(_, sense)| *sense == Sense::OutOf).map(|(far, _)| far)
+    }
+
+    /// The next crossing of a line along a unit vector that is farther than `beyond`, with its distance.
+    fn next_crossing(&self, at: [f64; 3], way: [f64; 3], beyond: f64) -> Option<(f64, Sense)> {
         let mut next: Option<(f64, Sense)> = None;
         self.tree.around_line(at, way, [0.0, 0.0, f64::INFINITY], |number| {
-            let found = self.pieces[number as usize].crossing(at, way).filter(|found| found.0 > 0.0);
+            let found = self.pieces[number as usize].crossing(at, way).filter(|found| found.0 > beyond);
             next = match (next, found) {
                 (Some(one), Some(other)) => Some(if other.0 < one.0 { other } else { one }),
                 (one, other) => one.or(other),
             };
         });
-        next.is_some_and(|(_, sense)| sense == Sense::OutOf)
+        next
     }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
+use super::deformation::Deformation;
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
 use crate::fem::geometry::dot;
@@ -35,6 +36,7 @@ pub struct Answer {
     contact_set: ContactSet,
     pressure: Vec<f64>,
     stress: OnceLock<StressField>,
+    deformation: OnceLock<Option<Deformation>>,
     forces: OnceLock<Forces>,
     resultants: OnceLock<Vec<Resultant>>,
 }
@@ -64,8 +66,21 @@ impl Answer {
     /// The answer of a solver, with its displacement, multiplier and closed rows.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if it is not an answer to this model.
+    /// [`qp::Error::Length`] if it is not an answer to this model; [`Error::BeyondSmallDisplacements`] with the
+    /// solution if small displacements do not describe it, unless the scene [is linear](crate::Scene::is_linear).
     pub fn of(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
+        let answer = Self::of_any_size(model, solution)?;
+        match answer.beyond_small_displacements().filter(|_| !answer.model.is_linear()) {
+            Some(message) => Err(Error::BeyondSmallDisplacements { message, solution: Box::new(solution.clone()) }),
+            None => Ok(answer),
+        }
+    }
+
+    /// The same, also for an answer that small displacements do not describe.
+    ///
+    /// # Errors
+    /// [`qp::Error::Length`] if it is not an answer to this model.
+    pub fn of_any_size(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
         let multiplier = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
         Self::new(model, &solution.displacement, &multiplier, &solution.contact_set)
     }
@@ -94,6 +109,7 @@ impl Answer {
             of_ties: of_ties.to_vec(),
             contact_set: contact_set.clone(),
             stress: OnceLock::new(),
+            deformation: OnceLock::new(),
             forces: OnceLock::new(),
             resultants: OnceLock::new(),
             model,
@@ -108,8 +124,9 @@ impl Answer {
     pub fn moved_by(&self, motion: &[f64], factor: f64) -> Result<Self, Error> {
         qp::Error::check_length("motion", motion.len(), self.displacement.len(), "nodal dofs")?;
         let displacement = self.displacement.iter().zip(motion).map(|(own, moved)| own + factor * moved).collect();
-        let (stress, forces, resultants) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-        Ok(Answer { displacement, stress, forces, resultants, ..self.clone() })
+        let (stress, deformation) = (OnceLock::new(), OnceLock::new());
+        let (forces, resultants) = (OnceLock::new(), OnceLock::new());
+        Ok(Answer { displacement, stress, deformation, forces, resultants, ..self.clone() })
     }
 
     /// The discretised scene to which the answer belongs.
@@ -121,6 +138,19 @@ impl Answer {
     /// axes.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
+    }
+
+    /// The largest strain and rotation; `None` without elements.
+    pub(crate) fn deformation(&self) -> Option<Deformation> {
+        *self.deformation.get_or_init(|| Deformation::of(&self.model, &self.displacement))
+    }
+
+    /// A sentence on why small displacements do not describe the answer: a strain above 50 %, a rotation above 0.5 rad,
+    /// or a contact row that starts deeper inside its obstacle than its body is thick; with the place, the likely
+    /// cause, and what to do. `None` for an answer that they describe.
+    pub fn beyond_small_displacements(&self) -> Option<String> {
+        let moved = self.displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        self.deformation()?.beyond_small_displacements(&self.model, moved)
     }
 
     /// Displacement of an obstacle that a force presses, against its approach direction, in length; `None` for an

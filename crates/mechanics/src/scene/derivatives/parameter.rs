@@ -188,8 +188,8 @@ impl Scene {
                     _ => "value",
                 };
                 let changed: Scene = with_number(self, &format!("{place}/{key}"), value).map_err(refused)?;
-                let (folder, reads_outside) = (self.folder.clone(), self.reads_outside);
-                varied = Scene { folder, reads_outside, noted: self.noted.clone(), ..changed };
+                let (folder, reads_outside, is_linear) = (self.folder.clone(), self.reads_outside, self.is_linear);
+                varied = Scene { folder, reads_outside, is_linear, noted: self.noted.clone(), ..changed };
             }
             Kind::Load(index) => {
                 for (pointer, number) in numbers_of(&self.loads[*index]) {

@@ -264,8 +264,6 @@ pub enum Warning {
     Nonlinear {
         /// File and line of the card that asks for them, as `part.inp:12`.
         place: String,
-        /// `true` if they are wanted whatever the strains and rotations are.
-        is_wanted: bool,
     },
     /// The scheme can gain energy.
     #[error(

@@ -119,6 +119,7 @@ impl Scene {
                 warnings,
                 moves,
                 vibrates,
+                is_linear: self.is_linear,
             },
             self.gap,
         )

@@ -148,6 +148,10 @@ impl Model {
     }
 
     /// Returns `true` if a force presses the obstacle.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.parts.is_linear
+    }
+
     pub(crate) fn is_pressed(&self, obstacle: usize) -> bool {
         self.parts.unknowns.travel(obstacle).is_some()
     }

@@ -40,6 +40,8 @@ pub(crate) struct Parts {
     pub moves: bool,
     /// `true` if the natural vibrations are asked for: without contact rows they need no equilibrium.
     pub vibrates: bool,
+    /// `true` if answers that small displacements do not describe are wanted all the same.
+    pub is_linear: bool,
 }
 
 impl Parts {

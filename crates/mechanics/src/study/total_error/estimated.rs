@@ -182,7 +182,7 @@ impl Search<'_> {
             Err(qp::Error::NotCertified { solution, .. }) => *solution,
             other => other.map_err(|error| model.explain(error))?,
         };
-        let answer = Answer::of(model.clone(), &solution)?;
+        let answer = Answer::of_any_size(model.clone(), &solution)?;
         let (estimated, depths) = (answer.estimated_error()?, answer.depths_between_nodes()?);
         let (of_mesh, of_algebra) = (estimated.relative(), solution.certificate.energy_error_bound);
         let level = Level {

@@ -42,7 +42,7 @@ impl Examined {
         let model = Arc::new(scene.build()?);
         let (problem, mut mesh) = scene.continuum_problem(&model)?;
         let settings = Settings::with_method(Method::ActiveSet);
-        let own = Answer::of(model.clone(), &solve(model.problem(), &settings)?)?;
+        let own = Answer::of_any_size(model.clone(), &solve(model.problem(), &settings)?)?;
         let mut found = Vec::with_capacity(levels + 1);
         for level in 0..=levels {
             let bracket = Bracket::new(&problem, &mesh, None, &settings)?;
@@ -51,7 +51,7 @@ impl Examined {
                 let of_bound = bracket.answer();
                 let last = Arc::new(scene.on_last_mesh(&model, &of_bound)?);
                 let solution = solve(last.problem(), &settings)?;
-                Ok(compared(&Answer::of(last, &solution)?, &of_bound)?[0])
+                Ok(compared(&Answer::of_any_size(last, &solution)?, &of_bound)?[0])
             };
             found.push(Examined {
                 energies: [bracket.energy_of_stress(), bracket.energy_of_displacement()],

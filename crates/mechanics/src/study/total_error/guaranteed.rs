@@ -66,7 +66,7 @@ fn on_last_mesh(
 ) -> Result<((Answer, Solution), JudgedMesh), Error> {
     let model = Arc::new(given.scene.on_last_mesh(given.model, of_bound)?);
     let solution = solve(model.problem(), given.settings)?;
-    let answer = Answer::of(model, &solution)?;
+    let answer = Answer::of_any_size(model, &solution)?;
     let [away, size] = compared(&answer, of_bound)?;
     let judged = JudgedMesh::of(&answer, distance + away, size)?;
     Ok(((answer, solution), judged))
@@ -231,7 +231,7 @@ impl Search<'_> {
         let Ok(solution) = solve(self.given.model.problem(), &self.given.settings.clone().exactly()) else {
             return Ok(None);
         };
-        let Ok(answer) = Answer::of(self.given.model.clone(), &solution) else { return Ok(None) };
+        let Ok(answer) = Answer::of_any_size(self.given.model.clone(), &solution) else { return Ok(None) };
         let warnings = of_refined(&answer, &solution)?;
         Ok(Some((answer, warnings)))
     }

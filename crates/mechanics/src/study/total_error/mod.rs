@@ -15,11 +15,12 @@ pub use goal::{Ended, TotalErrorGoal};
 use std::sync::Arc;
 use std::time::Instant;
 
-use signorini_qp::Settings;
+use signorini_qp::{Settings, Solution};
 
 use crate::error::Error;
 use crate::scene::models::continuum::{NoGuarantee, WhyNot};
-use crate::scene::{Model, Scene};
+use crate::scene::{Answer, Model, Scene};
+use crate::study::Status;
 use found::Search;
 
 /// Refines the mesh of a scene until its total error is at most `goal`, as with the default settings.
@@ -68,7 +69,7 @@ impl TotalError {
         goal.check()?;
         scene.check_continuum()?;
         let search = Search { scene, model, goal, settings, keep, clock: Instant::now() };
-        match scene.continuum_problem(model) {
+        let found = match scene.continuum_problem(model) {
             Ok((problem, mesh)) => guaranteed::total_error(&search, &problem, mesh),
             Err(WhyNot::NoGuarantee(NoGuarantee { path, message })) if goal.force_error.is_some() => {
                 let message = format!("{message}; without it the force has no bound: leave out --force-error");
@@ -76,6 +77,13 @@ impl TotalError {
             }
             Err(WhyNot::NoGuarantee(why)) => estimated::total_error(&search, format!("{}: {}", why.path, why.message)),
             Err(WhyNot::Failed(error)) => Err(error),
+        }?;
+        let is_beyond = |last: &(Answer, Solution)| last.0.beyond_small_displacements().is_some();
+        match &found.last {
+            Ok(last) if !model.is_linear() && is_beyond(last) => {
+                Ok(TotalError { status: Status::BeyondSmallDisplacements, ..found })
+            }
+            _ => Ok(found),
         }
     }
 }

@@ -74,8 +74,7 @@ pub(crate) struct DeckScene {
 /// How a deck is read.
 #[derive(Clone, Copy)]
 pub(crate) struct Reading<'a> {
-    /// Files that the deck includes may lie outside its folder with `outside`; friction is left out with `friction`;
-    /// small displacements are wanted with `linear`.
+    /// Files that the deck includes may lie outside its folder with `outside`; friction is left out with `friction`.
     pub permits: &'a [&'a str],
     /// The step, from 1; the last one without it.
     pub step: Option<usize>,
@@ -144,10 +143,8 @@ impl DeckScene {
             (file.to_path_buf(), line)
         };
         let warning = |(place, message): (Place, String)| Warning::Deck { place: named_line(position(place)), message };
-        let nonlinear = large_displacements(&deck).map(|place| Warning::Nonlinear {
-            place: named_line(position(place)),
-            is_wanted: permits.contains(&"linear"),
-        });
+        let nonlinear =
+            large_displacements(&deck).map(|place| Warning::Nonlinear { place: named_line(position(place)) });
         let warnings = nonlinear.into_iter().chain(noted.into_iter().map(warning)).collect();
         let places = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
         Ok(DeckScene { text, warnings, references: reference_nodes, deck, places })
@@ -181,9 +178,8 @@ impl DeckScene {
 
 impl Scene {
     /// Reads a deck of CalculiX as a scene, at the end of a step from 1, or of the last one; relative names of files
-    /// start in its folder. Files that it includes may lie outside its folder if `permits` has `outside`, friction is
-    /// left out with a warning if it has `friction`, and a step with NLGEOM has an answer with large strains or
-    /// rotations too if it has `linear`.
+    /// start in its folder. Files that it includes may lie outside its folder if `permits` has `outside`, and
+    /// friction is left out with a warning if it has `friction`.
     ///
     /// # Errors
     /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong,

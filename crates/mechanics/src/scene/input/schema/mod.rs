@@ -128,6 +128,10 @@ pub struct Scene {
     /// `true` if the scene may name files outside its folder. Not part of the text.
     #[serde(skip)]
     pub reads_outside: bool,
+    /// `true` if answers that small displacements do not describe are wanted all the same, and answers to a deck with
+    /// NLGEOM. Not part of the text.
+    #[serde(skip)]
+    pub is_linear: bool,
     /// Warnings about the deck that the scene was read from. Not part of the text.
     #[serde(skip)]
     pub noted: Vec<Warning>,
