@@ -1,7 +1,7 @@
 //! The exit code of a command, and the message of a failure in text and JSON.
 
 use crate::promised::is_answer;
-use serde_json::json;
+use serde_json::{Value, json};
 use support::program::{Desk, Problem, example, matrix, scene};
 
 #[test]
@@ -114,4 +114,42 @@ fn failures_in_json_are_one_object_with_status_and_message() {
         assert_eq!(report["status"], status);
         assert_eq!(run.stderr, format!("error: {}\n", report["message"].as_str().unwrap()));
     }
+}
+
+/// A bar under forces up to half of its stiffness, which it stretches by half, and above.
+#[test]
+fn an_answer_beyond_small_displacements_ends_with_exit_code_4_and_its_likely_cause() {
+    let (desk, code) = (Desk::new(), "beyond-small-displacements");
+    let mut scene = json!({
+        "model": "bar",
+        "body": {"bar": {"x": {"points": [0, 2], "divisions": [4]}}},
+        "material": {"young": 100, "poisson": 0},
+        "supports": [{"on": {"boundary": "left"}, "x": 0}],
+        "loads": [{"force": {"boundary": "right", "value": [1]}}],
+        "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [3.5], "normal": [1]}}}]
+    });
+    let run = |scene: &Value, arguments: &[&str]| {
+        desk.write("scene.json", scene.to_string());
+        desk.run(&[&arguments[..1], &["scene.json"], &arguments[1..]].concat())
+    };
+    for (force, is_beyond) in [(16.0, false), (49.9, false), (50.1, true)] {
+        scene["loads"][0]["force"]["value"] = json!([force]);
+        let report = run(&scene, &["solve", "--format", "json"]).ends_with(if is_beyond { 4 } else { 0 }).json();
+        assert_eq!(report["status"] == code, is_beyond, "{report}");
+        let text = run(&scene, &["solve", "--linear"]).ends_with(0).stdout;
+        assert!(text.contains(if is_beyond { "strains reach 50.1 %" } else { "the largest strain is" }), "{text}");
+    }
+    let report = run(&scene, &["solve", "--linear", "--format", "json"]).ends_with(0).json();
+    let is_warned = |warning: &Value| {
+        warning["code"] == code && warning["message"].to_string().contains("do not fit the stiffness")
+    };
+    assert!(report["warnings"].as_array().unwrap().iter().any(is_warned), "{report}");
+    let compared = run(&scene, &["compare"]).ends_with(4).stdout;
+    assert!(compared.contains("small displacements do not"), "{compared}");
+    run(&scene, &["compare", "--linear"]).ends_with(0);
+    scene["loads"][0]["force"]["value"] = json!([0]);
+    let swept = run(&scene, &["sweep", "--gaps", "-1:-3:3", "--format", "json"]).ends_with(4).json();
+    let statuses: Vec<&Value> = swept["points"].as_array().unwrap().iter().map(|point| &point["status"]).collect();
+    assert_eq!(statuses, ["certified", "certified", code], "{swept}");
+    run(&scene, &["sweep", "--gaps", "-1:-3:3", "--linear"]).ends_with(0);
 }

@@ -74,7 +74,7 @@ fn no_row_starts_deeper_than_its_body_is_thick() {
         let words = [
             format!("lies {:.3e} m inside obstacles[0]", 1.05 * thickness),
             format!("its body is {thickness:.3e} m thick there"),
-            "name the boundary that faces".into(),
+            "Name the boundary that faces".into(),
         ];
         assert!(words.iter().all(|words| message.contains(words)), "{message}");
     }

@@ -37,6 +37,7 @@ pub struct Answer {
     pressure: Vec<f64>,
     stress: OnceLock<StressField>,
     deformation: OnceLock<Option<Deformation>>,
+    beyond: OnceLock<Option<String>>,
     forces: OnceLock<Forces>,
     resultants: OnceLock<Vec<Resultant>>,
 }
@@ -110,6 +111,7 @@ impl Answer {
             contact_set: contact_set.clone(),
             stress: OnceLock::new(),
             deformation: OnceLock::new(),
+            beyond: OnceLock::new(),
             forces: OnceLock::new(),
             resultants: OnceLock::new(),
             model,
@@ -124,9 +126,9 @@ impl Answer {
     pub fn moved_by(&self, motion: &[f64], factor: f64) -> Result<Self, Error> {
         qp::Error::check_length("motion", motion.len(), self.displacement.len(), "nodal dofs")?;
         let displacement = self.displacement.iter().zip(motion).map(|(own, moved)| own + factor * moved).collect();
-        let (stress, deformation) = (OnceLock::new(), OnceLock::new());
+        let (stress, deformation, beyond) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
         let (forces, resultants) = (OnceLock::new(), OnceLock::new());
-        Ok(Answer { displacement, stress, deformation, forces, resultants, ..self.clone() })
+        Ok(Answer { displacement, stress, deformation, beyond, forces, resultants, ..self.clone() })
     }
 
     /// The discretised scene to which the answer belongs.
@@ -149,8 +151,11 @@ impl Answer {
     /// or a contact row that starts deeper inside its obstacle than its body is thick; with the place, the likely
     /// cause, and what to do. `None` for an answer that they describe.
     pub fn beyond_small_displacements(&self) -> Option<String> {
-        let moved = self.displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        self.deformation()?.beyond_small_displacements(&self.model, moved)
+        let find = || {
+            let moved = self.displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            self.deformation()?.beyond_small_displacements(&self.model, moved)
+        };
+        self.beyond.get_or_init(find).clone()
     }
 
     /// Displacement of an obstacle that a force presses, against its approach direction, in length; `None` for an

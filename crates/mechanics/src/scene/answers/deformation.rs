@@ -56,18 +56,21 @@ impl Deformation {
     /// moves by at most `moved`.
     pub fn beyond_small_displacements(&self, model: &Model, moved: f64) -> Option<String> {
         let ((strain, element), (rotation, turned)) = (self.strain, self.rotation);
-        let deep = TooDeep::of(model);
-        let (large, element) = match deep {
-            None if self.largest() <= BEYOND => return None,
-            _ if strain >= rotation => (format!("strains reach {:.1} %", 100.0 * strain), element),
-            _ => (format!("rotations reach {rotation:.2} rad"), turned),
+        let fact_and_cause = if let Some(deep) = TooDeep::of(model) {
+            deep.in_words(model)
+        } else if self.largest() <= BEYOND {
+            return None;
+        } else {
+            let (large, element) = match strain >= rotation {
+                true => (format!("strains reach {:.1} %", 100.0 * strain), element),
+                false => (format!("rotations reach {rotation:.2} rad"), turned),
+            };
+            let corner = model.body().elements().nth(element)?.nodes.first().copied()?;
+            let (place, cause) = (model.place_in_words(corner), self.likely_cause(model, moved));
+            format!("{large}, in element {element} with a corner at {place}. {cause}")
         };
-        let corner = model.body().elements().nth(element)?.nodes.first().copied()?;
-        let place = model.place_in_words(corner);
-        let cause = deep.map_or_else(|| self.likely_cause(model, moved), |deep| deep.in_words(model));
         Some(format!(
-            "{large}, in element {element} with a corner at {place}: small displacements do not describe that answer. {cause}. \
-             `--linear` gives it all the same"
+            "small displacements do not describe this answer: {fact_and_cause}. `--linear` gives it all the same"
         ))
     }
 
@@ -127,7 +130,7 @@ impl TooDeep {
         let [depth, thickness] =
             [self.depth, self.thickness].map(|value| format!("{value:.3e} {}", model.units().length));
         format!(
-            "Before contact {} lies {} inside obstacles[{}], and its body is {} thick there: name the boundary that faces the \
+            "before contact {} lies {} inside obstacles[{}], and its body is {} thick there. Name the boundary that faces the \
              obstacle, or correct `gap` and `approach`",
             model.node_in_words(self.node),
             depth.trim_end(),

@@ -128,8 +128,8 @@ pub struct Scene {
     /// `true` if the scene may name files outside its folder. Not part of the text.
     #[serde(skip)]
     pub reads_outside: bool,
-    /// `true` if answers that small displacements do not describe are wanted all the same, and answers to a deck with
-    /// NLGEOM. Not part of the text.
+    /// `true` if the answer of small displacements is wanted whatever its strains and rotations are, also to a deck
+    /// that asks for large displacements. Not part of the text.
     #[serde(skip)]
     pub is_linear: bool,
     /// Warnings about the deck that the scene was read from. Not part of the text.
