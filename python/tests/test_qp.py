@@ -147,6 +147,25 @@ def test_a_linear_program_has_the_minimum_of_the_simplex_method(seed: int) -> No
     assert abs(answer.obj - least) < 1e-8 * (1 + abs(least))
 
 
+@pytest.mark.parametrize("seed", range(30))
+def test_a_point_that_meets_the_constraints_is_found_if_the_objective_is_zero_there(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    n, unit = int(random.integers(2, 9)), 10 ** random.uniform(-3, 3)
+    p, m = int(random.integers(1, n)), int(random.integers(1, 2 * n))
+    A, G, inside = random.normal(size=(p, n)), random.normal(size=(m, n)), unit * random.normal(size=n)
+    h = G @ inside + unit * random.uniform(0, 1, m) * (random.random(m) < 0.5)
+    one = np.zeros((n, n))
+    one[0, 0] = 1.0
+    for data in (
+        (0 * one, np.zeros(n), None, None, A, A @ inside, None, None),
+        (0 * one, np.zeros(n), G, h, A, A @ inside, None, None),
+        (0 * one, np.zeros(n), None, None, A, A @ inside, inside - unit, inside + unit * (random.random(n) < 0.5)),
+        (one, np.zeros(n), None, None, A[:1], A[:1] @ inside, None, None),
+    ):
+        answer = sg.qp.solve_problem(*data)
+        assert residuals(answer, *data) < 1e-11 * max(1.0, unit) and abs(answer.obj) < 1e-20
+
+
 def test_a_program_without_a_minimum_gives_none() -> None:
     assert sg.qp.solve_qp(np.eye(1), [0.0], G=[[1.0], [-1.0]], h=[-1.0, -1.0]) is None
     assert sg.qp.solve_qp(np.eye(2), [0.0, 0.0], A=[[1.0, 0.0], [1.0, 0.0]], b=[0.0, 1.0]) is None

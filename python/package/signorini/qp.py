@@ -36,6 +36,9 @@ _MOST_STEPS = 200
 # smaller weight needs fewer steps; a larger one makes each step more accurate.
 _PROXIMITIES = (1e-8, 1e-6, 1e-4)
 
+# Changes below this share of the largest unknown are rounding.
+_MOVED = 1e-14
+
 # Tolerance to which the conditions of a solution that is not unique are certified.
 _TOLERANCE = 1e-9
 
@@ -205,7 +208,7 @@ def solve_problem(
     start = None if initvals is None else _vector("initvals", initvals)
     try:
         solution = _signorini.solve(problem, start=start, proof=False, **options)
-        return rows.answer(problem, solution, solution.certificate, unique=True)
+        return rows.answer(problem, solution.u, _forces(solution), solution.certificate, unique=True)
     except (Infeasible, Unbounded) as error:
         return QPSolution(False, None, None, None, None, None, None, False, str(error))
     except UnderHeld:
@@ -215,7 +218,7 @@ def solve_problem(
         # unique, and proximal steps are tried.
         best = fell_short.solution if isinstance(fell_short, NotCertified) else None
         if best is not None and best.certificate.conditions_hold(_TOLERANCE):
-            return rows.answer(problem, best, best.certificate, unique=False)
+            return rows.answer(problem, best.u, _forces(best), best.certificate, unique=False)
         try:
             return _one_of_many(problem, rows, start, options)
         except SignoriniError:
@@ -345,15 +348,16 @@ class _Rows:
     def answer(
         self,
         problem: _signorini.Problem,
-        solution: _signorini.Solution,
+        u: NDArray[np.float64],
+        forces: tuple[NDArray[np.float64], NDArray[np.float64]],
         certificate: _signorini.Certificate,
         *,
         unique: bool,
     ) -> QPSolution:
-        """Converts a solution into the signs of qpsolvers."""
-        x, multiplier = solution.u.copy(), solution.multiplier
+        """Converts a solution, with the multipliers of all rows, into the signs of qpsolvers."""
+        x, (multiplier, of_equalities) = u.copy(), forces
         z = self._of("G", multiplier) if "G" in self.groups else None
-        y = None if self.equalities[0] is None else 0.0 - solution.equality_multiplier
+        y = None if self.equalities[0] is None else 0.0 - of_equalities
         z_box = None
         if self.has_box:
             z_box = np.zeros(self.unknowns)
@@ -390,9 +394,14 @@ def _one_of_many(problem: _signorini.Problem, rows: _Rows, start: Any, options: 
     shortest: NotCertified | None = None
     for proximity in _PROXIMITIES:
         known = _steps(problem, proximity, x, options)
-        x, certificate = known.u, _signorini.verify(problem, known.u, known.multiplier, known.equality_multiplier)
-        if certificate.conditions_hold(_TOLERANCE):
-            return rows.answer(problem, known, certificate, unique=False)
+        x, found = known.u, _forces(known)
+        # If the objective has no slope at x, the multipliers are zero, and those of the steps are rounding.
+        settled = np.where(np.abs(x) > _MOVED * np.abs(x).max(initial=0.0), x, 0.0)
+        without_force = (np.zeros_like(found[0]), np.zeros_like(found[1]))
+        for at, forces in ((x, found), (settled, without_force)):
+            certificate = _signorini.verify(problem, at, *forces)
+            if certificate.conditions_hold(_TOLERANCE):
+                return rows.answer(problem, at, forces, certificate, unique=False)
         condition, value = max(((name, getattr(certificate, name)) for name in _CONDITIONS), key=lambda worst: worst[1])
         error = NotCertified(f"not certified: {condition} is {value:.3e}, above the tolerance {_TOLERANCE:.1e}")
         error.solution, error.condition, error.value, error.tolerance = known, condition, value, _TOLERANCE
@@ -402,7 +411,12 @@ def _one_of_many(problem: _signorini.Problem, rows: _Rows, start: Any, options: 
     raise shortest
 
 
-_CONDITIONS = ("stationarity", "penetration", "adhesion", "complementarity", "duality_gap")
+# The conditions that decide.
+_CONDITIONS = ("imbalance", "penetration", "adhesion", "open_force")
+
+
+def _forces(solution: _signorini.Solution) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    return solution.multiplier, solution.equality_multiplier
 
 
 def _steps(
@@ -424,6 +438,6 @@ def _steps(
             known = fell_short.solution
         moved = float(np.abs(known.u - x).max(initial=0.0))
         x = known.u
-        if moved <= 1e-14 * max(float(np.abs(x).max(initial=0.0)), 1e-300):
+        if moved <= _MOVED * max(float(np.abs(x).max(initial=0.0)), 1e-300):
             break
     return known  # type: ignore[no-any-return]
