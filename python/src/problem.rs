@@ -108,7 +108,7 @@ impl Problem {
             (None, Some(_)) => return Err(bad_input(py, "e is given without E; every value needs a row of E")),
         }
         let warn = py.import("warnings")?.getattr("warn")?;
-        problem.warnings().into_iter().try_for_each(|sentence| warn.call1((sentence,)).map(|_| ()))?;
+        problem.warnings().into_iter().try_for_each(|(_, sentence)| warn.call1((sentence,)).map(|_| ()))?;
         let near_null = match (near_null, coordinates) {
             (None, None) => return Ok(problem.into()),
             (Some(_), Some(_)) => {
@@ -185,7 +185,7 @@ impl Problem {
     #[getter]
     fn e<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let has_rows = self.inner.equality_rows() > 0;
-        has_rows.then(|| of_reals(py, self.inner.equalities_given().1)).transpose()
+        has_rows.then(|| of_reals(py, &self.inner.equalities_given().1)).transpose()
     }
 
     /// Gaps before the deformation, shape (m,), in length, read-only. `inf` for a row without an obstacle.

@@ -112,7 +112,7 @@ impl Input {
         match &self.content {
             Content::Scene(model) => warnings(model),
             Content::Directory(problem) => {
-                problem.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect()
+                problem.warnings().iter().map(|(_, warning)| format!("warning: {warning}\n")).collect()
             }
         }
     }

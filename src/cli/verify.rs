@@ -27,7 +27,7 @@ pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
         }
         None => {}
     }
-    warn(&problem.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
+    warn(&problem.warnings().iter().map(|(_, warning)| format!("warning: {warning}\n")).collect::<String>());
     let certificate = problem.certify_within(options.factor_time, (&displacement, &of_rows), &settings)?;
     let verification = Verification::new(certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
     let text = verification.text(&format!("Problem directory {}", options.directory.display()), &Units::unnamed());

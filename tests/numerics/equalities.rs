@@ -267,7 +267,7 @@ fn the_gap_of_an_empty_row_counts_as_zero_if_it_is_rounding() {
     };
     let settled = problem(-7e-18);
     assert!(
-        settled.warnings()[0].contains("contact row 0") && settled.warnings()[0].contains("-7e-18"),
+        settled.warnings()[0].1.contains("contact row 0") && settled.warnings()[0].1.contains("-7e-18"),
         "{:?}",
         settled.warnings()
     );
@@ -275,6 +275,42 @@ fn the_gap_of_an_empty_row_counts_as_zero_if_it_is_rounding() {
     let empty = problem(-7e-3);
     assert!(empty.warnings().is_empty() && matches!(solve_qp(&empty), Err(qp::Error::Infeasible { .. })));
     assert!(matches!(solve_qp(&settled.with_gap(vec![-7e-3, 1.0]).unwrap()), Err(qp::Error::Infeasible { .. })));
+}
+
+/// K = I, and a second equality that is a tenth of the first; then sums of equalities with weights that are no binary
+/// fractions.
+#[test]
+fn rows_that_follow_except_for_rounding_are_left_out_with_a_warning() {
+    let unit = SymmetricMatrix::from_lower(sparse(&vec![vec![1.0, 0.0], vec![0.0, 1.0]], 2)).unwrap();
+    let plain = ContactProblem::new(unit, vec![0.0; 2], sparse(&vec![vec![0.0, 1.0]], 2), vec![5.0]).unwrap();
+    let rows = sparse(&vec![vec![1.0, 2.0], vec![0.1, 0.2]], 2);
+    let problem = plain.with_equalities(&rows, vec![7.0, 0.7]).unwrap();
+    let (code, sentence) = problem.warnings().remove(0);
+    assert!(code == "redundant-row" && sentence.contains("equality row 1 (from 0) is left out"), "{code}: {sentence}");
+    let solution = solve_qp(&problem).unwrap();
+    assert!(is_near(&solution.displacement, &[1.4, 2.8]) && is_near(&solution.equality_multiplier, &[1.4, 0.0]));
+    // The same force on the row that is left out, and what was given comes back.
+    assert!(problem.certify(&[1.4, 2.8], &[0.0, 0.0, 14.0]).unwrap().meets(1e-9));
+    assert_eq!(problem.equalities_given(), (rows.clone(), vec![7.0, 0.7]));
+    // Beyond rounding there is no answer.
+    let contradicts = plain.with_equalities(&rows, vec![7.0, 0.7 + 1e-12]).unwrap();
+    assert!(contradicts.warnings().is_empty() && solve_qp(&contradicts).is_err());
+    for (number, built) in Built::several(7, 60).into_iter().enumerate() {
+        let weights = |row: usize| move |of: usize| 0.1 + 0.7 * of as f64 - 0.3 * row as f64;
+        let sum = |weight: &dyn Fn(usize) -> f64, of: &dyn Fn(usize) -> f64| {
+            (0..built.equalities.len()).map(|row| weight(row) * of(row)).sum::<f64>()
+        };
+        let (mut rows, mut values) = (built.equalities.clone(), built.values.clone());
+        for row in 0..3 {
+            let weight = weights(row);
+            rows.push((0..built.u.len()).map(|dof| sum(&weight, &|of| built.equalities[of][dof])).collect());
+            values.push(sum(&weight, &|of| built.values[of]));
+        }
+        let problem = built.without_equalities().with_equalities(&sparse(&rows, built.u.len()), values).unwrap();
+        let solution = solve_qp(&problem).unwrap_or_else(|error| panic!("{number}: {error}"));
+        assert!(is_near(&solution.displacement, &built.u), "{number}: {:?}", solution.displacement);
+        assert!(is_near(&solution.multiplier, &built.lambda), "{number}: {:?}", solution.multiplier);
+    }
 }
 
 #[test]

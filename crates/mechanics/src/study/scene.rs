@@ -33,9 +33,9 @@ impl Summary {
         assemble_seconds: f64,
     ) -> Summary {
         let warning = super::warnings::untouched(problem, &solution);
-        let empty = problem.warnings().into_iter().map(|message| AnswerWarning { code: "empty-row", message });
+        let of_rows = problem.warnings().into_iter().map(|(code, message)| AnswerWarning { code, message });
         let mut summary = Summary::new(solution, ModelSize::of(problem), goal, assemble_seconds);
-        summary.warnings.extend(empty.chain(warning));
+        summary.warnings.extend(of_rows.chain(warning));
         summary
     }
 }

@@ -318,7 +318,7 @@ impl Derivatives {
         if let Some(near_null) = problem.near_null() {
             small = small.with_near_null(near_null.clone())?;
         }
-        let small = small.with_equalities(&problem.contact().select_rows(&held), pick(&held))?;
+        let small = small.with_all_equalities(&problem.contact().select_rows(&held), pick(&held))?;
         let Settings { watch, memory, threads, .. } = self.settings.clone();
         let settings = Settings { watch, memory, threads, ..Settings::default() };
         let found = solved(&small, &Start::default(), &settings)?;

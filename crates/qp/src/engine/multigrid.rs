@@ -106,7 +106,7 @@ impl Engine for Hierarchical {
         let rows: Vec<usize> = closed.iter().collect();
         let values = rows.iter().map(|&row| gap[row]).collect();
         let free = self.problem.without_rows()?.with_load(load.to_vec())?;
-        let problem = &free.with_equalities(&self.problem.contact().select_rows(&rows), values)?;
+        let problem = &free.with_all_equalities(&self.problem.contact().select_rows(&rows), values)?;
         let limits = Limits { tolerance: HELD, most_cycles: MOST_HELD_CYCLES, worth: usize::MAX };
         let outcome = Mprgp { problem, multigrid: &self.multigrid, limits, watch }.solve(Start::default())?;
         if !outcome.is_settled() {

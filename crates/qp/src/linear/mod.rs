@@ -12,6 +12,7 @@ mod dense;
 mod dense_factor;
 mod dependence;
 pub mod eigen;
+pub(crate) mod equations;
 mod exact_sum;
 mod factor;
 mod forest;

@@ -161,7 +161,7 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
     if problem.equality_rows() > 0 {
         let (rows, values) = problem.equalities_given();
         files.push(Streamed::new("E.mtx", move |out| write_entries(out, &rows, "general")));
-        files.push(Streamed::new("e.mtx", move |out| write_columns(out, &[values])));
+        files.push(Streamed::new("e.mtx", move |out| write_columns(out, &[&values])));
     }
     let of_modes = |near_null: &'a Arc<NearNullSpace>| {
         Streamed::new("near_null.mtx", |out| write_columns(out, near_null.vectors()))

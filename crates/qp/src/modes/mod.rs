@@ -107,6 +107,8 @@ impl ContactProblem {
         watch: &Watch,
     ) -> Result<Modes, Error> {
         let equalities = self.inequalities()..self.inequalities() + self.equality_rows();
+        // Equalities that follow from the others are left out.
+        let equalities = equalities.filter(|&row| self.gap()[row].is_finite());
         let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
         let bonded = Bonded::of(self.contact(), &rows, first)?;
         let reduced = [bonded.reduced(self.stiffness())?, bonded.reduced(mass)?];

@@ -5,12 +5,17 @@ use std::borrow::Cow;
 use super::ContactProblem;
 use super::empty_rows::largest_finite;
 use crate::error::Error;
+use crate::linear::equations::{FOLLOWS, Following};
 use crate::linear::{SparseMatrix, check_vector};
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
 
+/// Terms of sums by which rows are looked for that follow from others: a fraction of a second.
+const MOST_TERMS: usize = 5_000_000;
+
 impl ContactProblem {
     /// The same problem with the equality rows `E u = e`: E is p x n, dimensionless, and e has length p, in m. They may
-    /// follow from each other. Then
+    /// follow from each other; a row that does so except for the rounding of its numbers is left out, see
+    /// [`warnings`](Self::warnings). Then
     ///
     /// ```text
     /// K u - f - B' lambda - E' mu = 0,   E u = e,   mu of either sign
@@ -34,6 +39,23 @@ impl ContactProblem {
     /// # Errors
     /// [`Error::Shape`], [`Error::Length`], [`Error::NotFinite`] for numbers that do not fit.
     pub fn with_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
+        let mut problem = self.with_all_equalities(rows, values.clone())?;
+        let mut following = rows.following_rows(&values, FOLLOWS, MOST_TERMS);
+        following.retain(|following| !following.is_exact);
+        let first = problem.inequalities();
+        for row in following.iter().map(|following| first + following.row) {
+            (problem.gap[row], problem.gap[row + rows.rows()]) = (f64::INFINITY, f64::INFINITY);
+        }
+        let with_value = |following: Following| (values[following.row], following);
+        problem.following = following.into_iter().map(with_value).collect();
+        Ok(problem)
+    }
+
+    /// The same with all rows, whether they follow from each other or not.
+    ///
+    /// # Errors
+    /// As [`with_equalities`](Self::with_equalities).
+    pub(crate) fn with_all_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
         if rows.columns() != self.dofs() {
             let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));
             return Err(Error::Shape { name: "equality matrix", found, expected });
@@ -73,9 +95,11 @@ impl ContactProblem {
     }
 
     /// The matrix E (p x n, dimensionless) and the values e (length p, in m) of the equality rows.
-    pub fn equalities_given(&self) -> (SparseMatrix, &[f64]) {
+    pub fn equalities_given(&self) -> (SparseMatrix, Vec<f64>) {
         let rows: Vec<usize> = (self.inequalities()..self.inequalities() + self.equality_rows).collect();
-        (self.contact.select_rows(&rows), &self.gap[self.inequalities()..][..self.equality_rows])
+        let mut values = self.gap[self.inequalities()..][..self.equality_rows].to_vec();
+        self.following.iter().for_each(|(value, following)| values[following.row] = *value);
+        (self.contact.select_rows(&rows), values)
     }
 
     /// The matrix B (m x n, dimensionless) and the gaps g (length m, in m, negative inside the body), without the
@@ -87,8 +111,10 @@ impl ContactProblem {
         (contact, &self.gap[..count])
     }
 
-    /// A sentence for each row without entries whose gap was rounding beside the largest gap, and counts as zero.
-    pub fn warnings(&self) -> Vec<String> {
+    /// Codes and sentences: `empty-row` for each row without entries whose gap was rounding beside the largest gap, and
+    /// counts as zero; `redundant-row` for the equality rows that follow from others except for rounding, and are left
+    /// out.
+    pub fn warnings(&self) -> Vec<(&'static str, String)> {
         let (inequalities, size) = (self.inequalities(), largest_finite(&self.gap));
         let first_of_pair = self.rounded.iter().filter(|entry| entry.0 < inequalities + self.equality_rows);
         let in_words = |&(row, gap): &(usize, f64)| {
@@ -96,12 +122,25 @@ impl ContactProblem {
                 None => format!("contact row {row}"),
                 Some(row) => format!("equality row {row}"),
             };
-            format!(
+            let sentence = format!(
                 "{row} (from 0) has no entry, and the gap {gap:e}, which is rounding beside the largest, {size:e}: it counts as 0, and the \
                  certificate is that of the changed problem"
-            )
+            );
+            ("empty-row", sentence)
         };
-        first_of_pair.map(in_words).collect()
+        first_of_pair.map(in_words).chain(self.left_out()).collect()
+    }
+
+    /// The warning of the equality rows that are left out.
+    fn left_out(&self) -> Option<(&'static str, String)> {
+        let first = self.following.iter().map(|(_, following)| following.row).min()?;
+        let more = self.following.len().saturating_sub(1);
+        let are = if more == 0 { " is".to_string() } else { format!(" and {more} more are") };
+        let sentence = format!(
+            "equality row {first} (from 0){are} left out, with multiplier 0: the others say the same, except for rounding of the numbers; the \
+             certificate is that of the changed problem"
+        );
+        Some(("redundant-row", sentence))
     }
 
     /// Multipliers of all rows, from those of the rows of B (m), followed by those of the equality rows (p); others
@@ -112,6 +151,13 @@ impl ContactProblem {
             return Cow::Borrowed(multiplier);
         }
         let (own, of_equalities) = multiplier.split_at(inequalities);
+        // The rows from which a row follows take its force.
+        let mut of_equalities = of_equalities.to_vec();
+        for (_, Following { row, weights, .. }) in self.following.iter() {
+            let force = of_equalities[*row];
+            weights.iter().for_each(|&(other, weight)| of_equalities[other] -= weight * force);
+            of_equalities[*row] = 0.0;
+        }
         let sides = [1.0, -1.0].map(|sign| of_equalities.iter().map(move |mu| (sign * mu).min(0.0)));
         Cow::Owned(own.iter().copied().chain(sides.into_iter().flatten()).collect())
     }
@@ -132,7 +178,8 @@ impl ContactProblem {
     /// A set of the rows of B, and one row of each equality.
     pub(crate) fn with_equality_rows(&self, set: &ContactSet) -> ContactSet {
         let equalities = self.inequalities()..self.inequalities() + self.equality_rows;
-        ContactSet::from_fn(self.rows(), |row| equalities.contains(&row) || set.contains(row))
+        let is_equality = |row: usize| equalities.contains(&row) && self.gap[row].is_finite();
+        ContactSet::from_fn(self.rows(), |row| is_equality(row) || set.contains(row))
     }
 
     /// The multipliers of the rows of B, and those of the equality rows.

@@ -16,6 +16,7 @@ use diagonal::Diagonal;
 use opposed::OpposedRows;
 
 use crate::error::Error;
+use crate::linear::equations::Following;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_vector, largest};
 
@@ -60,6 +61,9 @@ pub struct ContactProblem {
     equalities: FoundOnce<Vec<Equality>>,
     /// The number of equality rows: the last rows are as many, and the same from the other side.
     equality_rows: usize,
+    /// The equality rows that follow from the others except for rounding, each after its value: their rows
+    /// have no gap.
+    following: Arc<[(f64, Following)]>,
     /// The rows without an entry, and those of them whose gaps were rounding, with these gaps.
     without_entries: Arc<[usize]>,
     rounded: Vec<(usize, f64)>,
@@ -140,6 +144,7 @@ impl ContactProblem {
             opposed,
             equalities,
             equality_rows: 0,
+            following: Arc::new([]),
             without_entries,
             rounded,
             two_sided,
