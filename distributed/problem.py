@@ -152,6 +152,8 @@ def _block_size(folder):
 
 
 def _read_binary(ranks, folder):
+    if os.path.exists(os.path.join(folder, "E.petsc")):
+        raise Refused(f"{folder} has equality rows (E.petsc), which need a factor; signorini solve takes them", BAD_INPUT)
     dimension = _block_size(folder)
     places, columns, _ = _header(folder, "K.petsc", MAT, 3)
     rows, of_contact, _ = _header(folder, "B.petsc", MAT, 3)

@@ -41,13 +41,19 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     warn(&format!("writing {bytes} bytes ({:.1} MB) into {}\n", bytes as f64 / MEGABYTE, folder.display()));
     write_streamed(folder, &files)?;
     let names: Vec<&str> = files.iter().map(|file| file.name).collect();
-    let text = format!(
-        "{}: {} with {} dofs and {} contact rows\n",
+    let mut text = format!(
+        "{}: {} with {} dofs and {} contact rows",
         folder.display(),
         names.join(", "),
         problem.dofs(),
-        problem.rows()
+        problem.inequalities()
     );
+    match problem.equality_rows() {
+        0 => {}
+        1 => text += ", 1 equality row",
+        count => text += &format!(", {count} equality rows"),
+    }
+    text += "\n";
     Ok(Outcome::done(text))
 }
 

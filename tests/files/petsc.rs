@@ -53,7 +53,10 @@ fn scenes() -> Vec<Value> {
     };
     let files = ["tests/faults/plane.json", "tests/faults/space.json", "examples/bar.json", "examples/inclined.json"];
     let mut scenes: Vec<Value> = files.map(read).into();
-    scenes.extend([scene(), of_revolution(), in_space("hex8"), in_space("tet10")]);
+    let mut tied = scene();
+    let term = |x: f64, along: f64| json!({"on": {"point": [x, 0.5]}, "x": along});
+    tied["ties"] = json!([{"equation": {"terms": [term(1.0, 1.0), term(0.0, -0.3)], "value": 1e-3}}]);
+    scenes.extend([tied, scene(), of_revolution(), in_space("hex8"), in_space("tet10")]);
     scenes
 }
 
@@ -106,7 +109,13 @@ fn commands_give_the_same_answer_for_petsc_and_matrix_market_files() {
             let solved = report(&desk, &["solve", folder, "--out", folder]);
             let [u, lambda] = ["u.mtx", "lambda.mtx"].map(|file| format!("{folder}/{file}"));
             let vectors = [&u, &lambda].map(|file| fs::read_to_string(desk.path(file)).unwrap());
-            let verify = ["verify", folder, "--displacement", &u, "--multiplier", &lambda];
+            let mut verify = vec!["verify", folder, "--displacement", &u, "--multiplier", &lambda];
+            let mu = format!("{folder}/mu.mtx");
+            if desk.path(&mu).exists() {
+                verify.extend(["--equality-multiplier", &mu]);
+            }
+            let rows = fs::read_to_string(desk.path(&format!("{folder}/rows.csv"))).unwrap().lines().count() - 1;
+            assert_eq!(solved["model"]["contact_rows"], rows);
             answers.push((solved, vectors, report(&desk, &verify)));
         }
         assert_eq!(answers[0], answers[1], "{scene}");

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::matrix::{Row, Rows, dense_columns};
 use super::source::{INTEGER, REAL, indices, vector};
-use super::{BLOCK_SIZE, CONTACT, COORDINATES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS};
+use super::{BLOCK_SIZE, CONTACT, COORDINATES, EQUALITIES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS, VALUES};
 use crate::error::Error;
 use crate::file::read_text_capped;
 use crate::linear::multigrid::NearNullSpace;
@@ -34,21 +34,23 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     }
     let places = Places::of(indices(&directory.join(FREE), size)?, size);
     let load = places.load(&directory.join(LOAD))?;
-    let contact = places.contact(Rows::open(&directory.join(CONTACT))?)?;
-    let gap = gap(&directory.join(GAP), contact.rows())?;
+    let contact = places.rows(Rows::open(&directory.join(CONTACT))?)?;
+    let gap = gap(&directory.join(GAP), (CONTACT, contact.rows()))?;
     let near_null = places.near_null(directory)?;
     let problem = ContactProblem::new(places.stiffness(stiffness)?, load, contact, gap)?;
+    let problem = places.with_equalities(directory, problem)?;
     match near_null {
         Some(near_null) => problem.with_near_null(near_null),
         None => Ok(problem),
     }
 }
 
-fn gap(file: &Path, rows: usize) -> Result<Vec<f64>, Error> {
+/// The gaps, or values, of all rows of another file.
+fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, Error> {
     let is_allowed = |gap: f64| gap > f64::NEG_INFINITY;
     let mut gap = vector(file, is_allowed, "a finite gap, or 1e20 or more for a row without obstacle")?;
     if gap.len() != rows {
-        let message = format!("it has length {}, but {CONTACT} has {rows} rows", gap.len());
+        let message = format!("it has length {}, but {of} has {rows} rows", gap.len());
         return Err(fault(file, message));
     }
     gap.iter_mut().filter(|gap| **gap >= NO_LIMIT).for_each(|gap| *gap = f64::INFINITY);
@@ -109,7 +111,7 @@ impl Places {
         Ok(())
     }
 
-    fn contact(&self, mut rows: Rows) -> Result<SparseMatrix, Error> {
+    fn rows(&self, mut rows: Rows) -> Result<SparseMatrix, Error> {
         if rows.shape.1 != self.dof.len() {
             let found = format!("it has {} columns, but {STIFFNESS} has {} rows", rows.shape.1, self.dof.len());
             return Err(rows.wrong_shape(found));
@@ -123,6 +125,16 @@ impl Places {
             starts.push(columns.len());
         }
         Ok(SparseMatrix::from_csc(self.free.len(), starts, columns, values)?.transposed())
+    }
+
+    /// The problem with the equality rows of `E.petsc` and `e.petsc`, if there is either file.
+    fn with_equalities(&self, directory: &Path, problem: ContactProblem) -> Result<ContactProblem, Error> {
+        let [rows, values] = [EQUALITIES, VALUES].map(|name| directory.join(name));
+        if !rows.exists() && !values.exists() {
+            return Ok(problem);
+        }
+        let rows = self.rows(Rows::open(&rows)?)?;
+        problem.with_equalities(&rows, gap(&values, (EQUALITIES, rows.rows()))?)
     }
 
     fn stiffness(&self, mut rows: Rows) -> Result<SymmetricMatrix, Error> {

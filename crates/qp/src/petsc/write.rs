@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 
 use super::{
-    BLOCK_SIZE, CONTACT, COORDINATES, Class, DENSE, FREE, GAP, INDICES, INFO, LOAD, Layout, MATRIX, NEAR_NULL,
-    STIFFNESS, TOO_MANY, VECTOR,
+    BLOCK_SIZE, CONTACT, COORDINATES, Class, DENSE, EQUALITIES, FREE, GAP, INDICES, INFO, LOAD, Layout, MATRIX,
+    NEAR_NULL, STIFFNESS, TOO_MANY, VALUES, VECTOR,
 };
 use crate::file::Streamed;
 use crate::linear::multigrid::NearNullSpace;
@@ -14,19 +14,26 @@ use crate::problem::ContactProblem;
 /// The files of a problem with this layout of dofs.
 pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a Layout) -> Vec<Streamed<'a>> {
     let (stiffness, place) = (problem.stiffness(), &layout.place);
-    let contact = problem.contact().transposed();
+    let (contact, gap) = problem.inequalities_given();
+    let contact = contact.transposed();
     let mut files = vec![
         Streamed::new(STIFFNESS, |out| write_stiffness(out, stiffness, layout)),
         Streamed::new(INFO, |out| writeln!(out, "{BLOCK_SIZE} {}", layout.size)),
         Streamed::new(LOAD, |out| write_load(out, problem.load(), layout)),
-        Streamed::new(CONTACT, move |out| write_contact(out, &contact, layout)),
-        Streamed::new(GAP, |out| write_vector(out, problem.gap())),
+        Streamed::new(CONTACT, move |out| write_rows_of(out, &contact, layout)),
+        Streamed::new(GAP, move |out| write_vector(out, gap)),
         Streamed::new(COORDINATES, |out| write_vector(out, &layout.coordinates)),
         Streamed::new(FREE, |out| {
             write_header(out, INDICES, &[place.len()])?;
             write_integers(out, place)
         }),
     ];
+    if problem.equality_rows() > 0 {
+        let (rows, values) = problem.equalities_given();
+        let rows = rows.transposed();
+        files.push(Streamed::new(EQUALITIES, move |out| write_rows_of(out, &rows, layout)));
+        files.push(Streamed::new(VALUES, move |out| write_vector(out, &values)));
+    }
     let modes = problem.near_null().map(|modes| Streamed::new(NEAR_NULL, |out| write_modes(out, modes, layout)));
     files.extend(modes);
     files
@@ -73,14 +80,14 @@ fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &Layout) -> i
     })
 }
 
-/// The contact rows, each a column of `contact`.
-fn write_contact(out: &mut dyn Write, contact: &SparseMatrix, layout: &Layout) -> io::Result<()> {
-    write_header(out, MATRIX, &[contact.columns(), layout.places(), contact.entries()])?;
-    for column in contact.column_starts().windows(2) {
+/// Contact or equality rows, each a column of `rows`.
+fn write_rows_of(out: &mut dyn Write, rows: &SparseMatrix, layout: &Layout) -> io::Result<()> {
+    write_header(out, MATRIX, &[rows.columns(), layout.places(), rows.entries()])?;
+    for column in rows.column_starts().windows(2) {
         out.write_all(&integer(column[1] - column[0])?.to_be_bytes())?;
     }
-    contact.row_indices().try_for_each(|dof| out.write_all(&layout.place[dof as usize].to_be_bytes()))?;
-    write_reals(out, contact.values())
+    rows.row_indices().try_for_each(|dof| out.write_all(&layout.place[dof as usize].to_be_bytes()))?;
+    write_reals(out, rows.values())
 }
 
 /// The stiffness; a supported component has the mean size of the diagonal as its diagonal entry, and no other entry.
