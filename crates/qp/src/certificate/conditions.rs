@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use super::EnergyNorm;
 use super::bound::{Answer, ErrorBound, Measured};
 use super::scales::{Balance, OfPart, Scales, larger, relative};
-use super::verdict::FORCES_ROUNDED;
 use crate::error::Error;
 use crate::linear::Accumulator;
 use crate::linear::multigrid::Multigrid;
@@ -144,7 +143,7 @@ impl ContactProblem {
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
         let forces: Vec<f64> = self.load.iter().zip(&contact_terms).map(|(f, contact)| f.abs() + contact).collect();
-        let scales = Scales::of(self, u, &balance, &forces);
+        let scales = Scales::of(self, [u, lambda], &balance, &forces);
         let Balance { residual, elastic, strain, terms } = balance;
 
         let balanced = self.balanced_forces(terms.iter().zip(&forces).map(|(terms, forces)| terms + forces).collect());
@@ -167,7 +166,7 @@ impl ContactProblem {
         // Rounding of u moves a row, and a part that rests is known only to the rounding of its forces.
         let is_rounding = |row: usize| {
             let rest = scales.rest_of_row(row, self.parts().of_row(row));
-            violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + FORCES_ROUNDED * rest
+            violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + rest
         };
         let distance = |row: usize| if is_rounding(row) { 0.0 } else { relative(violation[row], length(row)) };
         let penetration = worst(rows().map(|row| distance(row).max(0.0)));

@@ -41,6 +41,9 @@ pub(super) struct OfPart {
     pub force: f64,
     /// The sum of the squares `F_i^2 / K_ii`.
     pub force_squares: f64,
+    /// The same sum of the dofs at which couplings act, or rounding leaves forces out of balance that no row on this dof
+    /// alone takes: the size of a load on a wall says nothing of the error beside it.
+    pub rounded_squares: f64,
     /// The same sum of loads and elastic forces alone: contact forces that cancel each other may be of any size.
     pub given_squares: f64,
 }
@@ -55,6 +58,7 @@ impl OfPart {
             terms: parts.iter().map(|part| part.terms).sum(),
             force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
             force_squares: parts.iter().map(|part| part.force_squares).sum(),
+            rounded_squares: parts.iter().map(|part| part.rounded_squares).sum(),
             given_squares: parts.iter().map(|part| part.given_squares).sum(),
         }
     }
@@ -71,23 +75,27 @@ pub(super) fn relative(value: f64, scale: f64) -> f64 {
 }
 
 impl Scales {
-    /// The scales of a displacement u of `problem` in this balance, under the loads and contact forces `applied`,
+    /// The scales of an answer (u, lambda) of `problem` in this balance, under the loads and contact forces `applied`,
     /// `|f| + |B' lambda|`.
-    pub fn of(problem: &ContactProblem, u: &[f64], balance: &Balance, applied: &[f64]) -> Self {
+    pub fn of(problem: &ContactProblem, [u, multiplier]: [&[f64]; 2], balance: &Balance, applied: &[f64]) -> Self {
         let (parts, diagonal) = (problem.parts(), problem.diagonal());
         let strains = if parts.count() == 1 { vec![balance.strain] } else { problem.energies(parts, u) };
         let mut of_parts = vec![OfPart::default(); parts.count()];
-        let couplings = problem.couplings(parts, u, applied);
+        let (couplings, is_taken) = (problem.couplings(parts, u, applied), problem.taken_alone(multiplier));
         for (dof, &root) in diagonal.roots.iter().enumerate() {
             let part = &mut of_parts[parts.of_dof(dof)];
             part.terms += u[dof].abs() * balance.terms[dof];
             if root > 0.0 {
                 part.is_stiff = true;
                 part.moves |= u[dof] != 0.0;
-                let force = larger(applied[dof], couplings.get(dof).copied().unwrap_or(0.0)) / root;
+                let coupling = couplings.get(dof).copied().unwrap_or(0.0);
+                let force = larger(applied[dof], coupling) / root;
                 part.force = larger(force, part.force);
                 part.force_squares += force * force;
-                part.given_squares += (larger(problem.load[dof].abs(), balance.elastic[dof]) / root).powi(2);
+                if coupling > 0.0 || balance.residual[dof] != 0.0 && !is_taken[dof] {
+                    part.rounded_squares += force * force;
+                    part.given_squares += (larger(problem.load[dof].abs(), balance.elastic[dof]) / root).powi(2);
+                }
             }
         }
         of_parts.iter_mut().zip(&strains).for_each(|(part, &strain)| part.strain = strain);
@@ -95,12 +103,12 @@ impl Scales {
         Scales { reach: problem.least_reach(), of_parts, whole }
     }
 
-    /// The distance by which the forces on its `part`, if that rests, could move a single dof of a row, its loads and
-    /// elastic forces at most; zero for a part that moves.
+    /// The distance by which rounding of the forces on its `part`, if that rests, could move a single dof of a row, of
+    /// its loads and elastic forces at most; zero for a part that moves.
     pub fn rest_of_row(&self, row: usize, part: usize) -> f64 {
         let part = &self.of_parts[part];
         let rests = part.is_stiff && !part.moves;
-        if rests { self.reach[row] * part.force_squares.min(part.given_squares).sqrt() } else { 0.0 }
+        if rests { self.reach[row] * part.rest(part.rounded_squares.min(part.given_squares)) } else { 0.0 }
     }
 }
 
@@ -153,6 +161,16 @@ impl ContactProblem {
 }
 
 impl ContactProblem {
+    /// `true` for each dof on which a pressing row acts that acts on no other: its force takes what rounding leaves.
+    fn taken_alone(&self, multiplier: &[f64]) -> Vec<bool> {
+        let entries = || self.contact.triplets().filter(|entry| entry.2 != 0.0);
+        let (mut dofs, mut is_taken) = (vec![0; self.rows()], vec![false; self.dofs()]);
+        entries().for_each(|(row, ..)| dofs[row] += 1);
+        let alone = entries().filter(|&(row, ..)| dofs[row] == 1 && multiplier[row] != 0.0);
+        alone.for_each(|(_, dof, _)| is_taken[dof] = true);
+        is_taken
+    }
+
     /// `w_p' K_pp w_p` of each part p: twice its energy under the displacement w, without couplings to other parts.
     pub(super) fn energies(&self, parts: &Parts, w: &[f64]) -> Vec<f64> {
         self.rounded_energies(|dof| parts.of_dof(dof), parts.count(), w).0

@@ -11,7 +11,10 @@ const AS_ROUNDED: f64 = f64::EPSILON;
 
 /// An error of a part that rests is rounding of its forces up to this multiple of these forces and of the loss of the
 /// factor.
-pub(super) const FORCES_ROUNDED: f64 = f64::EPSILON;
+const FORCES_ROUNDED: f64 = f64::EPSILON;
+
+/// The same for forces that cancel to the last bit: far above the rounding of twice the working precision.
+const CANCELLED: f64 = 1e-26;
 
 /// Relative error of sums with twice the working precision stays below this share of their terms: no bound is smaller.
 const LEAST: f64 = 1e-28;
@@ -36,10 +39,15 @@ impl OfPart {
         error + LEAST * self.terms.sqrt()
     }
 
+    /// The energy norm that rounding gives a part at rest, from the sum of squares of the forces that it leaves.
+    pub fn rest(&self, squares: f64) -> f64 {
+        FORCES_ROUNDED * squares.sqrt() + CANCELLED * self.force_squares.sqrt()
+    }
+
     /// Returns `true` if an error of a part without displacement is rounding of its forces, in a factor that amplifies
     /// rounding by `loss`.
     fn is_rest(&self, error: f64, loss: f64) -> bool {
-        !self.moves && error <= FORCES_ROUNDED * loss * self.force_squares.sqrt()
+        !self.moves && error <= loss * self.rest(self.rounded_squares)
     }
 }
 

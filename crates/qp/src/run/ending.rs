@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use super::carried_out::{Run, without_certificate};
+use super::carried_out::{Run, solved, without_certificate};
 use crate::certificate::{Bounding, WithEvidence};
 use crate::error::Error;
-use crate::method::{Ending, Outcome};
+use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Answered, Best, Ended, Record, Step};
 use crate::solution::{Attempt, Goal, ProvenSet, Seconds, Solution};
 
@@ -57,12 +57,38 @@ impl Run<'_> {
         let (factor, certificate) = (of(|stages| stages.factor), of(|stages| stages.certificate));
         solution.proven = solution.proven.or(proven.0);
         solution.seconds = Seconds { factor, certificate, proof, solve: self.clock.elapsed().as_secs_f64() };
-        let mut solution = self.problem.in_given_rows(solution);
         if certified {
-            return Ok(solution);
+            let without = self.without_open_rows(&solution)?;
+            return Ok(without.unwrap_or_else(|| self.problem.in_given_rows(solution)));
         }
+        let mut solution = self.problem.in_given_rows(solution);
         let cut_short = solution.cut_short.take().or_else(|| self.settings.watch.cut());
         Err(fallen_short(Solution { cut_short, ..solution }, goal))
+    }
+
+    /// The answer without the rows that are closed in `solution` but proven open by its own bound: the exact answer is
+    /// the same without them. `None` if there are none, or if no such answer is certified.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    fn without_open_rows(&self, solution: &Solution) -> Result<Option<Solution>, Error> {
+        let Some(proven) = &solution.proven else { return Ok(None) };
+        let is_open = |row: usize| solution.contact_set.contains(row) && proven.open.contains(row);
+        if !(0..self.problem.rows()).any(is_open) {
+            return Ok(None);
+        }
+        let gaps = self.problem.gap().iter().enumerate();
+        let gap = gaps.map(|(row, &gap)| if is_open(row) { f64::INFINITY } else { gap }).collect();
+        let mut found = match solved(&self.problem.with_gap(gap)?, &Start::default(), self.settings) {
+            Ok(found) => found,
+            Err(Error::Interrupted) => return Err(Error::Interrupted),
+            Err(_) => return Ok(None),
+        };
+        let multiplier = [&found.multiplier[..], &found.equality_multiplier].concat();
+        let examined = self.problem.examine(&Bounding::OwnFactor, &found.displacement, &multiplier)?;
+        found.certificate = examined.certificate.judged(self.settings.goal());
+        found.seconds.solve = self.clock.elapsed().as_secs_f64();
+        Ok(found.certificate.met.is_some().then_some(found))
     }
 
     /// The error if it is open whether there is an answer, after a method met a motion without energy, or failed for a

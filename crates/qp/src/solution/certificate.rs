@@ -24,7 +24,7 @@ const DIGITS_OF_DOUBLES: f64 = 16.0;
 /// An answer is certified to a tolerance T if no row pulls, its other conditions hold to T, and for the whole and every
 /// part that moves `E_p <= T N_p`, or E_p is no more than rounding u to doubles does: `eps sqrt(|u_p|'|K||u_p|)`. A
 /// part *rests* if its displacement is zero: no relative error exists then, and E_p must be rounding of the forces that
-/// are in balance on it.
+/// are in balance on it, without those that cancel to the last bit or that a row on one dof takes.
 ///
 /// | field | formula, the largest over all dofs, rows or parts | decides |
 /// |---|---|---|
