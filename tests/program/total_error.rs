@@ -414,6 +414,50 @@ fn a_body_that_an_obstacle_just_touches_has_nothing_to_refine() {
     assert!(message.contains("nothing moves") && message.contains("a negative `gap` presses"), "{message}");
 }
 
+/// The upper of two blocks is guided at its side, so that statics give the force, and the interval is rounding alone.
+#[test]
+fn an_interval_of_rounding_contains_the_force_of_statics() {
+    let block = |x: [f64; 2], y: [f64; 2], element: &str| {
+        let axis = |ends: [f64; 2], count: usize| json!({"points": ends, "divisions": [count]});
+        json!({"rectangle": {"x": axis(x, 3), "y": axis(y, 2), "element": element}})
+    };
+    let scene = json!({
+        "body": block([0.0, 1.0], [0.0, 0.79], "q4"),
+        "material": {"young": 0.16105703836197294, "poisson": 0.45, "expansion": 1},
+        "further-bodies": [{"name": "b", "body": block([0.03440000000000001, 0.6043999999999999], [0.791, 1.121], "t3"),
+                            "material": {"young": 12.835268005072528, "poisson": 0.3, "expansion": 0.5}}],
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}, {"on": {"boundary": "b.left"}, "x": 0}],
+        "loads": [{"body-force": [0, 0.012480823579690561]},
+                  {"pressure": {"boundary": "b.top", "value": 0.02995368353208776}}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"body": {"boundary": "b.bottom"}}}],
+        "temperature": [{"value": 0.004120393005679996}]
+    });
+    let exact = 0.02995368353208776 * 0.57 - 0.012480823579690561 * 0.57 * 0.33;
+    for goal in ["0.3", "0.1", "0.03"] {
+        let (code, report, message) = solved(&scene, &["--total-error", goal]);
+        assert_eq!(code, 0, "{message}");
+        let [low, high] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
+        assert!(low <= exact && exact <= high && high - low < 1e-9 * exact, "{goal}: {low} {high}");
+    }
+}
+
+/// The heights of a table are rounded as the places of nodes are.
+#[test]
+fn a_table_far_from_the_origin_has_the_guarantee_of_one_near_it() {
+    let forces = [0.0, 100.0, 4e3].map(|y: f64| {
+        let mut scene = classical(0.3);
+        scene["body"]["rectangle"]["x"]["divisions"] = json!([4]);
+        scene["body"]["rectangle"]["y"] = json!({"points": [y, y + 0.5], "divisions": [2]});
+        scene["gap"] = json!(-0.005);
+        let points = [[0.0, y + 0.52], [0.5, y + 0.5], [1.0, y + 0.53]];
+        scene["obstacles"][0]["shape"] = json!({"table": {"points": points}});
+        let (code, report, message) = solved(&scene, &["--total-error", "0.02"]);
+        assert_eq!((code, &report["total_error"]["guaranteed"]), (0, &json!(true)), "{y}: {message}");
+        [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap())
+    });
+    assert!(forces.iter().all(|[low, high]| *low < 2.40e4 && 2.40e4 < *high && high - low < 150.0), "{forces:?}");
+}
+
 #[test]
 fn a_guaranteed_error_does_not_hide_an_obstacle_on_the_wrong_side() {
     let mut scene = classical(0.3);

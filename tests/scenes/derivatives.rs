@@ -4,6 +4,7 @@
 //! of `cargo run --release --example studies -- derivatives scenes 200`.
 
 use serde_json::{Value, json};
+use signorini::qp::Derivative;
 use signorini::{Scene, Settings};
 use support::program::example;
 use support::slopes::{off_path, wrong_slopes};
@@ -28,6 +29,25 @@ fn random_scenes_have_the_derivatives_that_differences_show() {
             let found = wrong_slopes(&scene(seed).0);
             assert!(found.wrong.is_empty(), "kind {kind}, seed {seed}: {:#?}", found.wrong);
         }
+    }
+}
+
+/// With closest points the area of a row turns with its normal. REFERENCE: central differences of whole answers with
+/// steps of 1e-5 and 1e-6, which agree to eight digits.
+#[test]
+fn the_width_of_a_contact_has_the_derivatives_that_differences_show() {
+    let scene = json!({
+        "model": "plane-stress", "material": {"young": 1e6, "poisson": 0.34},
+        "body": {"rectangle": {"x": {"points": [0, 0.7, 1.4], "divisions": [6, 6]}, "y": {"points": [0, 1.14], "divisions": [3]}}},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "rule": "closest-point", "gap": -0.011,
+                       "shape": {"circle": {"apex": [0.67, 1.14], "radius": 4.6}}}]
+    });
+    let scene = Scene::from_json(&scene.to_string(), "width").unwrap();
+    let parameters = ["obstacles[0].apex[0]", "obstacles[0].radius", "gap"];
+    let found = scene.sensitivity(&["width"], &parameters, &Settings::default()).unwrap();
+    for (by, exact) in found.outputs[0].by.iter().zip([1.6103977, 3.635821e-2, -15.2942464]) {
+        assert!(matches!(by.derivative, Derivative::Proven(value) if (value / exact - 1.0).abs() < 1e-6), "{by:?}");
     }
 }
 

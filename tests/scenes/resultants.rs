@@ -113,6 +113,25 @@ fn forces_and_moments_balance_in_space_and_between_two_bodies() {
 
 /// A ring of circular section between two plates: each presses with the same force, and the sum of multipliers is twice
 /// that force.
+/// Without load and contact a displaced body has forces of rounding only, and a pressed one those of its contact.
+#[test]
+fn forces_that_are_rounding_have_no_balance() {
+    let mut scene = block(json!([]), json!([]));
+    scene["gap"] = json!(0);
+    let moved = json!([{"on": {"boundary": "bottom"}, "x": 0.3, "y": -0.0004747124533812332}]);
+    scene["supports"] = moved;
+    assert_eq!(answer(&scene).balance().unwrap(), None);
+    let body = json!({"rectangle": {"x": {"points": [0, 4], "divisions": [7]}, "y": {"points": [-1.1, -0.1], "divisions": [3]}, "element": "t6"}});
+    scene["further-bodies"] = json!([{"name": "b", "body": body, "material": scene["material"]}]);
+    scene["supports"] =
+        json!([{"on": {"boundary": "top"}, "x": 0, "y": -0.001}, {"on": {"boundary": "b.bottom"}, "x": 0, "y": 0}]);
+    let shape = json!({"body": {"boundary": "b.top", "rows": "mortar", "side": "other"}});
+    scene["obstacles"] = json!([{"boundary": "bottom", "approach": "-y", "shape": shape}]);
+    assert_eq!(answer(&scene).balance().unwrap(), None);
+    scene["supports"][0]["y"] = json!(-0.11);
+    assert!(answer(&scene).balance().unwrap().is_some_and(|balance| balance < 1e-12));
+}
+
 #[test]
 fn two_plates_on_a_ring_have_opposite_forces() {
     let plate = |sign: f64, approach: &str| {

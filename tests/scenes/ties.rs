@@ -257,6 +257,23 @@ fn a_body_that_only_a_tie_holds_is_held_and_what_it_leaves_free_is_named() {
     assert_eq!(mode.matches("rotation").count(), 6, "{mode}");
 }
 
+/// Coefficients of 1e20 and 1e-20 are a support of the first node.
+#[test]
+fn the_size_of_the_coefficients_of_an_equation_holds_no_motion() {
+    let mut scene = json!({
+        "body": {"rectangle": {"x": cells(0.0, 1.0, 4), "y": cells(0.0, 0.5, 2)}},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}], "gap": -0.01,
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 0.5], "radius": 1}}}]
+    });
+    let mut tied = scene.clone();
+    let term = |x: f64, along: f64| json!({"on": {"point": [x, 0.5]}, "x": along});
+    tied["ties"] = json!([{"equation": {"terms": [term(1.0, 1e20), term(0.0, -1e-20)], "value": 1}}]);
+    scene["supports"].as_array_mut().unwrap().push(json!({"on": {"point": [1, 0.5]}, "x": 1e-20}));
+    let [tied, held] = [tied, scene].map(|scene| answer(&scene).displacement().to_vec());
+    assert!(tied.iter().zip(&held).all(|(a, b)| (a - b).abs() < 0.01 * ROUNDING), "{tied:?} {held:?}");
+}
+
 #[test]
 fn surfaces_that_are_apart_or_cover_each_other_in_part_are_named() {
     let stack = Stack { elements: ["q4", "q4"], counts: [4, 4] };

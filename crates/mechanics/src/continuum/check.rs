@@ -13,6 +13,9 @@ const OUT_OF_BALANCE: f64 = 1e-8;
 /// Depth in an obstacle over the largest displacement that counts as rounding.
 const PENETRATION: f64 = 1e-12;
 
+/// The same over the largest coordinate: both a place and the height of an obstacle there are rounded.
+const OF_PLACES: f64 = 4.0 * f64::EPSILON;
+
 /// The share of J - D by which the energies may differ from it, beyond their own rounding.
 const LOST: f64 = 1e-2;
 
@@ -57,7 +60,7 @@ impl Bracket<'_> {
         [
             defect("the stress is out of balance", strained(Self::imbalance), OUT_OF_BALANCE),
             defect("the obstacle pulls", strained(Self::adhesion), OUT_OF_BALANCE),
-            defect("the displacement goes into an obstacle", self.penetration(), PENETRATION),
+            defect("the displacement goes into an obstacle", self.penetration(), self.allowed_penetration()),
             defect("J - D differs from the sum of its shares", strained(Self::lost), LOST),
         ]
     }
@@ -160,6 +163,12 @@ impl Bracket<'_> {
             }
         }
         over(deepest, largest)
+    }
+
+    /// The penetration up to which it is rounding: of the displacement, or of the places of nodes and obstacle.
+    fn allowed_penetration(&self) -> f64 {
+        let farthest = self.mesh.nodes.iter().flatten().fold(0.0, |most: f64, part| most.max(part.abs()));
+        PENETRATION.max(over(OF_PLACES * farthest, self.displacements.largest(&self.primal.values)))
     }
 
     /// Difference of J - D, from the energies, and the sum of the shares, over that sum. It leaves out the rounding of

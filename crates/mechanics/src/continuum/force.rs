@@ -117,8 +117,12 @@ impl Bracket<'_> {
             }
             last = Some(test);
         }
-        // If only rounding is left, the ends may be exchanged.
-        Ok(interval.map(|[low, high]| [low.min(high), low.max(high)]))
+        // If only rounding is left, the ends may be exchanged; the defect is the rounding of all forces, loads included.
+        Ok(interval.map(|[low, high]| {
+            let loads: f64 = self.displacements.load().iter().map(|load| load.abs()).sum();
+            let rounding = self.defect * low.abs().max(high.abs()).max(loads);
+            [low.min(high) - rounding, low.max(high) + rounding]
+        }))
     }
 
     /// The interval of a pair, and the beta at which its term would reach that of the ball.

@@ -79,7 +79,7 @@ impl Summary {
         contact.force *= parts;
         contact.width = contact_width(model, closed);
         contact.area = Some(contact_area(model, closed));
-        contact.force_balance = Some(answer.forces()?.balance);
+        contact.force_balance = answer.balance()?;
         if mesh.dimension() > 1 {
             contact.estimate = ContactExtent::of(segments.iter()).map(|extent| extent.of_parts(parts));
         }

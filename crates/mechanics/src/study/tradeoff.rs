@@ -291,7 +291,7 @@ impl Measured<'_> {
             mesh: self.mesh,
             method: way.method,
             knob: way.knob,
-            condensed: way.settings.condense == Condense::Auto,
+            condensed: solution.condensed_dofs < self.problem.dofs(),
             mixed: way.settings.precision == Precision::Mixed,
             seconds: *seconds,
             certificate_seconds: solution.seconds.certificate,

@@ -20,6 +20,9 @@ use signorini_qp::{ContactSet, Solution};
 /// these forces cancel if the body is free.
 const OWN_ROUNDING: f64 = 1e-10;
 
+/// The sum of all forces is rounding below this share of the diagonal of the stiffness times the displacement.
+const ROUNDED: f64 = 16.0 * f64::EPSILON;
+
 /// Displacements, multipliers and closed rows of a model, and the results that follow: stresses, pressures, forces.
 /// Stresses and forces are computed on demand, and only once.
 #[derive(Clone, Debug)]
@@ -294,6 +297,20 @@ impl Answer {
     /// As [`Model::reactions`].
     pub fn forces(&self) -> Result<&Forces, Error> {
         once(&self.forces, || self.model.forces(&self.displacement, &self.multiplier, &self.of_ties))
+    }
+
+    /// The imbalance of all forces, as [`Model::force_balance`]; `None` if all of them are rounding of stiffness times
+    /// displacement: there is nothing to balance.
+    ///
+    /// # Errors
+    /// As [`Answer::forces`].
+    pub fn balance(&self) -> Result<Option<f64>, Error> {
+        let Forces { contact, reactions, springs, rigid_faces, ties, balance } = self.forces()?;
+        let all = [contact, reactions, springs, rigid_faces, ties].into_iter().flatten();
+        let size: f64 = all.chain(self.model.nodal_load()).map(|force| force.abs()).sum();
+        let stiffness = self.model.problem().stiffness().diagonal();
+        let moved: f64 = stiffness.iter().zip(&self.unknowns).map(|(k, u)| (k * u).abs()).sum();
+        Ok((size > ROUNDED * moved).then_some(*balance))
     }
 
     /// The resultants of contact forces, support reactions and loads: obstacle by obstacle, support by support.

@@ -80,7 +80,7 @@ pub(super) enum Direct {
         at: [f64; 3],
         component: usize,
     },
-    /// Of a width, on the places of nodes.
+    /// Of a width, on the places of nodes and on the areas of its rows.
     Width,
 }
 
@@ -400,7 +400,7 @@ impl Branch {
     pub(super) fn direct(&self, answer: &Answer, effect: &Effect) -> Result<f64, Why> {
         let (model, lambda) = (answer.model(), answer.multiplier());
         Ok(match &self.direct {
-            Direct::None | Direct::Width => 0.0,
+            Direct::None => 0.0,
             Direct::Moment(obstacle, axis) => {
                 let of_row = |(&row, normal): (&usize, &[f64; 3])| {
                     let own = &model.rows()[row];
@@ -412,15 +412,16 @@ impl Branch {
                 };
                 sorted(&effect.normals).iter().map(|(row, normal)| of_row((row, normal))).sum()
             }
-            Direct::Pressure(row) => match effect.normals.get(row) {
-                Some(normal) => {
+            Direct::Pressure(_) | Direct::Width => {
+                // A pressure is a force over the area that faces the obstacle, which changes with the normal.
+                let of_row = |(row, normal): &(usize, [f64; 3])| {
                     let own = &model.rows()[*row];
                     let facing = dot(own.normal, own.outward);
-                    let is_part = facing > 0.0 && facing < 1.0;
-                    if is_part { -self.value / facing * dot(*normal, own.outward) } else { 0.0 }
-                }
-                None => 0.0,
-            },
+                    let share = if facing > 0.0 && facing < 1.0 { dot(*normal, own.outward) / facing } else { 0.0 };
+                    -self.by_multiplier[*row] * lambda[*row] * share
+                };
+                sorted(&effect.normals).iter().map(of_row).sum()
+            }
             Direct::Energy => match &effect.body {
                 Some(body) => {
                     let change = work_to(answer, body)? + own_energy_change(model.body(), body);

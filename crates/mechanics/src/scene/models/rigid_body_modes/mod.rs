@@ -85,11 +85,14 @@ impl RigidBodyModes {
         components
     }
 
-    /// The component of each unit motion in the equation of a tie: surfaces are tied at one place, whatever their
-    /// distance.
+    /// The component of each unit motion in the equation of a tie, divided by its largest coefficient: surfaces are tied
+    /// at one place, whatever their distance.
     fn in_tie(&self, parts: &Parts, row: &TieRow) -> Vec<f64> {
         let nodes = parts.body.mesh().nodes();
-        self.in_sum(&row.terms, |node| row.at.unwrap_or_else(|| parts.dofs.basis.place(nodes, node)))
+        let sum = self.in_sum(&row.terms, |node| row.at.unwrap_or_else(|| parts.dofs.basis.place(nodes, node)));
+        let coefficients = row.terms.iter().flat_map(|term| term.1);
+        let largest = coefficients.fold(0.0, |largest: f64, part| largest.max(part.abs()));
+        sum.into_iter().map(|part| if largest > 0.0 { part / largest } else { part }).collect()
     }
 
     /// The component of each unit motion in a sum of displacements of nodes along vectors, `at` the place of each node.
