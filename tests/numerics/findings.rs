@@ -349,7 +349,7 @@ fn no_closed_row_is_proven_open() {
     }
 }
 
-/// A load of 7e19 on the softest of six dofs at its wall: their relative size hides rows that are violated by order one.
+/// A load of 7e19 on the softest of six dofs at its wall hides rows that are violated by order one.
 #[test]
 fn a_violated_gap_is_no_rounding_of_a_load_on_a_wall() {
     let finding = Finding::read("bounds_mixed_scales");

@@ -117,7 +117,7 @@ impl Bracket<'_> {
             }
             last = Some(test);
         }
-        // If only rounding is left, the ends may be exchanged; the defect is the rounding of all forces, loads included.
+        // If only rounding is left, the ends may be exchanged; the defect is the rounding of all forces and loads.
         Ok(interval.map(|[low, high]| {
             let loads: f64 = self.displacements.load().iter().map(|load| load.abs()).sum();
             let rounding = self.defect * low.abs().max(high.abs()).max(loads);

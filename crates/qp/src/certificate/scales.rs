@@ -41,8 +41,8 @@ pub(super) struct OfPart {
     pub force: f64,
     /// The sum of the squares `F_i^2 / K_ii`.
     pub force_squares: f64,
-    /// The same sum of the dofs at which couplings act, or rounding leaves forces out of balance that no row on this dof
-    /// alone takes: the size of a load on a wall says nothing of the error beside it.
+    /// The same sum of the dofs at which couplings act, or rounding leaves forces out of balance that no row on this
+    /// dof alone takes: the size of a load on a wall says nothing of the error beside it.
     pub rounded_squares: f64,
     /// The same sum of loads and elastic forces alone: contact forces that cancel each other may be of any size.
     pub given_squares: f64,

@@ -1,9 +1,9 @@
 //! PETSc's binary files: the form in which a body too large for one machine goes to a cluster and comes back.
 //!
 //! A problem directory holds `K.petsc` (D n x D n, both triangles, D dofs for each of n nodes), `K.petsc.info`,
-//! `f.petsc`, `coordinates.petsc`, `B.petsc`, `g.petsc`, `free.petsc`; `E.petsc` and `e.petsc` if there are equality
-//! rows, and `near_null.petsc` if displacements of almost no energy are known. `free.petsc` is the place in 0..D n of each free dof: `u.mtx` has their order. All other
-//! components are supported.
+//! `f.petsc`, `coordinates.petsc`, `B.petsc`, `g.petsc`, `free.petsc`; `E.petsc` and `e.petsc` with equality rows, and
+//! `near_null.petsc` if displacements of almost no energy are known. `free.petsc` is the place in 0..D n of each free
+//! dof: `u.mtx` has their order. All other components are supported.
 //!
 //! Numbers are big-endian: integers of 32 bits, reals of 64. A file begins with the class of its object.
 //!

@@ -85,8 +85,8 @@ impl RigidBodyModes {
         components
     }
 
-    /// The component of each unit motion in the equation of a tie, divided by its largest coefficient: surfaces are tied
-    /// at one place, whatever their distance.
+    /// The component of each unit motion in the equation of a tie, divided by its largest coefficient: surfaces are
+    /// tied at one place, whatever their distance.
     fn in_tie(&self, parts: &Parts, row: &TieRow) -> Vec<f64> {
         let nodes = parts.body.mesh().nodes();
         let sum = self.in_sum(&row.terms, |node| row.at.unwrap_or_else(|| parts.dofs.basis.place(nodes, node)));
