@@ -34,8 +34,9 @@ fn what_calculix_passes_over_changes_the_warnings_alone() {
             "node 8 is given twice, 2.000000e0 apart; the last place counts",
         ),
         ("*ELASTIC\n", "*ELASTIC\n100., 0.2\n*ELASTIC\n", "the material has *ELASTIC twice; the last one counts"),
-        ("6, 7, 8\n", "6, 7, 8, 9, 10, 11\n", "values follow the 8 nodes of element 1, and are passed over"),
-        ("2, 1., 0., 0.", "2, 1., 0., 0., 7.", "values follow the coordinates of node 2, and are passed over"),
+        ("6, 7, 8\n", "6, 7, 8, 9, 10, 11\n", "`9` follows the last value of this line; such values are passed over"),
+        ("2, 1., 0., 0.", "2, 1., 0., 0., 7.", "`7.` follows the last value of this line; such values are passed over"),
+        ("7, 3, -1.", "7, 3, -1., 4.", "`4.` follows the last value of this line; such values are passed over"),
         ("*END STEP\n", "*END STEP\nThe end\n", "deck.inp:29: this text follows the last *END STEP"),
         (
             "*NSET, NSET=BASE\n1, 2, 3, 4\n",

@@ -147,8 +147,8 @@ impl Deck {
 
     fn read_nodes(&mut self, card: &Card) -> Result<(), Error> {
         let mut members = Vec::with_capacity(card.lines.len());
-        // The first line of each kind is named.
-        let (mut again, mut longer) = (None, None);
+        // The first such line is named.
+        let mut again = None;
         for line in &card.lines {
             let mut fields = self.source.fields(line);
             let number = fields.whole("the number of a node")?;
@@ -156,10 +156,7 @@ impl Deck {
             for (value, name) in at.iter_mut().zip(["x", "y", "z"]) {
                 *value = fields.finite_or_zero(format_args!("the {name} of node {number}"))?;
             }
-            if fields.has_more() && longer.is_none() {
-                longer =
-                    Some((line.place, format!("values follow the coordinates of node {number}, and are passed over")));
-            }
+            fields.pass_over();
             let place = match self.nodes.place(number) {
                 Some(place) => place,
                 None if self.nodes.len() == MAX_NODES => {
@@ -181,7 +178,7 @@ impl Deck {
             (self.at[place], self.node_places[place]) = (at, line.place);
             members.push(place);
         }
-        self.source.noted.extend(again.into_iter().chain(longer));
+        self.source.noted.extend(again);
         if let Some(set) = self.node_sets.name_in(&self.source, card)? {
             members.sort_unstable();
             members.dedup();
@@ -264,7 +261,6 @@ impl Deck {
         }
         let of_type = element_type(&key(name)).map_err(|message| self.source.fault(card.place, message))?;
         let kind = of_type.kind().unwrap_or(ElementKind::ALL[0]);
-        let mut longer = None;
         let first = self.elements.len();
         // An element may go on in the next lines.
         let mut open: Option<(usize, Place)> = None;
@@ -287,11 +283,7 @@ impl Deck {
                 let node = fields.whole(format_args!("a node of element {number}"))?;
                 self.connectivity.push(node);
             }
-            if fields.has_more() && longer.is_none() {
-                let message =
-                    format!("values follow the {} nodes of element {number}, and are passed over", of_type.nodes);
-                longer = Some((line.place, message));
-            }
+            fields.pass_over();
             open = (self.connectivity.len() < wanted).then_some((number, place));
         }
         if let Some((number, place)) = open {
@@ -299,7 +291,6 @@ impl Deck {
             let message = format!("element {number} has {found} nodes, but {} has {}", of_type.name, of_type.nodes);
             return Err(self.source.fault(place, message));
         }
-        self.source.noted.extend(longer);
         if let Some(set) = self.element_sets.name_in(&self.source, card)? {
             self.element_sets.extend(set, first..self.elements.len());
         }

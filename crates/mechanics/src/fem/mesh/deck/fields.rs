@@ -91,9 +91,13 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    /// Passes over further fields; `true` if there is one that is not empty.
-    pub fn has_more(&mut self) -> bool {
-        std::iter::from_fn(|| self.next()).any(|field| !field.is_empty())
+    /// Passes over further fields, as CalculiX does; the first line with some is noted.
+    pub fn pass_over(&mut self) {
+        if let Some(field) = std::iter::from_fn(|| self.next()).find(|field| !field.is_empty()) {
+            let message =
+                format!("`{}` follows the last value of this line; such values are passed over", shown(field));
+            self.source.longer.get_or_init(|| (self.place, message));
+        }
     }
 
     pub fn fault(&self, message: impl Into<String>) -> Error {

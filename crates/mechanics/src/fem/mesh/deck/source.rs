@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use super::card::{Card, Line, Place, key};
 use crate::error::Error;
@@ -36,6 +37,8 @@ pub(crate) struct Source {
     pub cards: Vec<Card>,
     /// What is read, but may not be meant: a sentence with its place.
     pub noted: Vec<(Place, String)>,
+    /// The first line with values that are passed over.
+    pub longer: OnceLock<(Place, String)>,
     bytes: u64,
 }
 

@@ -83,7 +83,7 @@ impl<'a, 'd> Loads<'a, 'd> {
             let (target, mut nodes) = self.nodes(&mut fields)?;
             let direction = fields.whole("the direction")?;
             let force = factor * fields.finite("the force")?;
-            fields.end()?;
+            fields.pass_over();
             if !(1..=6).contains(&direction) {
                 return Err(fields.fault(format!("{direction} is no direction; there are 1 to 6")));
             }
@@ -161,7 +161,7 @@ impl<'a, 'd> Loads<'a, 'd> {
                     return Err(fields.fault(message));
                 }
             };
-            fields.end()?;
+            fields.pass_over();
             let deck = self.deck;
             let name = (key(&target), label, along);
             self.on_volume.retain(|other| other.step == card.step || other.name != name);
@@ -238,7 +238,7 @@ impl<'a, 'd> Loads<'a, 'd> {
                 return Err(fields.fault("only pressures, with the label P, are read as loads of surfaces"));
             }
             let value = factor * fields.finite("the pressure")?;
-            fields.end()?;
+            fields.pass_over();
             self.deck.surface_or(&surface).map_err(|message| fields.fault(message))?;
             self.add_pressure(&surface, value, line.place)?;
         }

@@ -121,6 +121,7 @@ impl DeckScene {
         loads.extend(eliminated.loads);
         noted.extend(contacts.warnings);
         noted.extend(eliminated.warnings);
+        noted.extend(deck.source.longer.get().cloned());
         let mut text = SceneText::new(&deck, &comments(&deck, named, &noted, &passed));
         text.plain("title", &title(&deck).into());
         text.plain("units", &serde_json::json!({"length": "", "force": ""}));

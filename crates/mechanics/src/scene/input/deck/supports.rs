@@ -283,7 +283,7 @@ fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Presc
                 }
             }
         }
-        fields.end()?;
+        fields.pass_over();
         if names_z_of_plane(deck, &mut values) {
             return Err(fields.fault("a plane model has no displacement along z"));
         }
