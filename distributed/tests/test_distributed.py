@@ -61,7 +61,7 @@ MEASURED = 1.2
 
 def mpi(ranks, program, *arguments, check=True):
     command = [*MPIRUN, "-n", str(ranks), sys.executable, str(PROGRAMS / program), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, stdin=subprocess.DEVNULL,
                           env=ENVIRONMENT)
     if check and done.returncode:
         raise AssertionError(f"{program} ended with {done.returncode}: {done.stdout}{done.stderr}")
@@ -69,7 +69,7 @@ def mpi(ranks, program, *arguments, check=True):
 
 
 def signorini(*arguments):
-    done = subprocess.run([SIGNORINI, *map(str, arguments)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
+    done = subprocess.run([SIGNORINI, *map(str, arguments)], capture_output=True, text=True, timeout=600, stdin=subprocess.DEVNULL,
                           env=ENVIRONMENT)
     if done.returncode:
         raise AssertionError(f"signorini {arguments} ended with {done.returncode}: {done.stdout}{done.stderr}")

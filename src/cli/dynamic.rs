@@ -51,7 +51,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
         warn(&format!("out of time after step {} of {}\n", summary.steps, dynamics.steps));
     }
     watch.step("report", 0);
-    warn(&summary.warnings().iter().map(|warning| format!("warning: {}\n", warning.message)).collect::<String>());
+    warn(&summary.warnings(&model).iter().map(|warning| format!("warning: {}\n", warning.message)).collect::<String>());
     let seconds = RunSeconds::new(assemble, factor, clock.elapsed().as_secs_f64());
     let is_whole = summary.steps == dynamics.steps;
     let error = match options.refine_in_time && is_whole {
@@ -136,7 +136,9 @@ impl<'a> Run<'a> {
             };
             let seen = self.model.of_whole(self.integrator.observe());
             let state = self.integrator.state();
-            self.summary.add(&seen, &self.model.obstacle_forces(&state.multiplier));
+            let (forces, rows) =
+                (self.model.obstacle_forces(&state.multiplier), self.model.pressing_rows(&state.multiplier));
+            self.summary.add(&seen, &forces.into_iter().zip(rows).collect::<Vec<_>>());
             if let Some(folder) = &mut self.folder {
                 let seen_with_mean = (&seen, self.summary.contact.mean_force());
                 folder.observe(

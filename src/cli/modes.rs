@@ -14,7 +14,6 @@ use crate::scene::{ModalAnalysis, Scene};
 use crate::study::Status;
 
 pub(super) fn run(options: &Solve, scene: &Scene, read_seconds: f64, watch: &Watch) -> Result<Outcome, Error> {
-    check(options)?;
     let (common, count) = (&options.common, scene.modes().map_or(0, |spec| spec.count));
     let input = Input::of_scene(scene, &options.input, &common.limits, read_seconds)?;
     warn(&input.warnings());
@@ -54,20 +53,4 @@ pub(super) fn run(options: &Solve, scene: &Scene, read_seconds: f64, watch: &Wat
             None => Ok(()),
         }
     }))
-}
-
-/// Refuses options that belong to other answers.
-fn check(options: &Solve) -> Result<(), Error> {
-    let given = [
-        ("--total-error", options.total_error.is_some()),
-        ("--plan", options.plan),
-        ("--start", options.start.is_some()),
-        ("--along", !options.along.is_empty()),
-        ("--refine-in-time", options.refine_in_time),
-        ("--resume", options.resume),
-    ];
-    match given.into_iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => unfit(option, "the scene asks for its modes; leave this option out, or `analysis`"),
-        None => Ok(()),
-    }
 }

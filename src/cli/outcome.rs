@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::options::Format;
 use crate::Error;
-use crate::output::write_files;
+use crate::output::{remove_shown, write_files};
 use crate::study::Status;
 
 /// The exit code of a command; a usage error is 2, from the argument parser.
@@ -88,14 +88,16 @@ impl Report {
         Ok(serde_json::from_str(&self.json).map_err(failed)?)
     }
 
-    /// Writes `report.json` into the folder.
+    /// Writes `report.json` into the folder, and takes out what an earlier run shows there.
     pub fn write(&self, folder: &Path) -> Result<(), Error> {
+        remove_shown(folder)?;
         write_files(folder, &[("report.json", &self.json)])
     }
 
     /// The same with its text in a file of its own.
     pub fn write_with_text(&self, folder: &Path, name: &str) -> Result<(), Error> {
-        write_files(folder, &[(name, &self.text), ("report.json", &self.json)])
+        write_files(folder, &[(name, &self.text)])?;
+        self.write(folder)
     }
 
     /// The report in this form.

@@ -15,7 +15,7 @@ use super::settings::settings;
 use super::total_error;
 use crate::Error;
 use crate::qp;
-use crate::qp::{Goal, Method, Settings, Solution, Start, Watch, read_vector};
+use crate::qp::{Goal, Method, Precision, Settings, Solution, Start, Watch, read_vector};
 use crate::scene::{Answer, Scene};
 use crate::study::TotalErrorGoal;
 
@@ -31,10 +31,11 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
     let watch = &options.time.map_or_else(|| watch.clone(), |time| watch.within(time));
     let source = Source::read(&options.input, &options.common.limits)?;
     let mut report_seconds = 0.0;
+    check_options(options, if let Source::Scene(scene, _) = &source { Some(scene) } else { None })?;
     if let Source::Scene(scene, read_seconds) = &source {
         report_seconds = REPORT * assembly_seconds(scene, options, watch)?;
         if scene.dynamic().is_some() {
-            return motion(options, scene, watch);
+            return dynamic::run(options, scene, watch);
         }
         if scene.modes().is_some() {
             return modes::run(options, scene, *read_seconds, watch);
@@ -49,14 +50,6 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         };
         let goal = TotalErrorGoal { total_error: bound, force_error: options.force_error };
         return total_error::run(options, scene, goal, watch, kept);
-    }
-    if options.refine_in_time {
-        let message = "the scene has no `analysis`, so that there is no motion to refine; leave --refine-in-time out";
-        return unfit("analysis", message);
-    }
-    if options.resume {
-        let message = "the scene has no `analysis`, so that there is no motion to resume; leave --resume out";
-        return unfit("analysis", message);
     }
     let input = match source {
         Source::Scene(scene, read_seconds) => {
@@ -98,25 +91,38 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
     reported(&input, (solution, answer), settings.goal(), (about, options), watch)
 }
 
-/// The motion of a scene, without the options of a single solve.
-fn motion(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
-    if options.start.is_some() {
-        let message =
-            "a motion starts from its `initial` state, not from an earlier answer; --resume continues a motion";
-        return unfit("--start", message);
+/// Refuses options that have no effect on what is solved for.
+fn check_options(options: &Solve, scene: Option<&Scene>) -> Result<(), Error> {
+    let of_one_answer = [
+        ("--total-error", options.total_error.is_some()),
+        ("--accuracy", options.accuracy.is_some()),
+        ("--precision", options.precision != Precision::Auto),
+        ("--no-proof", options.no_proof),
+        ("--extrapolate", options.extrapolate),
+        ("--explain", options.explain),
+        ("--plan", options.plan),
+        ("--start", options.start.is_some()),
+        ("--along", !options.along.is_empty()),
+    ];
+    let of_a_motion = [("refine", "--refine-in-time", options.refine_in_time), ("resume", "--resume", options.resume)];
+    let is_motion = scene.is_some_and(|scene| scene.dynamic().is_some());
+    if scene.is_some_and(|scene| scene.analysis.is_some())
+        && let Some((option, _)) = of_one_answer.into_iter().find(|(_, is_given)| *is_given)
+    {
+        let what = if is_motion { "motion" } else { "modes" };
+        let hint = match option {
+            "--start" if is_motion => "; a motion starts from its `initial` state, and --resume continues one",
+            _ => "",
+        };
+        let message = format!(
+            "the scene asks for its {what}, on which this option has no effect; leave the option or `analysis` out{hint}"
+        );
+        return unfit(option, message);
     }
-    if options.plan {
-        let message = "a motion makes a plan for each of its steps; leave --plan out, or `analysis` out of the scene";
-        return unfit("--plan", message);
+    match of_a_motion.into_iter().find(|(.., is_given)| *is_given && !is_motion) {
+        Some((verb, option, _)) => unfit(option, format!("there is no motion to {verb}; leave {option} out")),
+        None => Ok(()),
     }
-    if !options.along.is_empty() {
-        let message = "a motion has an answer at every step, and --along shows one; leave --along or `analysis` out";
-        return unfit("--along", message);
-    }
-    if options.explain {
-        warn("warning: --explain has no effect on a motion: it explains a single solve\n");
-    }
-    dynamic::run(options, scene, watch)
 }
 
 /// The answer of an earlier run in a folder, as a start.

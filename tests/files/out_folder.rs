@@ -402,6 +402,38 @@ fn only_the_requested_pictures_are_drawn() {
     desk.run(&["solve", "block.json", "--pictures", "some"]).ends_with(2);
 }
 
+/// GOAL: a second run into a folder.
+/// CONDITIONS: runs of each command with all pictures, then one without; a picture of the user lies in the folder.
+/// REFERENCE: no picture or page of the first run stays, and every other file does.
+#[test]
+fn a_second_run_leaves_nothing_that_the_first_one_shows() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    let names = || -> BTreeSet<String> {
+        let entries = fs::read_dir(desk.path("o")).unwrap();
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    };
+    let last = ["solve", "block.json", "--method", "qp", "--pictures", "none", "--out", "o"];
+    let shown = |name: &String| [".svg", ".png", ".pdf", ".html"].iter().any(|ending| name.ends_with(ending));
+    for first in [
+        &["compare", "block.json", "--pictures", "all"][..],
+        &["solve", "block.json", "--method", "penalty", "--pictures", "all", "--style", "paper"],
+        &["sweep", "block.json", "--gaps", "-0.01:-0.02:2", "--pictures", "all"],
+        &["solve", "block.json", "--total-error", "0.5", "--pictures", "all"],
+        &["tradeoff", "block.json", "--refinements", "0"],
+    ] {
+        desk.run(&[first, &["--out", "o"]].concat());
+        desk.write("o/contact-of-mine.png", "mine");
+        let (before, page) = (names(), fs::read(desk.path("o/report.html")).unwrap());
+        assert!(before.iter().filter(|name| shown(name)).count() > 3, "{first:?}: {before:?}");
+        desk.run(&last).ends_with(0);
+        let after = names();
+        assert_eq!(after.iter().filter(|name| shown(name)).collect::<Vec<_>>(), ["contact-of-mine.png", "report.html"]);
+        assert!(fs::read(desk.path("o/report.html")).unwrap() != page, "{first:?}");
+        assert!(before.iter().filter(|name| !shown(name)).all(|name| after.contains(name)), "{before:?} {after:?}");
+    }
+}
+
 /// The penalty loop has a picture for each penalty; of many iterations twelve are drawn, and each picture says so.
 #[test]
 fn penalties_have_pictures_with_common_colours() {

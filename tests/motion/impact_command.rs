@@ -127,6 +127,33 @@ fn only_a_run_of_the_same_scene_is_resumed() {
     desk.run(&["solve", "bar.json", "--resume"]).ends_with(2);
 }
 
+/// Options that a motion, modes or an equilibrium would pass over are refused by name.
+#[test]
+fn options_without_effect_are_refused() {
+    let desk = Desk::new();
+    desk.write("bar.json", bar().to_string());
+    let mut modes = scene();
+    modes["analysis"] = json!({"modes": {"count": 2}});
+    desk.write("modes.json", modes.to_string());
+    for option in [
+        &["--total-error", "0.1"][..],
+        &["--accuracy", "1e-3"],
+        &["--precision", "mixed"],
+        &["--no-proof"],
+        &["--extrapolate"],
+        &["--explain"],
+        &["--plan"],
+        &["--start", "earlier"],
+    ] {
+        for (file, what) in [("bar.json", "motion"), ("modes.json", "modes")] {
+            desk.run(&[&["solve", file], option].concat()).fails_with(1, &[option[0], what, "no effect"]);
+        }
+    }
+    for option in [&["--refine-in-time"][..], &["--resume", "--out", "o"]] {
+        desk.run(&[&["solve", "modes.json"], option].concat()).fails_with(1, &[option[0], "no motion to"]);
+    }
+}
+
 #[test]
 fn invalid_values_of_a_motion_are_refused_in_one_sentence_without_files() {
     let table = |times: Value, factors: Value| {

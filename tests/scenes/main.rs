@@ -2,6 +2,7 @@
 
 mod between_bodies;
 mod concave_obstacles;
+mod contact_area;
 mod contact_scenes;
 mod contacts_found;
 mod decks;
@@ -34,6 +35,7 @@ mod scene_errors;
 mod scene_model;
 mod slender;
 mod small_displacements;
+mod softly_held;
 mod springs;
 mod surfaces;
 mod symmetry;

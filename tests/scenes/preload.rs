@@ -205,6 +205,19 @@ fn no_bolt_pushes_its_parts_apart() {
     assert!(drawn.iter().all(|&count| count > 5), "{drawn:?}");
 }
 
+/// The sign of a shortening is that of the motion of the parts, whatever the sign of direction and force.
+#[test]
+fn a_bolt_that_lengthens_has_a_negative_shortening() {
+    for (force, direction, sense) in [(3.0, 1, 1.0), (-3.0, -1, 1.0), (-3.0, 1, -1.0)] {
+        let mut preload = preload("force", force);
+        preload["direction"] = json!([0, 0, direction]);
+        let tie = tie(&answer(&bar("hex8", [2, 3], 0.0, &preload)));
+        let exact = sense * 3.0 * 5.0 / YOUNG;
+        assert!((tie.shortening.unwrap() - exact).abs() < INTEGRATED, "{force} {direction}: {tie:?}");
+        assert!((tie.tension.unwrap() - sense * 3.0).abs() < INTEGRATED, "{force} {direction}: {tie:?}");
+    }
+}
+
 #[test]
 fn a_preload_that_describes_no_bolt_is_refused() {
     let refused = |preload: &Value, change: &dyn Fn(&mut Value)| {

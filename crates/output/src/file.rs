@@ -106,6 +106,39 @@ pub fn write_streamed(folder: &Path, files: &[Streamed]) -> Result<(), Error> {
     files.iter().try_for_each(|file| streamed_atomically(&folder.join(file.name), |out| file.write(out)))
 }
 
+/// The names of pictures that runs leave in a folder; a number may follow.
+const PICTURES: [&str; 12] = [
+    "contact",
+    "force",
+    "force-width",
+    "gap",
+    "history",
+    "iteration",
+    "meshes",
+    "motion",
+    "pressure",
+    "rung",
+    "total-error",
+    "tradeoff",
+];
+
+/// Removes the page and the pictures that an earlier run left in a folder: they would show another answer.
+///
+/// # Errors
+/// As [`remove_files`].
+pub fn remove_shown(folder: &Path) -> Result<(), Error> {
+    let is_shown = |name: &&str| {
+        let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
+        let without_number = stem.trim_end_matches(|digit: char| digit.is_ascii_digit()).trim_end_matches('-');
+        *name == "report.html" || (["svg", "png", "pdf"].contains(&ending) && PICTURES.contains(&without_number))
+    };
+    // Without a report of an earlier run the files belong to somebody else, or there is no folder.
+    let is_ours = folder.join("report.json").exists();
+    let entries = std::fs::read_dir(folder).into_iter().filter(|_| is_ours).flatten().flatten();
+    let names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    remove_files(folder, &names.iter().map(String::as_str).filter(is_shown).collect::<Vec<_>>())
+}
+
 /// Removes files that an earlier run left in a folder, and that would not belong to this one.
 ///
 /// # Errors

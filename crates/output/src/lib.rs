@@ -29,7 +29,7 @@ mod text;
 mod view;
 
 pub use draw::drawing::Drawing;
-pub use file::{remove_files, write_atomically, write_files, write_streamed};
+pub use file::{remove_files, remove_shown, write_atomically, write_files, write_streamed};
 pub use folder::calculix::CalculixFiles;
 pub use folder::gallery::{Pictures, Wanted};
 pub use folder::modes::ModesShown;

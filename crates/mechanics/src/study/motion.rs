@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::moving_mean::MovingMean;
-use super::warnings::AnswerWarning;
+use super::warnings::{AnswerWarning, FEW_NODES};
 use crate::motion::Observation;
+use crate::scene::Model;
 
 /// Largest allowed growth of the energy, relative to the initial energy and the work of the loads; a motion beyond it
 /// is not reliable.
@@ -13,6 +14,9 @@ use crate::motion::Observation;
 /// `contact-stabilised` and central differences, up to 0.5 % by other schemes in good cases; from 5 % to 6,000 % in
 /// schemes that gain energy. A gain of 1 % is 0.5 % of the speeds.
 const MOST_GROWTH: f64 = 0.01;
+
+/// A share of the energy that a scheme takes without a word.
+const MOST_TAKEN: f64 = 0.01;
 
 /// Times, forces and impulse of the obstacles of a motion: of all together, or of one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -42,6 +46,9 @@ pub struct MotionContact {
     wide: MovingMean,
     /// Integral of the contact force over time, in force times time, `>= 0`.
     pub impulse: f64,
+    /// The largest number of rows with a force in one step; 0 for all obstacles together.
+    #[serde(default)]
+    pub rows_max: usize,
 }
 
 impl MotionContact {
@@ -172,13 +179,17 @@ impl MotionSummary {
         }
     }
 
-    /// Adds one step in which the obstacles pressed with these forces, one entry per obstacle, in force, `>= 0`.
-    pub fn add(&mut self, seen: &Observation, of_obstacles: &[f64]) {
+    /// Adds one step: for each obstacle the force with which it pressed, in force, `>= 0`, and the number of its rows
+    /// with a force.
+    pub fn add(&mut self, seen: &Observation, of_obstacles: &[(f64, usize)]) {
         self.steps += 1;
         let step = seen.time - self.time;
         self.time = seen.time;
         self.contact.add(seen.force, seen.acting, step);
-        self.obstacles.iter_mut().zip(of_obstacles).for_each(|(one, &force)| one.add(force, seen.acting, step));
+        for (one, &(force, rows)) in self.obstacles.iter_mut().zip(of_obstacles) {
+            one.add(force, seen.acting, step);
+            one.rows_max = one.rows_max.max(rows);
+        }
         self.penetration_max = self.penetration_max.max(seen.penetration);
         self.energy_last = [seen.kinetic, seen.strain, seen.potential];
         let [least, most] = self.energy_range;
@@ -218,6 +229,11 @@ impl MotionSummary {
         (initial > 0.0).then(|| [self.energy_last[0] + self.energy_last[1], self.energy_scale].map(|now| now / initial))
     }
 
+    /// Returns `true` if the energy grew by more than 1 %: the motion is not reliable.
+    pub fn is_unstable(&self) -> bool {
+        self.growth() > MOST_GROWTH
+    }
+
     /// The largest growth of energy without work of the loads, over the initial energy and the largest work of the
     /// loads.
     pub fn growth(&self) -> f64 {
@@ -225,23 +241,59 @@ impl MotionSummary {
         if self.excess_max > 0.0 { self.excess_max / given } else { 0.0 }
     }
 
-    /// Warnings for this motion: with the code `unstable` if its energy grew by more than 1 %.
-    pub fn warnings(&self) -> Vec<AnswerWarning> {
-        let growth = self.growth();
-        if growth <= MOST_GROWTH {
-            return Vec::new();
+    /// Warnings for this motion of a model.
+    pub fn warnings(&self, model: &Model) -> Vec<AnswerWarning> {
+        [self.unstable(), self.takes_energy(), self.few_rows(model)].into_iter().flatten().collect()
+    }
+
+    /// Warns of a contact that closes one or two nodes in every step: its force depends on the mesh.
+    fn few_rows(&self, model: &Model) -> Option<AnswerWarning> {
+        let is_small = |(index, one): &(usize, &MotionContact)| {
+            let rows = 1..=FEW_NODES.min(model.obstacles()[*index].candidates().len().saturating_sub(1));
+            rows.contains(&one.rows_max)
+        };
+        let of_body = self.obstacles.iter().enumerate().filter(|_| model.mesh().dimension() > 1);
+        let (index, one) = of_body.into_iter().find(is_small)?;
+        let nodes = if one.rows_max == 1 { "one node" } else { "two nodes" };
+        let message = format!(
+            "the contact of obstacles[{index}] closes at most {nodes} in a step. Peak force and times depend on the mesh there: \
+             refine it near the contact and compare"
+        );
+        Some(AnswerWarning { code: "mesh-dependent", message })
+    }
+
+    /// Warns of a scheme that takes a visible share of the energy, once a contact is over.
+    fn takes_energy(&self) -> Option<AnswerWarning> {
+        let share = self.taken_by_scheme() / self.energy_scale;
+        let message = || {
+            format!(
+                "the scheme takes {:.1} % of the energy, {:.3e} of {:.3e}, at the impacts. A finer mesh near the \
+                 contact and a smaller step lose less",
+                100.0 * share,
+                self.taken_by_scheme(),
+                self.energy_scale
+            )
+        };
+        (share > MOST_TAKEN && self.contact.run == 0)
+            .then(|| AnswerWarning { code: "takes-energy", message: message() })
+    }
+
+    /// Warns of an energy that grows by more than 1 %.
+    fn unstable(&self) -> Option<AnswerWarning> {
+        if !self.is_unstable() {
+            return None;
         }
         let message = format!(
             "the energy grew by {:.1} %: by {:.3e} beyond the {:.3e} at the start and the {:.3e} that loads put in; more than \
              {:.0} % is unstable: do not trust this motion. Take the scheme `fox-goodwin` or \
              `midpoint`, or a smaller step",
-            100.0 * growth,
+            100.0 * self.growth(),
             self.excess_max,
             self.initial_energy(),
             self.work_max,
             100.0 * MOST_GROWTH
         );
-        vec![AnswerWarning { code: "unstable", message }]
+        Some(AnswerWarning { code: "unstable", message })
     }
 
     /// The present sum of the energies minus the initial sum, over the largest kinetic and strain energy.

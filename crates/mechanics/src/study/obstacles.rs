@@ -28,6 +28,7 @@ fn between(answer: &Answer, index: usize) -> Option<BetweenBodies> {
         rows: if covered.is_some() { "mortar" } else { "pairs" },
         covered,
         moment_on_other: model.moment_on_other(index, answer.multiplier()),
+        moment_defect: model.moment_defect(index, answer.multiplier()),
         penetration: covered.map(|_| deepest),
     })
 }

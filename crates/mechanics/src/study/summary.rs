@@ -182,6 +182,10 @@ pub struct BetweenBodies {
     /// gap.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub moment_on_other: Vec<f64>,
+    /// The moment of the contact forces on both bodies together, over the sum of these forces and the size of the mesh,
+    /// `>= 0`: 0 if they balance. `None` for pairs, and about an axis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moment_defect: Option<f64>,
     /// The deepest place at which a node of the other boundary lies inside this body, in length, `>= 0`: means are kept
     /// apart, single nodes may be not. `None` for pairs.
     #[serde(skip_serializing_if = "Option::is_none")]

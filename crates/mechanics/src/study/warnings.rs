@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, dot};
 use crate::scene::models::overlap::Overlap;
+use crate::scene::models::rigid_body_modes::soft::SoftMotion;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
 use signorini_qp::{Certificate, ContactProblem, Solution};
 
@@ -46,11 +47,17 @@ const ASIDE: f64 = 0.5;
 /// two cells in each half of a smooth contact it is a sixteenth.
 const BETWEEN: f64 = 0.25;
 
+/// A motion that is softly held is visible above this share of the largest displacement.
+const VISIBLE: f64 = 0.1;
+
+/// A moment that contact forces have on both bodies together counts above this share of force times length.
+const TURNING: f64 = 1e-3;
+
 /// Offset beside a corner of a surface, in units of the size of the mesh: above rounding, below every cell.
 const BESIDE: f64 = 1e-6;
 
 /// A contact with at most this many nodes has no visible shape.
-const FEW_NODES: usize = 2;
+pub(super) const FEW_NODES: usize = 2;
 
 /// A peak depends on the mesh if its uncertainty, relative to the peak, is larger than this.
 const UNCERTAIN: f64 = 0.5;
@@ -111,8 +118,49 @@ pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment
         mesh_dependent(model, segments),
         between_nodes(answer),
         overlap(answer),
+        unbalanced_moment(answer),
     ];
-    of_model.chain(of_answer.into_iter().flatten()).collect()
+    of_model.chain(of_answer.into_iter().flatten()).chain(softly_held(answer)).collect()
+}
+
+/// Warns of means between curved surfaces whose forces turn both bodies together.
+fn unbalanced_moment(answer: &Answer) -> Option<AnswerWarning> {
+    let model = answer.model();
+    let defect = |index: usize| Some((index, model.moment_defect(index, answer.multiplier())?));
+    let defects = (0..model.obstacles().len()).filter_map(defect);
+    let (index, defect) = defects.max_by(|one, other| one.1.total_cmp(&other.1))?;
+    let message = format!(
+        "the contact forces of obstacles[{index}] on both bodies have a moment of {defect:.1e} of their sum times the size of the mesh: \
+         means over curved surfaces miss it. Refine both surfaces and compare the moments"
+    );
+    (defect > TURNING).then_some(AnswerWarning { code: "moment-defect", message })
+}
+
+/// Warns of rigid motions of bodies that contact without friction hardly resists and no load drives: they follow the
+/// rounding of the mesh.
+fn softly_held(answer: &Answer) -> Vec<AnswerWarning> {
+    let (model, displacement) = (answer.model(), answer.displacement());
+    let closed: Vec<(&ContactRow, f64)> = answer
+        .contact_set()
+        .iter()
+        .filter_map(|row| Some((model.rows().get(row)?, *answer.multiplier().get(row)?)))
+        .collect();
+    let largest = displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let visible = model
+        .soft_motions(displacement, &closed)
+        .unwrap_or_default()
+        .into_iter()
+        .filter(|soft| soft.moved > VISIBLE * largest);
+    let warning = |SoftMotion { name, moved, advice }| {
+        let message = format!(
+            "softly held: the {name} moves nodes by {moved:.3e} {}, {:.0} % of the largest displacement, and no load drives it; \
+             {advice}. The contact rows hardly resist it, so that it follows the rounding of the mesh",
+            model.units().length,
+            100.0 * moved / largest
+        );
+        AnswerWarning { code: "softly-held", message: message.replace("  ", " ") }
+    };
+    visible.map(warning).collect()
 }
 
 /// Warns that two displaced bodies go through each other, with what helps.

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::body::Shape;
 use super::packed::{Packed, Packer};
+use crate::view::pressure::arc_lengths;
 use signorini_mechanics::scene::{Answer, Model};
 use signorini_qp::{ContactSet, ProvenSet};
 
@@ -22,6 +23,9 @@ pub(super) struct Rows {
     /// means.
     #[serde(skip_serializing_if = "Option::is_none")]
     means: Option<Packed>,
+    /// The arc length along the boundary, in length, not a number where the boundary faces away; `None` in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    along: Option<Packed>,
 }
 
 /// The values of an answer at the rows.
@@ -54,6 +58,7 @@ impl Rows {
             obstacles: packer.whole(&obstacles, 1),
             normals: packer.quantised(&normals, dimension),
             gaps: packer.exact(&gaps, 1),
+            along: (dimension == 2).then(|| packer.exact(&arc_lengths(model), 1)),
             means: rows
                 .iter()
                 .any(|row| row.is_mean)

@@ -19,15 +19,16 @@ function slidingPanel(own, data, shape, { name, range, facts, label, frames }, m
   return { ...control, facts: words, panel: new Panel(own, data, shape, { label, frames }) };
 }
 
-/** Pressure along each obstacle of a plane body; returns a function that shows another frame. */
+/** Pressure over the arc length along each obstacle of a plane body; returns a function that shows another frame. */
 function profileSection(page, data, shape) {
   if (!data.rows?.count || shape.dimension !== 2) return () => {};
   const own = section(page, `Contact pressure along the boundary${ofPart(data)}`, "pressure"),
     { rows, units } = data;
-  const plots = data.question.obstacles.map(({ approach }, obstacle) => {
-    const axis = approach[0] !== 0 ? 1 : 0;
-    const order = Array.from(rows.vertices.keys()).filter(row => rows.obstacles[row] === obstacle);
-    const place = row => shape.places[3 * rows.vertices[row] + axis];
+  const plots = data.question.obstacles.map((_, obstacle) => {
+    // Rows of the side that faces away have no arc length.
+    const faces = row => rows.obstacles[row] === obstacle && Number.isFinite(rows.along[row]);
+    const order = Array.from(rows.vertices.keys()).filter(faces),
+      place = row => rows.along[row];
     order.sort((a, b) => place(a) - place(b));
     if (!order.length) return () => {};
     const several = data.pressures?.map((pressure, method) => ({
@@ -45,7 +46,7 @@ function profileSection(page, data, shape) {
     const name = data.question.obstacles.length > 1 ? `, obstacles[${obstacle}]` : "";
     const made = plotted(own, {
       label: `Contact pressure along the boundary${name}`,
-      x: { name: `${["x", "y"][axis]} [${units.length}]` },
+      x: { name: `arc length s [${units.length}]` },
       y: { name: `pressure${name} [${units.pressure}]` },
       series: several ?? [],
       height: 260,

@@ -94,10 +94,10 @@ function within(value, off, unit) {
   return off > 1e-11 * value ? `${inUnit(value, unit)} ± ${shown(off, 2)}` : inUnit(value, unit);
 }
 
-/** The width of a contact, or its area in space, with the uncertainty. */
-function extentWords({ width, width_uncertainty, area, area_uncertainty }, units) {
+/** The width of a contact, its radius about an axis, or its area in space, with the uncertainty. */
+function extentWords({ width, width_uncertainty, area, area_uncertainty, from_axis }, units) {
   return (width ?? null) !== null
-    ? `width ${within(width, width_uncertainty, units.length)}`
+    ? `${from_axis ? "radius" : "width"} ${within(width, width_uncertainty, units.length)}`
     : `area ${within(area, area_uncertainty, `${units.length}²`)}`;
 }
 
@@ -179,7 +179,9 @@ function imagesOf({ copies }) {
 
 /** The contact of each obstacle and pair of bodies: lines of `[value, obstacle]`; the values have a column if it has a name. */
 function obstacleTable(host, lines, units, name = null) {
-  const inPlane = lines.some(([, one]) => one.estimate?.width !== undefined),
+  const flat = lines.filter(([, one]) => one.estimate?.width !== undefined),
+    inPlane = flat.length > 0,
+    extent = flat.every(([, one]) => one.estimate.from_axis) ? "radius" : "width",
     isPressed = lines.some(([, one]) => one.travel !== undefined);
   const columns = [
     ["obstacle", one => `${one.of}${one.on ? ` on ${one.on}` : ""}${imagesOf(one)}`],
@@ -187,7 +189,7 @@ function obstacleTable(host, lines, units, name = null) {
     ...(isPressed ? [[`travel [${units.length}]#`, one => shown(one.travel)]] : []),
     [`peak pressure [${units.pressure}]#`, one => within(one.pressure_max, one.estimate?.pressure_uncertainty, "")],
     inPlane
-      ? [`estimated width [${units.length}]#`, one => within(one.estimate?.width, one.estimate?.width_uncertainty, "")]
+      ? [`estimated ${extent} [${units.length}]#`, one => within(one.estimate?.width, one.estimate?.width_uncertainty, "")]
       : [`estimated area [${units.length}²]#`, one => within(one.estimate?.area, one.estimate?.area_uncertainty, "")],
     [`mean pressure [${units.pressure}]#`, one => shown(one.pressure_mean)],
   ].map(([heading, cell]) => [heading, ([, one]) => cell(one)]);

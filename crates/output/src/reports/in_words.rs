@@ -5,7 +5,7 @@ use super::motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_plot, motion_t
 use super::report::{compare_text, solve_text, sweep_text, verify_text};
 use super::sensitivity::{kink_text, places_csv, sensitivity_text};
 use super::tradeoff::{tradeoff_csv, tradeoff_text};
-use super::tradeoff_plot::{total_error_plot, tradeoff_plot};
+use super::tradeoff_plot::{OF_ROUNDING, total_error_plot, tradeoff_plot};
 use crate::draw::drawing::Drawing;
 use crate::plots::medium::Medium;
 use signorini_mechanics::scene::{ModalAnalysis, Sensitivities, Units};
@@ -93,8 +93,8 @@ impl Measured for Tradeoff {
 
     fn plots(&self, medium: Medium, title: &str) -> Vec<(&'static str, Drawing)> {
         let mut plots = vec![("tradeoff", tradeoff_plot(medium, title, self))];
-        // A problem directory has no mesh, and so no total error.
-        if self.points.iter().any(|point| point.total_error.is_some()) {
+        // A problem directory has no mesh, and so no total error; that of an exact mesh is rounding.
+        if self.points.iter().any(|point| point.total_error.is_some_and(|error| error > OF_ROUNDING)) {
             plots.push(("total-error", total_error_plot(medium, title, self)));
         }
         plots

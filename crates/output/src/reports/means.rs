@@ -1,7 +1,7 @@
 //! The sentence about rows between meshes that do not match: they hold means, not the gaps of nodes.
 
 use crate::text::printable;
-use signorini_mechanics::study::ContactSummary;
+use signorini_mechanics::study::{ContactSummary, ObstacleContact};
 
 /// What closed and open, computed or proven, mean for rows of means; `None` without such rows.
 pub(crate) fn means_text(contact: &ContactSummary) -> Option<String> {
@@ -17,4 +17,24 @@ pub(crate) fn means_text(contact: &ContactSummary) -> Option<String> {
              not to the gap at the node."
         )
     })
+}
+
+/// The two surfaces of a contact between bodies whose meshes do not match, with lengths in words; `None` for another
+/// contact.
+pub(super) fn between_text(one: &ObstacleContact, length: impl Fn(f64) -> String) -> Option<String> {
+    let between = one.between.as_ref()?;
+    let [share, of_other] = between.covered?;
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let of_defect = |defect: f64| format!("; moments on both balance to {defect:.1e} of force times size");
+    Some(format!(
+        "{}: rows are means over the nodes of `{}`; {} of its area and {} of the nodes of `{}` face each other; single nodes go up to \
+         {} through{}",
+        one.of,
+        printable(&between.boundary),
+        percent(share),
+        percent(of_other),
+        printable(&between.other),
+        length(between.penetration.unwrap_or(0.0)),
+        between.moment_defect.map(of_defect).unwrap_or_default()
+    ))
 }

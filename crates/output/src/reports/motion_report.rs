@@ -36,7 +36,7 @@ impl MotionReport<'_> {
     /// Unstable if the energy grew by more than the work of the loads. Certified if the contact problems of all steps
     /// are certified: not if springs replace closed rows, and not if the motion was cut short.
     pub fn status(&self) -> Status {
-        if !self.summary.warnings().is_empty() {
+        if self.summary.is_unstable() {
             return Status::Unstable;
         }
         let is_whole = self.summary.steps >= self.dynamics.steps;
@@ -111,7 +111,7 @@ impl MotionReport<'_> {
         line("", format!("taken by damping {:.2e}, by the scheme {:.2e}, of the largest energy", taken[0], taken[1]));
         let RunSeconds { assemble, factor, solve, .. } = self.seconds;
         line("seconds", format!("{assemble:.3} to assemble, {factor:.3} to factorise, {solve:.3} for the steps"));
-        text + &warnings_text(&summary.warnings())
+        text + &warnings_text(&summary.warnings(model))
     }
 }
 
@@ -215,7 +215,7 @@ impl Serialize for MotionReport<'_> {
         if let Some(fields) = report.as_object_mut().filter(|_| all > 0) {
             fields.insert("penalties".into(), json!({"all": all, "most_in_a_step": most}));
         }
-        let warnings = summary.warnings();
+        let warnings = summary.warnings(model);
         if let Some(fields) = report.as_object_mut().filter(|_| !warnings.is_empty()) {
             fields.insert("warnings".into(), json!(warnings));
         }

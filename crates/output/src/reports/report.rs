@@ -1,9 +1,9 @@
 //! Answers as text and as JSON.
 
 use super::certificate::{CertificateWords, conditions};
-use super::means::means_text;
+use super::means::{between_text, means_text};
 use crate::text::printable;
-use signorini_mechanics::scene::{Resultant, Rule, Segment, Units};
+use signorini_mechanics::scene::{ContactExtent, Resultant, Rule, Segment, Units};
 use signorini_mechanics::study::{
     Agreement, AnswerWarning, ContactSummary, ObstacleContact, Summary, Sweep, SweepEvent, SweepPoint, Verification,
 };
@@ -83,7 +83,8 @@ pub(crate) fn solve_text(title: &str, summary: &Summary, units: &Units) -> Strin
         false => extent_lines(contact, units),
         true => obstacle_lines(contact, units),
     });
-    of_contact.extend(contact.obstacles.iter().flat_map(|one| between_lines(one, units)));
+    let between = |one| between_text(one, |length| quantity(length, &units.length));
+    of_contact.extend(contact.obstacles.iter().filter_map(between).flat_map(|text| wrapped(&text)));
     lines("contact", of_contact);
     if let Some(proven) = &solution.proven {
         let part = if of_part.is_empty() { String::new() } else { format!(",{of_part}") };
@@ -138,36 +139,25 @@ fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
         )];
     };
     let extent = match estimate.width {
-        Some(width) if contact.width.is_none() => {
-            format!("width in the section {}", within(width, estimate.width_uncertainty, &units.length))
+        Some(width) => {
+            let of_section = if contact.width.is_none() && !estimate.from_axis { " in the section" } else { "" };
+            let size = within(width, estimate.width_uncertainty, &units.length);
+            format!("{}{of_section} {size}", width_word([*estimate].into_iter()))
         }
-        Some(width) => format!("width {}", within(width, estimate.width_uncertainty, &units.length)),
         None => format!("area {}", within(estimate.area, Some(estimate.area_uncertainty), &square)),
     };
     let peak = within(pressure, estimate.pressure_uncertainty, &units.pressure());
     vec![format!("peak pressure {peak}"), format!("estimated {extent}")]
 }
 
+/// The name of widths: of contacts that begin at an axis of revolution they are radii.
+fn width_word(mut extents: impl Iterator<Item = ContactExtent>) -> &'static str {
+    if extents.all(|extent| extent.from_axis) { "radius" } else { "width" }
+}
+
 /// The words that name the meshed part behind numbers of it; empty without planes of symmetry.
 pub(crate) fn of_part(summary: &Summary) -> &'static str {
     if summary.parts_of_whole.is_some() { " of the meshed part" } else { "" }
-}
-
-/// The two surfaces of a contact between bodies whose meshes do not match.
-fn between_lines(one: &ObstacleContact, units: &Units) -> Vec<String> {
-    let Some(between) = &one.between else { return Vec::new() };
-    let Some([share, of_other]) = between.covered else { return Vec::new() };
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    let depth = quantity(between.penetration.unwrap_or(0.0), &units.length);
-    wrapped(&format!(
-        "{}: rows are means over the nodes of `{}`; {} of its area and {} of the nodes of `{}` face each other; single nodes go up to \
-         {depth} through",
-        one.of,
-        printable(&between.boundary),
-        percent(share),
-        percent(of_other),
-        printable(&between.other)
-    ))
 }
 
 /// The table of obstacles and pairs of bodies, a line for each.
@@ -179,7 +169,8 @@ fn obstacle_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
 /// values are left out.
 fn obstacle_table(name: &str, contacts: &[(String, &ContactSummary)], units: &Units) -> String {
     let all = || contacts.iter().flat_map(|(_, contact)| &contact.obstacles);
-    let has_width = all().any(|one| one.estimate.is_some_and(|estimate| estimate.width.is_some()));
+    let with_width = || all().filter_map(|one| one.estimate.filter(|estimate| estimate.width.is_some()));
+    let has_width = with_width().next().is_some();
     let is_pressed = all().any(|one| one.travel.is_some());
     let shown = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.5e}"));
     let within = |value: Option<f64>, off: Option<f64>| match (value, off) {
@@ -199,7 +190,8 @@ fn obstacle_table(name: &str, contacts: &[(String, &ContactSummary)], units: &Un
         let off = one.estimate.and_then(|of| if has_width { of.width_uncertainty } else { Some(of.area_uncertainty) });
         within(one.estimate.map(|of| of.width.unwrap_or(of.area)), off)
     };
-    let of_extent = if has_width { in_unit("width", &units.length) } else { in_unit("area", &square(units)) };
+    let of_extent =
+        if has_width { in_unit(width_word(with_width()), &units.length) } else { in_unit("area", &square(units)) };
     let [force, travel] = [in_unit("force", &units.force), in_unit("travel", &units.length)];
     let [of_peak, of_mean] = ["peak p", "mean p"].map(|name| in_unit(name, &units.pressure()));
     let all_columns: [Column<One>; 7] = [

@@ -11,6 +11,9 @@ use signorini_mechanics::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 /// An error below this is rounding: the answer is exact for its mesh.
 const EXACT: f64 = 3e-16;
 
+/// Total errors below this are rounding, and no result of a mesh.
+pub(crate) const OF_ROUNDING: f64 = 1e-10;
+
 /// Most curves in one panel: more could not be distinguished.
 const MOST_CURVES: usize = 6;
 

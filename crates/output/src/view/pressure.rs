@@ -71,6 +71,23 @@ fn near_contact(along: &[(f64, usize)], answers: &[Answer; 3]) -> Vec<(f64, usiz
     (0..along.len()).filter(|&place| is_near(place)).map(|place| along[place]).collect()
 }
 
+/// The arc length of each row along the boundary of its obstacle, in length: from the row that is nearest to the
+/// obstacle if the boundary is closed, else from its first node. Not a number for rows of the other side, which faces
+/// away, and for those that lie on no line.
+pub(crate) fn arc_lengths(model: &Model) -> Vec<f64> {
+    let mut lengths = vec![f64::NAN; model.rows().len()];
+    for (obstacle, placed) in model.obstacles().iter().enumerate() {
+        let Some(boundary) = model.mesh().boundary(placed.boundary()) else { continue };
+        let rows = || model.rows().iter().enumerate().filter(|(_, row)| row.obstacle == obstacle);
+        let nearest = rows().min_by(|a, b| a.1.gap.total_cmp(&b.1.gap)).map(|(_, row)| row.node);
+        let Some(arc) = nearest.map(|nearest| Arc::new(model, boundary, nearest)) else { continue };
+        for (index, row) in rows().filter(|(_, row)| dot(&row.normal, &row.outward) > 0.0) {
+            lengths[index] = arc.at(row).unwrap_or(f64::NAN);
+        }
+    }
+    lengths
+}
+
 /// Arc length of the nodes of a boundary on the undeformed body.
 struct Arc {
     at: HashMap<usize, f64>,

@@ -23,7 +23,7 @@ use crate::fem::element::{
     Cell, ElementKind, MAX_NODES, PerKind, PerNode, ReferenceElement, Rule, Tabulated, TabulatedPoint,
 };
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::{Symmetric, trace, unit};
+use crate::fem::geometry::{Symmetric, trace};
 use crate::fem::material::{Material, Stiffness};
 use crate::fem::mesh::{Boundary, Mesh, fail};
 use crate::fem::mortar::Skin;
@@ -234,11 +234,14 @@ impl ElasticBody {
         })
     }
 
-    /// The thickness of the body behind a node of its skin, against a vector out of it, in length; `None` in one
-    /// dimension.
-    pub(crate) fn thickness_behind(&self, node: usize, outward: [f64; 3]) -> Option<f64> {
-        let skin = self.skins().get(self.region_at(node)?)?;
-        skin.thickness(self.mesh.nodes()[node], unit(outward.map(|part| -part)))
+    /// The skin of those elements of a body that meet a box: within the box it is the skin of the body.
+    pub(crate) fn skin_within(&self, region: &Region, [low, high]: [[f64; 3]; 2]) -> Skin {
+        let meets = |&element: &usize| {
+            let nodes = self.mesh.element(element).iter().map(|&node| self.mesh.nodes()[node]);
+            let some = |is_within: &dyn Fn([f64; 3]) -> bool| nodes.clone().any(is_within);
+            (0..3).all(|axis| some(&|at| at[axis] <= high[axis]) && some(&|at| at[axis] >= low[axis]))
+        };
+        Skin::new(self.mesh.surface(region.elements().filter(meets)), self.mesh.nodes())
     }
 
     /// The number of the body that a node belongs to, both from 0; `None` without such a node.

@@ -1,7 +1,6 @@
 //! The element that a facet belongs to.
 
 use std::collections::HashMap;
-use std::ops::Range;
 
 use super::outline::chained;
 use super::{Boundary, Mesh, fail};
@@ -71,8 +70,8 @@ impl Mesh {
 
     /// All faces that belong to one of these elements of one kind only, seen from outside; edges in the order in which
     /// they follow each other.
-    pub fn surface(&self, elements: Range<usize>) -> Boundary {
-        let reference = self.kind_of(elements.start).reference();
+    pub fn surface(&self, elements: impl Iterator<Item = usize> + Clone) -> Boundary {
+        let reference = self.kind_of(elements.clone().next().unwrap_or(0)).reference();
         let of_element = |element: usize| {
             let nodes = self.element(element);
             reference.faces.iter().map(move |face| face.iter().map(move |&local| nodes[local]))

@@ -11,6 +11,9 @@ const LEAST_COVERED: f64 = 0.1;
 /// A facet covered by less than this share of its area counts as not covered.
 const NO_COVER: f64 = 1e-10;
 
+/// A facet that misses less than this share of its area is covered: the rest is rounding of polygons.
+const WHOLE: f64 = 1e-6;
+
 /// A facet whose covered area exceeds its area by more than this share lies behind several layers of the other surface;
 /// curved facets exceed it by rounding of the curve, two layers by a half at least.
 const TWICE: f64 = 0.1;
@@ -73,6 +76,14 @@ impl<'a> Covered<'a> {
     /// Returns `true` if several layers of the other surface face it.
     pub fn has_layers(&self) -> bool {
         self.facing > (1.0 + TWICE) * self.whole
+    }
+
+    /// Its nodes in ascending order, and the covered share of its area: facets on a curve exceed it by rounding of the
+    /// curve.
+    pub fn share(&self) -> (Vec<usize>, f64) {
+        let (mut nodes, share) = (self.facet.nodes.to_vec(), self.area / self.whole);
+        nodes.sort_unstable();
+        (nodes, if share > 1.0 - WHOLE { 1.0 } else { share })
     }
 
     pub fn is_covered(&self) -> bool {

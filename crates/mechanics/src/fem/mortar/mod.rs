@@ -141,6 +141,9 @@ pub(crate) struct Found {
     /// The covered share of the area of the slave surface, and the share of the master nodes, each counted with its
     /// facets, that face it.
     pub covered: [f64; 2],
+    /// The nodes in ascending order of each slave facet that faces the other surface, and the covered share of its
+    /// area.
+    pub facets: Vec<(Vec<usize>, f64)>,
     /// The master nodes that face the slave surface.
     pub opposite: Vec<Opposite>,
     /// The largest distance of a straight facet from the curve for which it stands, in length, by the angles of the
@@ -294,6 +297,7 @@ impl<'a> Mortar<'a> {
         let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
         Ok(Found {
             covered: [share(area, sum(|facet| facet.whole)), share(seen_of_master, of_master)],
+            facets: covered.iter().filter(|facet| facet.is_covered()).map(Covered::share).collect(),
             opposite,
             sag: sides.sag(),
             rows,

@@ -1,10 +1,8 @@
 //! The size of the deformation of an answer, and whether the equations of small displacements still describe it.
 
-use std::collections::HashMap;
-
-use crate::fem::ElasticBody;
-use crate::fem::body::BodyElement;
-use crate::fem::geometry::{dot, length, minus};
+use crate::fem::body::{BodyElement, Region};
+use crate::fem::geometry::{length, unit};
+use crate::fem::mesh::extent;
 use crate::scene::Model;
 use crate::scene::models::rows::ContactRow;
 
@@ -14,9 +12,6 @@ const BEYOND: f64 = 0.5;
 
 /// Depths below this share of the size of the mesh are rounding of coordinates.
 const ROUNDING: f64 = 1e-9;
-
-/// A body is thicker than this share of what the elements at a node reach into it.
-const WITHIN: f64 = 0.5;
 
 /// The deformation at the centres of elements.
 #[derive(Clone, Copy, Debug)]
@@ -115,14 +110,26 @@ impl TooDeep {
     /// The row that starts deepest, in thicknesses of its body, if that is more than one.
     fn of(model: &Model) -> Option<Self> {
         let (body, rounding) = (model.body(), ROUNDING * model.mesh().size());
-        let depth = |row: &ContactRow| depth_at_start(model, row);
-        let deep: Vec<&ContactRow> = model.rows().iter().filter(|row| depth(row) > rounding).collect();
-        let reach = reach_behind(body, &deep);
-        let beyond_elements = deep.into_iter().filter(|row| depth(row) > WITHIN * reach[&row.node]);
-        let deep = beyond_elements.filter_map(|row| {
-            let (depth, thickness) = (depth(row), body.thickness_behind(row.node, row.outward)?);
-            (depth > thickness).then_some(TooDeep { node: row.node, obstacle: row.obstacle, depth, thickness })
-        });
+        let of_body = |region: &Region| {
+            let own = |row: &&ContactRow| region.nodes().contains(&row.node) && depth_at_start(model, row) > rounding;
+            let deep: Vec<&ContactRow> = model.rows().iter().filter(own).collect();
+            let start = |row: &ContactRow| model.mesh().nodes()[row.node];
+            let inward = |row: &ContactRow| unit(row.outward.map(|part| -part));
+            let end = |row: &ContactRow| {
+                let (start, way) = (start(row), inward(row));
+                [0, 1, 2].map(|axis| start[axis] + depth_at_start(model, row) * way[axis])
+            };
+            let ends: Vec<[f64; 3]> = deep.iter().flat_map(|row| [start(row), end(row)]).collect();
+            let skin = (!deep.is_empty()).then(|| body.skin_within(region, extent(&ends).into()));
+            let of_row = move |row: &ContactRow| {
+                let depth = depth_at_start(model, row);
+                let thickness = skin.as_ref()?.thickness(start(row), inward(row))?;
+                (depth > thickness).then_some(TooDeep { node: row.node, obstacle: row.obstacle, depth, thickness })
+            };
+            deep.into_iter().filter_map(of_row)
+        };
+        let regions = body.regions().iter().filter(|_| body.dimension() > 1);
+        let deep = regions.flat_map(of_body);
         deep.max_by(|one, other| (one.depth / one.thickness).total_cmp(&(other.depth / other.thickness)))
     }
 
@@ -138,21 +145,6 @@ impl TooDeep {
             thickness.trim_end()
         )
     }
-}
-
-/// How far the elements at the nodes of these rows reach into the body, against its outward normal, in length: a body
-/// is hardly thinner.
-fn reach_behind(body: &ElasticBody, rows: &[&ContactRow]) -> HashMap<usize, f64> {
-    let outward: HashMap<usize, [f64; 3]> = rows.iter().map(|row| (row.node, row.outward)).collect();
-    let mut reach: HashMap<usize, f64> = outward.keys().map(|&node| (node, 0.0)).collect();
-    let places = body.mesh().nodes();
-    for of in body.elements().filter(|_| !rows.is_empty()) {
-        for node in of.nodes.iter().filter(|node| outward.contains_key(node)) {
-            let depths = of.nodes.iter().map(|&other| dot(outward[node], minus(places[*node], places[other])));
-            reach.entry(*node).and_modify(|reach| *reach = depths.fold(*reach, f64::max));
-        }
-    }
-    reach
 }
 
 /// How deep a contact row starts inside an obstacle that stands still, in length.

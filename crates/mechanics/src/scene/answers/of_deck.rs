@@ -57,6 +57,9 @@ impl Answer {
         let named = |of: String| resultants.iter().find(|one| one.of == of);
         let face = |face: usize| named(format!("rigid-faces[{face}]"));
         let tie = |tie: usize| named(format!("ties[{tie}]"));
+        // The node of a bolt moves along the direction of the deck.
+        let bolts = &self.model().parts.ties.shortenings;
+        let sense = |tie: usize| bolts.iter().find(|bolt| bolt.tie == tie).map_or(1.0, |bolt| bolt.sense);
         let value = |part: Part| match part {
             Part::Displacement(number, axis) => {
                 places.get(&number).map(|&node| self.model().at_node(self.displacement(), node)[axis])
@@ -78,8 +81,8 @@ impl Answer {
                 };
                 if kind < 3 { force[kind] } else { moment[kind - 3] - cross(centre, force)[kind - 3] }
             }),
-            Part::Shortening(number) => tie(number).and_then(|tie| tie.shortening),
-            Part::Tension(number) => tie(number).and_then(|tie| tie.tension),
+            Part::Shortening(number) => tie(number).and_then(|tie| Some(sense(number) * tie.shortening?)),
+            Part::Tension(number) => tie(number).and_then(|tie| Some(sense(number) * tie.tension?)),
         };
         amount.parts.iter().fold(amount.constant, |sum, &(factor, part)| sum + factor * value(part).unwrap_or(0.0))
     }

@@ -6,7 +6,7 @@
 //! open node contradicts that node: the edge is then taken in the middle.
 
 use std::cell::Cell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::fem::assembly::facet_sizes;
 use crate::fem::geometry::{cross, distance, dot, length, minus};
@@ -32,7 +32,10 @@ pub(crate) struct StraightCell {
     pub nodes: Vec<usize>,
     /// The number of its facet in the boundary, from 0.
     pub facet: usize,
-    /// The length or area of the facet, in proportion to that of its straight cells.
+    /// The share of the facet that the other body covers; 1 for a rigid obstacle.
+    pub share: f64,
+    /// The length or area of the facet, as far as the other body covers it, in proportion to that of its straight
+    /// cells.
     stretch: f64,
     /// The same with thickness, cross-section or circumference.
     enlargement: f64,
@@ -43,6 +46,8 @@ pub(crate) struct Patch<'a> {
     answer: &'a Answer,
     /// The row of each closed node.
     row_of: BTreeMap<usize, usize>,
+    /// The nodes of a boundary with a row each, if the covered shares of its facets say where the contact ends.
+    carrying: Option<BTreeSet<usize>>,
     cells: Vec<StraightCell>,
     /// The cells around each closed node.
     cells_of: BTreeMap<usize, Vec<usize>>,
@@ -57,8 +62,8 @@ impl<'a> Patch<'a> {
     pub fn new(answer: &'a Answer, obstacle: usize) -> Option<Self> {
         let model = answer.model();
         let boundary = model.mesh().boundary(model.obstacles()[obstacle].boundary())?;
-        let rows = model.rows().iter().enumerate().filter(|(_, row)| row.obstacle == obstacle);
-        let row_of: BTreeMap<usize, usize> = rows
+        let rows = || model.rows().iter().enumerate().filter(|(_, row)| row.obstacle == obstacle);
+        let row_of: BTreeMap<usize, usize> = rows()
             .filter(|&(index, _)| answer.contact_set().contains(index))
             .map(|(index, row)| (row.node, index))
             .collect();
@@ -66,16 +71,30 @@ impl<'a> Patch<'a> {
             return None;
         }
         let closed = boundary.nodes().into_iter().filter(|node| row_of.contains_key(node)).collect();
-        let mut patch =
-            Patch { answer, row_of, cells: Vec::new(), cells_of: BTreeMap::new(), closed, moved: Cell::default() };
+        let shares = model.obstacles()[obstacle].between().and_then(|between| between.facets.as_ref());
+        let carrying = shares.map(|_| rows().map(|(_, row)| row.node).collect());
+        let (cells, cells_of, moved) = (Vec::new(), BTreeMap::new(), Cell::default());
+        let mut patch = Patch { answer, row_of, carrying, cells, cells_of, closed, moved };
         let sizes = facet_sizes(model.body(), boundary);
         for (facet, (nodes, (extent, area))) in boundary.facets().zip(sizes).enumerate() {
             let straight = boundary.kind.straight_cells(nodes);
             let sizes = straight.iter().map(|cell| patch.straight_sizes(&patch.places(cell)));
             let (sum, area_sum) = sizes.fold((0.0, 0.0), |sum, (extent, area)| (sum.0 + extent, sum.1 + area));
             let ratio = |whole: f64, sum: f64| if sum > 0.0 { whole / sum } else { 1.0 };
-            let (stretch, enlargement) = (ratio(extent, sum), ratio(area, area_sum));
-            patch.cells.extend(straight.into_iter().map(|nodes| StraightCell { nodes, facet, stretch, enlargement }));
+            let share_of = |shares: &HashMap<Vec<usize>, f64>| {
+                let mut ascending = nodes.to_vec();
+                ascending.sort_unstable();
+                shares.get(&ascending).copied().unwrap_or(0.0)
+            };
+            let share = shares.map_or(1.0, share_of);
+            let (stretch, enlargement) = (share * ratio(extent, sum), share * ratio(area, area_sum));
+            patch.cells.extend(straight.into_iter().map(|nodes| StraightCell {
+                nodes,
+                facet,
+                share,
+                stretch,
+                enlargement,
+            }));
         }
         for (index, cell) in patch.cells.iter().enumerate() {
             for &node in cell.nodes.iter().filter(|node| patch.row_of.contains_key(node)) {
@@ -100,10 +119,23 @@ impl<'a> Patch<'a> {
         &self.cells
     }
 
-    /// The cells with a closed node of these, each once.
+    /// The cells with a closed node of these, and those of the same facets without a row, where the other body ends;
+    /// each once.
     pub fn cells_with(&self, nodes: &[usize]) -> impl Iterator<Item = &StraightCell> {
         let own = nodes.iter().filter_map(|node| self.cells_of.get(node)).flatten().copied();
-        own.collect::<BTreeSet<usize>>().into_iter().map(|cell| &self.cells[cell])
+        let mut cells: BTreeSet<usize> = own.collect();
+        if self.carrying.is_some() {
+            let facets: BTreeSet<usize> = cells.iter().map(|&cell| self.cells[cell].facet).collect();
+            let is_beyond = |cell: &StraightCell| cell.nodes.iter().all(|&node| !self.carries(node));
+            let beyond = self.cells.iter().enumerate().filter(|(_, cell)| facets.contains(&cell.facet));
+            cells.extend(beyond.filter(|(_, cell)| is_beyond(cell)).map(|(index, _)| index));
+        }
+        cells.into_iter().map(|cell| &self.cells[cell])
+    }
+
+    /// Returns `false` for a node without a row because the other body ends there.
+    fn carries(&self, node: usize) -> bool {
+        self.carrying.as_ref().is_none_or(|carrying| carrying.contains(&node))
     }
 
     /// The length or area of an outline in a cell, and its area with thickness, cross-section or circumference.
@@ -122,7 +154,8 @@ impl<'a> Patch<'a> {
     pub fn bend(&self, cell: &StraightCell) -> f64 {
         let normals = cell.nodes.iter().filter_map(|&node| self.row(node)).map(|row| row.outward);
         let sum = normals.fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
-        let bend = 1.0 - (length(sum) / cell.nodes.len() as f64).powi(2);
+        let closed = cell.nodes.iter().filter(|&&node| self.is_closed(node)).count();
+        let bend = 1.0 - (length(sum) / closed as f64).powi(2);
         if bend > ROUNDING_OF_NORMALS { bend } else { 0.0 }
     }
 
@@ -190,6 +223,12 @@ impl<'a> Patch<'a> {
     fn around(&self, node: usize) -> impl Iterator<Item = usize> {
         let cells = self.cells_of.get(&node).into_iter().flatten();
         cells.flat_map(|&cell| self.cells[cell].nodes.iter().copied()).filter(move |&other| other != node)
+    }
+
+    /// Returns `true` if a cell with a closed node has no edge of the contact between its nodes: all are closed, or
+    /// carry no row because the other body ends there.
+    pub fn is_whole(&self, cell: &StraightCell) -> bool {
+        cell.nodes.iter().all(|&node| self.is_closed(node) || !self.carries(node))
     }
 
     pub fn is_closed(&self, node: usize) -> bool {

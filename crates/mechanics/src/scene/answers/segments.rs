@@ -41,6 +41,9 @@ pub struct ContactExtent {
     /// may differ.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width_uncertainty: Option<f64>,
+    /// The contact begins at the axis of revolution, so that its width is a radius.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub from_axis: bool,
 }
 
 /// Connected closed rows of one obstacle on its boundary: one piece of the contact, with its force and its extent. With
@@ -83,6 +86,7 @@ impl ContactExtent {
             area_uncertainty: extents().map(|extent| extent.area_uncertainty).sum(),
             width: extents().map(|extent| extent.width).sum(),
             width_uncertainty: extents().map(|extent| extent.width_uncertainty).sum(),
+            from_axis: extents().all(|extent| extent.from_axis),
         })
     }
 
@@ -94,6 +98,7 @@ impl ContactExtent {
             area_uncertainty: parts * self.area_uncertainty,
             width: self.width.map(|width| parts * width),
             width_uncertainty: self.width_uncertainty.map(|off| parts * off),
+            from_axis: self.from_axis,
         }
     }
 }
@@ -184,6 +189,7 @@ impl Answer {
                 area_uncertainty: area.uncertainty(),
                 width: is_line.then_some(width.estimate),
                 width_uncertainty: is_line.then(|| width.uncertainty()),
+                from_axis: formulation.is_axisymmetric() && nodes.iter().any(|&node| patch.place(node)[0] == 0.0),
             },
             edge_peak: peak.is_at_edge.then_some(peak.node),
             ends: <[[f64; 3]; 2]>::try_from(ends).ok().map(|ends| ends.map(written)),
@@ -196,7 +202,7 @@ fn extent_of(patch: &Patch, nodes: &[usize]) -> (Size, Size) {
     let (mut width, mut area) = (Size::default(), Size::default());
     for cell in patch.cells_with(nodes) {
         let whole = patch.sizes(cell, &patch.places(&cell.nodes));
-        if cell.nodes.iter().all(|&node| patch.is_closed(node)) {
+        if patch.is_whole(cell) {
             let bend = patch.bend(cell);
             width.add_closed(whole.0, bend);
             area.add_closed(whole.1, bend);

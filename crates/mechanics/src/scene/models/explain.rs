@@ -1,6 +1,8 @@
 //! Errors of the solvers in the words of the scene: rigid-body modes by name, rows by node and obstacle.
 
 use super::rigid_body_modes::RigidBodyModes;
+use super::rigid_body_modes::soft::SoftMotion;
+use super::rows::ContactRow;
 use crate::error::Error;
 use crate::scene::Model;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, number, point, six_digits};
@@ -33,6 +35,19 @@ impl Model {
             }
             other => other,
         }
+    }
+
+    /// The rigid motions of an answer that contact without friction hardly resists, from its nodal displacement and its
+    /// closed rows with their forces.
+    ///
+    /// # Errors
+    /// None for the dofs of the body.
+    pub(crate) fn soft_motions(
+        &self,
+        displacement: &[f64],
+        closed: &[(&ContactRow, f64)],
+    ) -> Result<Vec<SoftMotion>, Error> {
+        RigidBodyModes::of_parts(&self.parts).soft_motions(&self.parts, closed, displacement)
     }
 
     /// A node with its coordinates, as `node 5 at (0.25, 1)`.

@@ -247,6 +247,15 @@ impl Model {
         forces
     }
 
+    /// The number of rows of each obstacle and pair of bodies with a force, in the order of the scene, for the
+    /// multipliers of the rows (in force, `<= 0`).
+    pub fn pressing_rows(&self, multiplier: &[f64]) -> Vec<usize> {
+        let mut count = vec![0; self.obstacles().len()];
+        let pressing = self.rows().iter().zip(multiplier).filter(|(_, lambda)| **lambda < 0.0);
+        pressing.for_each(|(row, _)| count[row.obstacle] += 1);
+        count
+    }
+
     /// The numbers of a motion of the whole body, from those of the meshed part: its force and its energies.
     pub fn of_whole(&self, seen: Observation) -> Observation {
         let whole = |of_part: f64| self.parts_of_whole() * of_part;

@@ -29,11 +29,13 @@ pub(crate) struct Shortening {
     pub own: Range<usize>,
     /// The tension along it; `None` if it is prescribed.
     pub force: Option<f64>,
+    /// 1, or -1 if the direction leads from the other side back to the first, so that a positive sum is a lengthening.
+    pub sense: f64,
 }
 
 impl Shortening {
-    fn of_row(row: &TieRow, tie: usize, force: Option<f64>) -> Self {
-        Shortening { tie, terms: row.terms.clone(), own: row.own.clone(), force }
+    fn of_row(row: &TieRow, (tie, sense): (usize, f64), force: Option<f64>) -> Self {
+        Shortening { tie, terms: row.terms.clone(), own: row.own.clone(), force, sense }
     }
 
     /// The unit vector from the first side to the other.
@@ -64,7 +66,7 @@ impl PreloadSpec {
     ) -> Result<(Vec<TieRow>, Shortening), Error> {
         let facing = Facing::of([&self.boundary, &self.to], None, path, place, warnings)?;
         let (dofs, dimension) = (facing.dofs, facing.body.dimension());
-        let towards = self.direction(&facing, path)?;
+        let (towards, sense) = self.direction(&facing, path)?;
         let mut rows = Vec::new();
         for number in 0..dimension - 1 {
             rows.extend(facing.rows(|node| across(towards, dofs.axes(node), dimension)[number])?);
@@ -76,13 +78,13 @@ impl PreloadSpec {
             (Some(force), None) => {
                 finite(format!("{path}.force"), force)?;
                 along.iter_mut().for_each(|row| *row = row.minus(&first));
-                Shortening::of_row(&first, tie, Some(force))
+                Shortening::of_row(&first, (tie, sense), Some(force))
             }
             (None, Some(shortening)) => {
                 finite(format!("{path}.shortening"), shortening)?;
                 along.insert(0, first.clone());
                 along.iter_mut().for_each(|row| row.value = shortening);
-                Shortening::of_row(&first, tie, None)
+                Shortening::of_row(&first, (tie, sense), None)
             }
             _ => return Err(wrong(path, "needs one of `force` and `shortening`")),
         };
@@ -90,14 +92,14 @@ impl PreloadSpec {
         Ok((rows, shortening))
     }
 
-    /// The unit vector from the side that takes the means to the other.
-    fn direction(&self, facing: &Facing, path: &str) -> Result<[f64; 3], Error> {
+    /// The unit vector from the side that takes the means to the other, and 1; -1 for one that leads back.
+    fn direction(&self, facing: &Facing, path: &str) -> Result<([f64; 3], f64), Error> {
         let mut outward = [0.0; 3];
         for row in &facing.found.rows {
             outward.iter_mut().zip(row.normal).for_each(|(sum, part)| *sum += row.area * part);
         }
         let outward = unit(outward);
-        let Some(given) = &self.direction else { return Ok(outward) };
+        let Some(given) = &self.direction else { return Ok((outward, 1.0)) };
         let path = format!("{path}.direction");
         let given = unit(vector(&path, given, facing.body.dimension())?);
         // Cosines of right angles are rounding, which would couple what supports keep apart.
@@ -119,7 +121,7 @@ impl PreloadSpec {
             );
             return Err(refused("approach-away", path, message));
         }
-        Ok(given)
+        Ok((given, along.signum()))
     }
 }
 

@@ -50,10 +50,11 @@ pub struct Resultant {
     /// The motion of the rigid face that the resultant acts on; `None` for other forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<FaceMotion>,
-    /// The shortening of a bolt by its preload, in length.
+    /// The shortening of a bolt by its preload, in length: positive if its parts are drawn together, whatever its
+    /// direction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortening: Option<f64>,
-    /// The tension of a bolt, in force.
+    /// The tension of a bolt, in force; negative if its parts press on each other.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tension: Option<f64>,
 }
@@ -187,6 +188,24 @@ impl Model {
         sum.resultant(self, String::new()).moment
     }
 
+    /// The moment that the contact forces of an obstacle have on both bodies together, over the sum of these forces
+    /// and the size of the mesh, in the meshed part: 0 if the forces of each row lie on one line. Means over curved
+    /// surfaces are not exactly so. `None` for rows that are no means, and about an axis of revolution, where forces
+    /// have no moment.
+    pub(crate) fn moment_defect(&self, obstacle: usize, multiplier: &[f64]) -> Option<f64> {
+        self.obstacles()[obstacle].other_body()?.1.filter(|_| !self.body().formulation().is_axisymmetric())?;
+        let (mut moment, mut force, nodes) = ([0.0; 3], 0.0, self.mesh().nodes());
+        for (row, &lambda) in self.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
+            force -= lambda;
+            for &(node, share) in &row.ends {
+                let lever = minus(self.parts.dofs.basis.place(nodes, node), nodes[row.node]);
+                let of_end = cross(lever, row.normal.map(|part| share * lambda * part));
+                moment = [0, 1, 2].map(|axis| moment[axis] + of_end[axis]);
+            }
+        }
+        Some(if force > 0.0 { length(moment) / (force * self.mesh().size()) } else { 0.0 })
+    }
+
     /// The names of the obstacles in reports: `obstacles[i]`, and `pair[k]` for the k-th obstacle that is another body.
     pub fn obstacle_names(&self) -> Vec<String> {
         let mut pairs = 0..;
@@ -304,9 +323,9 @@ impl Model {
             let sum = self.sum_of(&self.parts.tie_forces(of_ties, Some(index)));
             let on = self.name_of_body(first.map(|term| term.0));
             let shortening = ties.shortenings.iter().find(|one| one.tie == index);
-            let tension = shortening.map(|one| dot(sum.force(), one.towards()));
-            let shortening =
-                shortening.map(|one| one.value((self.dofs(), &self.parts.unknowns), self.body().dimension(), unknowns));
+            let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
+            let places = (self.dofs(), &self.parts.unknowns);
+            let shortening = shortening.map(|one| one.sense * one.value(places, self.body().dimension(), unknowns));
             Resultant { on, shortening, tension, ..sum.resultant(self, format!("ties[{index}]")) }
         };
         ties.of_tie.iter().enumerate().map(of_tie).collect()

@@ -29,6 +29,9 @@ pub(crate) fn add_width(answer: &Answer, obstacle: usize, factor: f64, gradient:
         if covered == 0.0 {
             continue;
         }
+        if cells.iter().any(|cell| cell.share < 1.0) {
+            return Err(format!("the other body ends within facet {facet} of `{}`", boundary.name));
+        }
         share_of.insert(nodes, covered / whole);
         if covered < whole {
             add_end(&patch, cells, factor, gradient)?;
@@ -47,10 +50,11 @@ pub(crate) fn add_width(answer: &Answer, obstacle: usize, factor: f64, gradient:
 
 /// The covered and the whole length of straight cells, stretched.
 fn lengths(patch: &Patch, cells: &[&StraightCell]) -> [f64; 2] {
+    let has_contact = cells.iter().any(|cell| cell.nodes.iter().any(|&node| patch.is_closed(node)));
     cells.iter().fold([0.0; 2], |[covered, whole], cell| {
         let all = patch.sizes(cell, &patch.places(&cell.nodes)).0;
-        let is_whole = cell.nodes.iter().all(|&node| patch.is_closed(node));
-        let own = if is_whole { all } else { patch.sizes(cell, &patch.covered(&cell.nodes)).0 };
+        let own =
+            if has_contact && patch.is_whole(cell) { all } else { patch.sizes(cell, &patch.covered(&cell.nodes)).0 };
         [covered + own, whole + all]
     })
 }

@@ -160,6 +160,7 @@ impl ObstacleShape for FacingSpec {
             across: Vec::new(),
             other: other.name.clone(),
             covered: None,
+            facets: None,
             reach: f64::INFINITY,
             fit,
             is_swapped: false,

@@ -60,6 +60,7 @@ pub(super) fn between(
         across,
         other: master.name.clone(),
         covered: Some(found.covered),
+        facets: Some(found.facets.into_iter().collect()),
         reach,
         fit,
         is_swapped,

@@ -1,5 +1,7 @@
 //! The contact rows against another body.
 
+use std::collections::HashMap;
+
 use super::row::ObstacleRow;
 use crate::fem::geometry::dot;
 use crate::scene::Warning;
@@ -39,6 +41,9 @@ pub(crate) struct Between {
     pub other: String,
     /// Covered shares of the carrying and of the other boundary, if rows are means.
     pub covered: Option<[f64; 2]>,
+    /// The nodes, in ascending order, of each facet of the carrying boundary that faces the other, with the covered
+    /// share of its area, if rows are means.
+    pub facets: Option<HashMap<Vec<usize>, f64>>,
     /// Largest distance at which the bodies may touch, in length; infinite without one.
     pub reach: f64,
     /// The gap of all rows, in length, instead of the distance of the bodies.

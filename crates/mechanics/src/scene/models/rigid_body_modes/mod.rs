@@ -1,6 +1,7 @@
 //! Rigid-body modes: those that nothing resists, and their names.
 
 mod advice;
+pub(crate) mod soft;
 mod unit;
 
 use signorini_qp as qp;
@@ -14,7 +15,7 @@ use crate::fem::body::ElasticBody;
 use crate::fem::dense::DenseMatrix;
 use crate::fem::geometry::COORDINATES;
 use signorini_qp::dot;
-use unit::{NAMED, Sense, UnitMotions};
+use unit::{NAMED, Sense, Sum, UnitMotions};
 
 /// A motion is held if its singular value exceeds this times the largest. A free motion has zero up to rounding, 1e-16,
 /// and any intended support or normal gives a value far above.
@@ -57,11 +58,7 @@ impl RigidBodyModes {
     /// The component along `direction` of each unit motion at a place that moves with a node; zero for those of other
     /// bodies.
     fn along(&self, node: usize, at: [f64; 3], direction: [f64; 3]) -> Vec<f64> {
-        let of_body = |motions: &UnitMotions| match motions.nodes.contains(&node) {
-            true => motions.along(at, direction),
-            false => [0.0; 6],
-        };
-        self.bodies.iter().flat_map(of_body).collect()
+        self.in_sum(&vec![(node, at, direction)])
     }
 
     /// The component of each unit motion at a nodal dof: along an axis of the node's frame if it has one.
@@ -85,24 +82,9 @@ impl RigidBodyModes {
         components
     }
 
-    /// The component of each unit motion in the equation of a tie, divided by its largest coefficient: surfaces are
-    /// tied at one place, whatever their distance.
-    fn in_tie(&self, parts: &Parts, row: &TieRow) -> Vec<f64> {
-        let nodes = parts.body.mesh().nodes();
-        let sum = self.in_sum(&row.terms, |node| row.at.unwrap_or_else(|| parts.dofs.basis.place(nodes, node)));
-        let coefficients = row.terms.iter().flat_map(|term| term.1);
-        let largest = coefficients.fold(0.0, |largest: f64, part| largest.max(part.abs()));
-        sum.into_iter().map(|part| if largest > 0.0 { part / largest } else { part }).collect()
-    }
-
-    /// The component of each unit motion in a sum of displacements of nodes along vectors, `at` the place of each node.
-    fn in_sum(&self, terms: &[(usize, [f64; 3])], at: impl Fn(usize) -> [f64; 3]) -> Vec<f64> {
-        let mut components = vec![0.0; 6 * self.bodies.len()];
-        for &(node, vector) in terms {
-            let of_node = self.along(node, at(node), vector);
-            components.iter_mut().zip(of_node).for_each(|(component, part)| *component += part);
-        }
-        components
+    /// The component of each unit motion in a sum.
+    fn in_sum(&self, sum: &Sum) -> Vec<f64> {
+        self.bodies.iter().flat_map(|body| body.in_sum(sum)).collect()
     }
 
     /// The travel of each pressed obstacle in a motion, against its approach direction.
@@ -115,24 +97,6 @@ impl RigidBodyModes {
         self.obstacles.iter().enumerate().map(travel).collect()
     }
 
-    /// The component of each unit motion along each motion that a rigid face prescribes.
-    fn prescribed(&self, face: &RigidFace) -> Vec<Vec<f64>> {
-        let Some(&node) = face.nodes.first() else { return Vec::new() };
-        let of_motion = |motion: &Motion| {
-            let (one, two) = ((motion.kind + 1) % 3, (motion.kind + 2) % 3);
-            if motion.kind < 3 {
-                return self.along(node, face.centre, COORDINATES[motion.kind]);
-            }
-            // A rotation is the difference along the second next axis between the motions of the centre and of a place
-            // one step along the next axis.
-            let mut beside = face.centre;
-            beside[one] += 1.0 / face.unit(motion);
-            let [near, far] = [face.centre, beside].map(|place| self.along(node, place, COORDINATES[two]));
-            far.iter().zip(near).map(|(far, near)| far - near).collect()
-        };
-        face.motions.iter().filter(|motion| motion.prescribed.is_some()).map(of_motion).collect()
-    }
-
     /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
     ///
     /// # Errors
@@ -140,15 +104,19 @@ impl RigidBodyModes {
     pub fn check_held(&self, parts: &Parts, rows: &[ContactRow]) -> Result<(), Error> {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
-        let names = self.names(&free);
-        let of_free = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
-        let travels = self.travels(parts, first);
+        let (names, direction) = (self.names(&free), self.in_unknowns(parts, first));
+        let advice = self.advice(parts, rows, &free);
+        Err(qp::Error::UnderHeld { mode: format!("{}: {advice}", names.join(", ")), direction }.into())
+    }
+
+    /// A motion in the unknowns of the model.
+    fn in_unknowns(&self, parts: &Parts, motion: &[f64]) -> Vec<f64> {
+        let of_free = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), motion)).collect();
+        let travels = self.travels(parts, motion);
         let travel = |obstacle: usize| {
             self.obstacles.iter().position(|&other| other == obstacle).map_or(0.0, |place| travels[place])
         };
-        let direction = parts.unknowns.of_motion(of_free, travel);
-        let advice = self.advice(parts, rows, &free);
-        Err(qp::Error::UnderHeld { mode: format!("{}: {advice}", names.join(", ")), direction }.into())
+        parts.unknowns.of_motion(of_free, travel)
     }
 
     /// Motions in words.
@@ -159,18 +127,9 @@ impl RigidBodyModes {
     /// A basis of the motions that nothing resists: unit motions first.
     pub fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Vec<f64>> {
         let nodes = parts.body.mesh().nodes();
-        let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
-        let of_supports = supported.map(|dof| self.at_dof(parts, dof));
+        let firm = resisted_firmly(parts);
         let of_rows = rows.iter().map(|row| self.in_row(nodes, row));
-        let of_springs = parts
-            .springs
-            .iter()
-            .flat_map(|springs| springs.resisted())
-            .map(|sum| self.in_sum(&sum, |node| nodes[node]));
-        let of_faces = parts.rigid_faces.iter().flat_map(|face| self.prescribed(face));
-        let of_ties = parts.ties.rows.iter().map(|row| self.in_tie(parts, row));
-        let resisted: Vec<Vec<f64>> =
-            of_supports.chain(of_rows).chain(of_springs).chain(of_faces).chain(of_ties).collect();
+        let resisted: Vec<Vec<f64>> = firm.iter().map(|sum| self.in_sum(sum)).chain(of_rows).collect();
         let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
         let matrix = DenseMatrix::from_fn(resisted.len(), modes.len(), |row, column| resisted[row][modes[column]]);
         let svd = matrix.triangle().singular_values();
@@ -268,6 +227,68 @@ impl RigidBodyModes {
         }
         if magnitude == 0.0 { 0.0 } else { largest / magnitude }
     }
+}
+
+/// Everything that resists rigid motions but contact rows: supports, springs, rigid faces and ties, which join
+/// surfaces at one place whatever their distance.
+fn resisted_firmly(parts: &Parts) -> Vec<Sum> {
+    let (nodes, dimension) = (parts.body.mesh().nodes(), parts.body.dimension());
+    let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
+    let of_support = |dof: usize| {
+        let (node, axis) = (dof / dimension, dof % dimension);
+        vec![(node, nodes[node], parts.dofs.axes(node)[axis])]
+    };
+    let springs = parts.springs.iter().flat_map(|springs| springs.resisted());
+    let of_spring = |terms: Vec<(usize, [f64; 3])>| terms.into_iter().map(|(node, vector)| (node, nodes[node], vector));
+    // Relative to its largest coefficient, whatever its scale is.
+    let of_tie = |row: &TieRow| {
+        let place = |node: usize| row.at.unwrap_or_else(|| parts.dofs.basis.place(nodes, node));
+        let coefficients = row.terms.iter().flat_map(|term| term.1);
+        let largest = coefficients.fold(0.0, |largest: f64, part| largest.max(part.abs()));
+        let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
+        row.terms.iter().map(|&(node, vector)| (node, place(node), vector.map(|part| scale * part))).collect()
+    };
+    let firm = supported.map(of_support).chain(springs.map(|terms| of_spring(terms).collect()));
+    firm.chain(parts.rigid_faces.iter().flat_map(prescribed)).chain(parts.ties.rows.iter().map(of_tie)).collect()
+}
+
+/// The motions that a rigid face prescribes.
+fn prescribed(face: &RigidFace) -> Vec<Sum> {
+    face.motions.iter().filter(|motion| motion.prescribed.is_some()).map(|motion| of_motion(face, motion)).collect()
+}
+
+/// The amount of a motion of a rigid face, in its unit; nothing of a face without nodes.
+fn of_motion(face: &RigidFace, motion: &Motion) -> Sum {
+    let Some(&node) = face.nodes.first() else { return Vec::new() };
+    let (one, two) = ((motion.kind + 1) % 3, (motion.kind + 2) % 3);
+    if motion.kind < 3 {
+        return vec![(node, face.centre, COORDINATES[motion.kind])];
+    }
+    // A rotation is the difference along the second next axis between the motions of the centre and of a place one step
+    // along the next axis.
+    let mut beside = face.centre;
+    beside[one] += 1.0 / face.unit(motion);
+    vec![(node, beside, COORDINATES[two]), (node, face.centre, COORDINATES[two].map(|part| -part))]
+}
+
+/// The loads on the bodies, each as its work in a motion: forces on nodes, forces and moments on rigid faces.
+fn loads(parts: &Parts) -> Result<Sum, Error> {
+    let (nodes, dimension) = (parts.body.mesh().nodes(), parts.body.dimension());
+    let of_dof = |(dof, force): (usize, f64)| {
+        let node = dof / dimension;
+        (node, nodes[node], COORDINATES[dof % dimension].map(|part| force * part))
+    };
+    let mut loads: Sum =
+        parts.acting_load()?.into_iter().enumerate().filter(|(_, force)| *force != 0.0).map(of_dof).collect();
+    for face in &parts.rigid_faces {
+        for motion in &face.motions {
+            let work = |(node, at, vector): (usize, [f64; 3], [f64; 3])| {
+                (node, at, vector.map(|part| motion.force * face.unit(motion) * part))
+            };
+            loads.extend(of_motion(face, motion).into_iter().map(work));
+        }
+    }
+    Ok(loads)
 }
 
 /// A basis of the same space of motions with translations before rotations: orthonormal before and after.

@@ -19,6 +19,9 @@ pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 /// a rotation is measured by the displacement at the distance `size` from the axis.
 pub(super) type Amplitudes = [f64; 6];
 
+/// A sum of displacements along vectors: a node, the place that moves with it, and the vector.
+pub(super) type Sum = Vec<(usize, [f64; 3], [f64; 3])>;
+
 /// The form of the name of a motion: with or without its sense.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sense {
@@ -88,6 +91,23 @@ impl UnitMotions {
             components[mode] = dot(&self.at(mode, point), &direction);
         }
         components
+    }
+
+    /// The component of each unit motion in a sum of displacements.
+    pub fn in_sum(&self, sum: &Sum) -> Amplitudes {
+        let mut components = [0.0; 6];
+        for &(_, at, vector) in sum.iter().filter(|(node, ..)| self.nodes.contains(node)) {
+            components.iter_mut().zip(self.along(at, vector)).for_each(|(component, part)| *component += part);
+        }
+        components
+    }
+
+    /// The displacements of nodes at these places in a motion.
+    pub fn nodal(&self, places: &[[f64; 3]], amplitudes: &Amplitudes) -> impl Iterator<Item = [f64; 3]> {
+        places.iter().map(|&place| {
+            let parts = self.modes.iter().map(|&mode| self.at(mode, place).map(|part| amplitudes[mode] * part));
+            parts.fold([0.0; 3], |sum, part| [0, 1, 2].map(|axis| sum[axis] + part[axis]))
+        })
     }
 
     /// The amplitudes closest to a motion of `nodes` (`dim` entries each) by least squares, and the length of the rest.
