@@ -46,6 +46,8 @@ pub(super) struct OfPart {
     pub rounded_squares: f64,
     /// The same sum of loads and elastic forces alone: contact forces that cancel each other may be of any size.
     pub given_squares: f64,
+    /// The same sum of the dofs of `rounded_squares`.
+    pub rounded_given_squares: f64,
 }
 
 impl OfPart {
@@ -60,6 +62,7 @@ impl OfPart {
             force_squares: parts.iter().map(|part| part.force_squares).sum(),
             rounded_squares: parts.iter().map(|part| part.rounded_squares).sum(),
             given_squares: parts.iter().map(|part| part.given_squares).sum(),
+            rounded_given_squares: parts.iter().map(|part| part.rounded_given_squares).sum(),
         }
     }
 }
@@ -91,10 +94,12 @@ impl Scales {
                 let coupling = couplings.get(dof).copied().unwrap_or(0.0);
                 let force = larger(applied[dof], coupling) / root;
                 part.force = larger(force, part.force);
+                let given = (larger(problem.load[dof].abs(), balance.elastic[dof]) / root).powi(2);
                 part.force_squares += force * force;
+                part.given_squares += given;
                 if coupling > 0.0 || balance.residual[dof] != 0.0 && !is_taken[dof] {
                     part.rounded_squares += force * force;
-                    part.given_squares += (larger(problem.load[dof].abs(), balance.elastic[dof]) / root).powi(2);
+                    part.rounded_given_squares += given;
                 }
             }
         }
@@ -108,7 +113,8 @@ impl Scales {
     pub fn rest_of_row(&self, row: usize, part: usize) -> f64 {
         let part = &self.of_parts[part];
         let rests = part.is_stiff && !part.moves;
-        if rests { self.reach[row] * part.rest(part.rounded_squares.min(part.given_squares)) } else { 0.0 }
+        let rounded = part.rounded_squares.min(part.rounded_given_squares);
+        if rests { self.reach[row] * part.rest(rounded, part.force_squares.min(part.given_squares)) } else { 0.0 }
     }
 }
 

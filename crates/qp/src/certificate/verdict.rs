@@ -39,15 +39,16 @@ impl OfPart {
         error + LEAST * self.terms.sqrt()
     }
 
-    /// The energy norm that rounding gives a part at rest, from the sum of squares of the forces that it leaves.
-    pub fn rest(&self, squares: f64) -> f64 {
-        FORCES_ROUNDED * squares.sqrt() + CANCELLED * self.force_squares.sqrt()
+    /// The energy norm that rounding gives a part at rest, from the sums of squares of the forces that it leaves and of
+    /// all forces.
+    pub fn rest(&self, rounded: f64, all: f64) -> f64 {
+        FORCES_ROUNDED * rounded.sqrt() + CANCELLED * all.sqrt()
     }
 
     /// Returns `true` if an error of a part without displacement is rounding of its forces, in a factor that amplifies
     /// rounding by `loss`.
     fn is_rest(&self, error: f64, loss: f64) -> bool {
-        !self.moves && error <= loss * self.rest(self.rounded_squares)
+        !self.moves && error <= loss * self.rest(self.rounded_squares, self.force_squares)
     }
 }
 
