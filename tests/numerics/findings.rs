@@ -17,6 +17,7 @@ use support::oracles::exact::judge::{Fault, Judge};
 use support::oracles::exact::measure::Errors;
 use support::oracles::exact::problem::Exact;
 use support::oracles::exact::solve::{Answer, Outcome};
+use support::problems::of_entries;
 use support::program::{Desk, Run};
 
 const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
@@ -406,4 +407,26 @@ fn an_answer_that_a_load_on_a_wall_makes_look_small_is_not_verified() {
     for method in [Method::Auto, Method::qp(), Method::ActiveSet] {
         finding.solve(method).unwrap_or_else(|error| panic!("{}: {error}", method.name()));
     }
+}
+
+/// GOAL: multipliers that cancel each other, of any size, excuse no violated row.
+/// CONDITIONS: an equality as two rows, a row that the displacement zero violates by its whole gap, and multipliers of
+/// 1e35 and 1e47 whose forces cancel to the last bit; found by `fuzz problem`.
+#[test]
+fn large_multipliers_of_a_body_at_rest_excuse_no_row() {
+    let stiffness = [(0, 0, 0.5074361586147477), (1, 0, -0.030858197349235072), (1, 1, 0.002337122819147528)];
+    let (small, large) = (3.4729115292429923e-13, 180465009063.4823);
+    let rows = [
+        (0, 0, small),
+        (1, 0, -small),
+        (0, 1, -large),
+        (1, 1, large),
+        (2, 1, -0.05620849318802357),
+        (3, 1, 0.5945215504616499),
+    ];
+    let load = vec![-0.6757287345826626, 0.34464614279568195];
+    let gap = vec![0.7354622408747673, -0.7354622408747673, 0.3724177163094282, -0.4014382716268301];
+    let problem = of_entries(&stiffness, load, &rows, gap);
+    let certificate = problem.certify(&[0.0; 2], &[-5.126702907171483e35, 0.0, 0.0, -1.5561933556320477e47]).unwrap();
+    assert!(!certificate.meets(1e-9) && certificate.penetration > 0.0, "{certificate:?}");
 }

@@ -152,13 +152,14 @@ fn softly_held(answer: &Answer) -> Vec<AnswerWarning> {
         .into_iter()
         .filter(|soft| soft.moved > VISIBLE * largest);
     let warning = |SoftMotion { name, moved, advice }| {
+        let amount = format!("{moved:.3e} {}", model.units().length);
         let message = format!(
-            "softly held: the {name} moves nodes by {moved:.3e} {}, {:.0} % of the largest displacement, and no load drives it; \
-             {advice}. The contact rows hardly resist it, so that it follows the rounding of the mesh",
-            model.units().length,
+            "softly held: the {name} moves nodes by {}, {:.0} % of the largest displacement, and no force drives it; {advice}. The \
+             contact rows hardly resist it, so that it follows the rounding of the mesh",
+            amount.trim_end(),
             100.0 * moved / largest
         );
-        AnswerWarning { code: "softly-held", message: message.replace("  ", " ") }
+        AnswerWarning { code: "softly-held", message }
     };
     visible.map(warning).collect()
 }
