@@ -195,6 +195,47 @@ fn an_answer_with_equalities_is_certified_and_a_changed_one_is_not() {
     }
 }
 
+/// GOAL: an equality over all unknowns fills no matrix.
+/// CONDITIONS: a floating grid of springs, 40 x 40, with a mean value, with a moment as well, and with walls at every
+/// 40th dof of which every other one is touched.
+/// REFERENCE: the answer from which the loads are built.
+#[test]
+fn equalities_over_all_unknowns_are_held_without_filling_the_stiffness() {
+    let (side, mut draws) = (40, Draws(5));
+    let n = side * side;
+    let springs = (0..n).flat_map(|at| {
+        let right = (at % side + 1 < side).then_some((at, at + 1));
+        right.into_iter().chain((at + side < n).then_some((at, at + side)))
+    });
+    let lower = springs.flat_map(|(a, b)| [(a, a, 1.0), (b, b, 1.0), (b, a, -1.0)]).collect::<Vec<_>>();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &lower).unwrap()).unwrap();
+    let rows: Vec<(usize, usize, f64)> = (0..side).map(|row| (row, side * row + row, 1.0)).collect();
+    let contact = SparseMatrix::from_triplets(side, n, &rows).unwrap();
+    let moment = |row: usize, dof: usize| [1.0, (dof % side) as f64 - 7.3][row];
+    for count in [1, 2] {
+        let u: Vec<f64> = (0..n).map(|_| draws.signed()).collect();
+        let lambda: Vec<f64> =
+            (0..side).map(|row| if row % 2 == 0 { -0.5 - draws.signed().abs() } else { 0.0 }).collect();
+        let mu: Vec<f64> = (0..count).map(|_| draws.signed()).collect();
+        let moments: Vec<(usize, usize, f64)> =
+            (0..count).flat_map(|row| (0..n).map(move |dof| (row, dof, moment(row, dof)))).collect();
+        let equalities = SparseMatrix::from_triplets(count, n, &moments).unwrap();
+        let (pressed, held) = (contact.mul_transposed(&lambda), equalities.mul_transposed(&mu));
+        let load = stiffness.mul(&u).iter().zip(pressed.iter().zip(held)).map(|(k, (b, e))| k - b - e).collect();
+        let gap = contact.mul(&u).iter().zip(&lambda).map(|(at, force)| at + f64::from(*force == 0.0)).collect();
+        let problem = ContactProblem::new(stiffness.clone(), load, contact.clone(), gap).unwrap();
+        let solution = solve_qp(&problem.with_equalities(&equalities, equalities.mul(&u)).unwrap()).unwrap();
+        assert!(solution.method.ends_with("-eliminated"), "{}", solution.method);
+        // The bound is relative to the energy of a displacement of the order of one at each of n dofs.
+        let farthest =
+            solution.displacement.iter().zip(&u).map(|(ours, exact)| (ours - exact).abs()).fold(0.0, f64::max);
+        assert!(farthest < n as f64 * ROUNDING && solution.certificate.has_bound(), "{farthest}");
+        let off = |ours: &[f64], exact: &[f64]| ours.iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off(&solution.multiplier, &lambda) < n as f64 * ROUNDING, "{:?}", solution.multiplier);
+        assert!(off(&solution.equality_multiplier, &mu) < n as f64 * ROUNDING, "{:?}", solution.equality_multiplier);
+    }
+}
+
 /// `u_0 = 1/4`, `u_1 = 1/2` and `u_0 + u_1 = 1`; then the row `u_0 <= 1/2` before `u_0 + u_2 = 2` and `u_2 = 1/2`.
 #[test]
 fn equalities_that_contradict_each_other_or_a_row_are_refused_with_their_weights() {

@@ -114,3 +114,13 @@ fn unknowns_without_mass_have_no_modes() {
     let found = problem.modes(&mass, (&[], &[]), 6, 1, &Watch::default()).unwrap();
     assert_eq!(found.values.len(), 4);
 }
+
+/// A spring whose only row is closed.
+#[test]
+fn unknowns_that_held_rows_leave_no_freedom_have_no_modes() {
+    let one = symmetric(1, &[(0, 0, 2.0)]);
+    let row = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap();
+    let problem = ContactProblem::new(one.clone(), vec![0.0], row, vec![0.0]).unwrap();
+    let found = problem.modes(&one, (&[0], &[]), 1, 1, &Watch::default()).unwrap();
+    assert!(found.values.is_empty() && found.vectors.is_empty(), "{found:?}");
+}

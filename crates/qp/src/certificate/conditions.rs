@@ -122,6 +122,11 @@ impl ContactProblem {
         Ok(examined)
     }
 
+    /// A certificate of an error that is as large in energy, for this displacement: with the rounding of it.
+    pub(crate) fn with_rounding(&self, certificate: Certificate, displacement: &[f64]) -> Certificate {
+        certificate.rounded_by(&self.energy_of(displacement))
+    }
+
     /// The scales of a displacement, without forces.
     fn energy_of(&self, displacement: &[f64]) -> OfPart {
         let Balance { strain, terms, .. } = self.accurate_balance(displacement, &[]);

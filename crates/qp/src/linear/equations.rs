@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::{SparseMatrix, Twice};
 
 /// A pivot has at least this share of the largest entry of its row.
-const PIVOT: f64 = 0.1;
+pub const PIVOT: f64 = 0.1;
 
 /// A sum below this share of its terms is zero: far above the rounding of twice the working precision.
 const CANCELLED: f64 = 1e-26;
@@ -99,15 +99,15 @@ pub struct Pivot {
 }
 
 /// The largest magnitude of the coefficients.
-pub fn largest(values: &Sparse) -> f64 {
+pub fn largest(values: &[(usize, Twice)]) -> f64 {
     values.iter().map(|entry| entry.1.rounded().abs()).fold(0.0, f64::max)
 }
 
 impl Pivot {
-    /// The dof with the least rank among those of large coefficients.
-    pub fn best<R: Ord>(&self, rank: impl Fn(usize) -> R) -> Option<usize> {
+    /// The dof with the least rank among those whose coefficients have at least this share of the largest.
+    pub fn best<R: Ord>(&self, share: f64, rank: impl Fn(usize) -> R) -> Option<usize> {
         let largest = largest(&self.others);
-        let may_be = |entry: &&(usize, Twice)| entry.1.rounded().abs() >= PIVOT * largest;
+        let may_be = |entry: &&(usize, Twice)| entry.1.rounded().abs() >= share * largest;
         self.others.iter().filter(may_be).map(|entry| entry.0).min_by_key(|&dof| rank(dof))
     }
 }
@@ -139,7 +139,7 @@ impl SparseMatrix {
             let entries: Sparse = of_row(row).map(|(dof, a)| (dof, a.into())).collect();
             match found.reduced(&entries, values.get(row).copied().unwrap_or(0.0).into(), (row, accuracy)) {
                 Reduced::Row(pivot) => {
-                    if let Some(dof) = pivot.best(|dof| self.column(dof).count()) {
+                    if let Some(dof) = pivot.best(PIVOT, |dof| self.column(dof).count()) {
                         found.solve_for(dof, pivot);
                     }
                 }

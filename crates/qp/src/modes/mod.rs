@@ -358,7 +358,8 @@ impl Shifted<'_> {
 
     /// The results of `work` on as many columns as are treated together, in their order.
     fn in_parts<T: Send>(&self, columns: &[f64], work: impl Fn(&[f64]) -> Vec<T> + Sync) -> Vec<T> {
-        let parts: Vec<&[f64]> = columns.chunks(LANES * self.pencil.ordered.dim()).collect();
+        // Held rows may leave nothing that moves.
+        let parts: Vec<&[f64]> = columns.chunks((LANES * self.pencil.ordered.dim()).max(1)).collect();
         match self.pencil.threads {
             0 | 1 => parts.into_iter().flat_map(work).collect(),
             _ => in_order(parts, work).into_iter().flatten().collect(),

@@ -53,7 +53,7 @@ impl Estimate {
         let fits = self.direct_bytes <= most_bytes;
         // For a body, constants alone give a poor hierarchy.
         if ratio > CLEARLY && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes {
-            let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
+            let reason = format!("by multigrid: a factorisation would take about {ratio:.1} times as long");
             // After this number of cycles a factorisation would have been as fast.
             let most_cycles = if fits { MARGIN + (self.cycles * ratio) as usize } else { usize::MAX };
             return Ok(Choice::Speed { reason, most_cycles });

@@ -43,7 +43,9 @@ impl Ladder {
         if let Some(limits) = self.again(last, history) {
             return Some(Next { place: last.place, start: From::Best, limits });
         }
-        let is_prepared = !matches!((&last.ended, last.step), (Ended::Refused(_) | Ended::Failed(_), Step::Method));
+        let has_ended = matches!((&last.ended, last.step), (Ended::Refused(_) | Ended::Failed(_), Step::Method));
+        // A method that fails leaves its data to the next steps.
+        let is_prepared = !has_ended || last.tried.is_some();
         let rest = if is_prepared { self.attempts[last.place.attempt].steps.len() } else { 0 };
         let here = (last.place.rung + 1..rest).map(|rung| Place { attempt: last.place.attempt, rung });
         let later = (last.place.attempt + 1..self.attempts.len())

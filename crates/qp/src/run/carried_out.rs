@@ -3,7 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::{elimination, pieces};
+use super::elimination::{self, Rest};
+use super::pieces;
 use crate::certificate::{Bounding, Examined};
 use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
 use crate::error::Error;
@@ -76,14 +77,17 @@ pub(crate) struct Run<'a> {
     /// The sets of the last method, and their number, with its attempt.
     last: Option<(usize, Outcome)>,
     pub(super) existence: Option<Existence>,
+    /// `true` if a long equality was cut, so that no factor of the whole is made.
+    pub(super) is_cut: bool,
     pub(super) clock: Instant,
 }
 
 impl<'a> Run<'a> {
     /// A run on `problem` from `start`, under settings with a running clock.
     pub fn new(problem: &'a ContactProblem, ladder: &'a Ladder, start: &'a Start, settings: &'a Settings) -> Self {
-        let (history, clock) = (History::new(settings.goal()), Instant::now());
-        Run { problem, ladder, start, settings, history, kept: None, made: None, last: None, existence: None, clock }
+        let (history, is_cut, clock) = (History::new(settings.goal()), false, Instant::now());
+        let (kept, made, last, existence) = (None, None, None, None);
+        Run { problem, ladder, start, settings, history, kept, made, last, existence, is_cut, clock }
     }
 
     /// The same with data that are prepared already: the first attempt is that of these data.
@@ -258,10 +262,14 @@ impl<'a> Run<'a> {
     /// The answer without the equalities, and these put back.
     fn by_elimination(&mut self, record: &mut Record) -> Result<Ended, Error> {
         let found = elimination::solved(self.problem, self.start, self.settings, solved)?;
-        let Some(solution) = found else { return Ok(Ended::Empty) };
-        let Seconds { factor, certificate, .. } = solution.seconds;
+        let Some(Rest { answer, of_rest }) = found else { return Ok(Ended::Empty) };
+        let Seconds { factor, certificate, .. } = answer.seconds;
         record.stages = Seconds { factor, certificate, ..Seconds::default() };
-        self.judged(Best::of(solution, record.place.attempt), &Bounding::OwnFactor, record).map(Ended::Answered)
+        // An error has the same energy in the rest, but for the rounding of the displacement.
+        let of_rest = of_rest.map(|rest| [self.problem.with_rounding(rest, &answer.displacement)]);
+        self.is_cut = of_rest.is_some();
+        let by = of_rest.as_ref().map_or(Bounding::OwnFactor, |rest| Bounding::Pieces(rest));
+        self.judged(Best::of(answer, record.place.attempt), &by, record).map(Ended::Answered)
     }
 
     /// Whether an answer exists.

@@ -4,8 +4,15 @@ use crate::error::Error;
 use crate::method::Start;
 use crate::problem::ContactProblem;
 use crate::settings::Settings;
-use crate::solution::{Seconds, Solution};
+use crate::solution::{Certificate, Seconds, Solution};
 use crate::transform::Elimination;
+
+/// The answer of a problem without its equalities, put back.
+pub(super) struct Rest {
+    pub answer: Solution,
+    /// The certificate of the rest, if the whole is to have no factor with its equalities.
+    pub of_rest: Option<Certificate>,
+}
 
 /// The answer, found by `solve` without the equalities, with the equalities put back and without a certificate; `None`
 /// if they are not eliminated, or if the rest has no answer of its own, or more than one: that is decided for the
@@ -18,7 +25,7 @@ pub(super) fn solved(
     start: &Start,
     settings: &Settings,
     solve: impl Fn(&ContactProblem, &Start, &Settings) -> Result<Solution, Error>,
-) -> Result<Option<Solution>, Error> {
+) -> Result<Option<Rest>, Error> {
     let Some(elimination) = Elimination::of(problem)? else { return Ok(None) };
     // The certificate of the whole and its proof follow.
     let settings = &Settings { prove: false, ..settings.clone() };
@@ -39,5 +46,6 @@ pub(super) fn solved(
         Err(_) => return Ok(None),
     };
     let seconds = Seconds { proof: 0.0, ..answer.seconds };
-    Ok(Some(elimination.expanded(problem, Solution { seconds, ..answer })))
+    let of_rest = elimination.is_cut().then_some(answer.certificate);
+    Ok(Some(Rest { answer: elimination.expanded(problem, Solution { seconds, ..answer }), of_rest }))
 }

@@ -162,7 +162,7 @@ impl Run<'_> {
     /// The same for an answer without prepared data, with a factor of its own.
     fn proven_alone(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
         let clock = Instant::now();
-        let is_due = !self.problem.equalities().is_empty() && !self.settings.watch.is_over();
+        let is_due = !self.problem.equalities().is_empty() && !self.is_cut && !self.settings.watch.is_over();
         let Best { solution: Solution { displacement, multiplier, .. }, evidence, .. } = best;
         let answer = WithEvidence { displacement, multiplier, evidence: evidence.take() };
         let proven = if is_due { self.problem.prove_alone(answer).ok().flatten() } else { None };

@@ -20,7 +20,7 @@ pub(super) fn solved(
 ) -> Result<Option<(Solution, Vec<Certificate>)>, Error> {
     // The whole problem stays in memory beside the piece.
     let of_whole = bytes::of_problem(problem.dofs() as f64, problem.stiffness().entries() as f64);
-    let settings = &Settings { memory: settings.memory.map(|most| most - of_whole), ..settings.clone() };
+    let settings = &Settings { memory: settings.memory.map(|most| (most - of_whole).max(1.0)), ..settings.clone() };
     let mut answers = Vec::with_capacity(pieces.count());
     for piece in 0..pieces.count() {
         match solve(&pieces.problem(problem, piece)?, settings) {

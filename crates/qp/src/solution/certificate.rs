@@ -262,16 +262,23 @@ impl Certificate {
         }
     }
 
-    /// Returns `true` if another step may still help: the goal is not met, or forces work over open distances. No goal
-    /// judges that work, and the bound does not see it where a row moves far with little energy.
+    /// Returns `true` if another step may still help: the goal is not met, or forces work over open distances, or are
+    /// out of balance at a dof. No goal judges these, and the bound does not see them where a part moves far with
+    /// little energy.
     pub(crate) fn asks_for_more(&self, goal: Goal) -> bool {
-        !goal.is_met_by(self) || (self.complementarity.is_finite() && self.complementarity > goal.required())
+        !goal.is_met_by(self)
+            || (self.complementarity.is_finite() && self.complementarity > goal.required())
+            || self.stationarity > goal.required()
     }
 
     /// Returns `true` if this certificate is better than `before` by the factor `share`.
     pub(crate) fn gains_on(&self, before: &Certificate, goal: Goal, share: f64) -> bool {
         match goal.is_met_by(before) {
-            true => goal.is_met_by(self) && self.complementarity < share * before.complementarity,
+            true => {
+                let is_balanced =
+                    self.stationarity < share * before.stationarity && before.stationarity > goal.required();
+                goal.is_met_by(self) && (is_balanced || self.complementarity < share * before.complementarity)
+            }
             false => self.improves_on(before, share),
         }
     }

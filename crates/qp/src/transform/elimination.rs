@@ -8,11 +8,14 @@
 //!
 //! which is definite wherever the equalities hold a motion without energy. The way back gives the multipliers of the
 //! equalities from the forces on the pivots. All sums have twice the working precision.
+//!
+//! A long equality, as a mean value over all dofs, would fill `Z'K Z`. It is cut: the sum over some dofs becomes an
+//! unknown in the place of one of them, and the sum over some of these sums, until a short equality of sums is left.
 
 use crate::error::Error;
-use crate::linear::equations::{FOLLOWS, Found, Pivot, Reduced, Sparse, Sum, Sums};
+use crate::linear::equations::{FOLLOWS, Found, PIVOT, Pivot, Reduced, Sparse, Sum, Sums, largest};
 use crate::linear::multigrid::NearNullSpace;
-use crate::linear::{SparseMatrix, SymmetricMatrix, Twice};
+use crate::linear::{SparseMatrix, SymmetricMatrix, Twice, exponent, ldexp};
 use crate::problem::{ContactProblem, Equality};
 use crate::solution::{ContactSet, Iteration, Solution};
 
@@ -22,14 +25,28 @@ const FILL: usize = 4;
 /// Entries that are not worth counting.
 const FEW: usize = 2_000_000;
 
+/// Equalities of more dofs are cut where they would fill the stiffness, into sums of `CUT`: these fill it by blocks
+/// about as large as those of a solid element.
+const LONG: usize = 64;
+
+const CUT: usize = 16;
+
+/// A dof whose place a sum takes has at least this share of the largest entry: sums of sums amplify rounding.
+const CUT_PIVOT: f64 = 0.5;
+
+/// The share of its largest entry that a sum has in the row that defines it: below that of a pivot.
+const NO_PIVOT: f64 = 1.0 / 32.0;
+
 /// The equalities of a problem, solved for some of its dofs.
 #[derive(Clone, Debug)]
 pub struct Elimination {
     equalities: Vec<Equality>,
     pivots: Vec<Pivot>,
-    /// The number of each dof among those that stay, or that of its pivot.
+    /// The sums that are unknowns: their numbers follow those of the dofs, and those of sums before them.
+    sums: Vec<Sparse>,
+    /// The number of each dof, and of each sum, among those that stay, or that of its pivot.
     place: Vec<Result<usize, usize>>,
-    /// The dofs, and the rows, that stay, in increasing order.
+    /// The dofs and sums, and the rows, that stay, in increasing order.
     dofs: Vec<usize>,
     rows: Vec<usize>,
 }
@@ -41,6 +58,19 @@ impl Elimination {
     /// # Errors
     /// [`Error::Infeasible`] for equalities that contradict each other.
     pub fn of(problem: &ContactProblem) -> Result<Option<Self>, Error> {
+        match Self::cut(problem, usize::MAX)? {
+            Some(elimination) => Ok(Some(elimination)),
+            None => Self::cut(problem, LONG),
+        }
+    }
+
+    /// Returns `true` if a long equality is cut: its own pair of rows, put into a factor, would fill that.
+    pub fn is_cut(&self) -> bool {
+        !self.sums.is_empty()
+    }
+
+    /// The same with equalities of more than `long` dofs cut.
+    fn cut(problem: &ContactProblem, long: usize) -> Result<Option<Self>, Error> {
         let (equalities, by_row) = (problem.equalities().to_vec(), problem.contact().transposed());
         // Short rows first: they fill the others least.
         let mut order: Vec<usize> = (0..equalities.len()).collect();
@@ -53,19 +83,41 @@ impl Elimination {
             .map(|dof| problem.stiffness().lower().column(dof).count() + problem.contact().column(dof).count())
             .collect();
         let most = FEW + FILL * problem.stiffness().entries();
-        let (mut found, mut fill) = (Found::default(), 0);
+        let (mut found, mut fill, mut all_sums) = (Found::default(), 0, Vec::new());
+        // Sums come after the dofs, and follow from no equality but their own.
+        let rank = |dof: usize| (of_equalities.get(dof).copied().unwrap_or(0), columns.get(dof).copied().unwrap_or(0));
         for number in order {
             let row = equalities[number].row;
             let entries: Sparse =
                 by_row.column(row).filter(|entry| entry.1 != 0.0).map(|(dof, b)| (dof, b.into())).collect();
             match found.reduced(&entries, problem.gap()[row].into(), (number, FOLLOWS)) {
-                Reduced::Row(pivot) => {
-                    let Some(dof) = pivot.best(|dof| (of_equalities[dof], columns[dof])) else { return Ok(None) };
-                    fill += pivot.others.len() * (pivot.others.len() + columns[dof]);
-                    if fill > most {
+                Reduced::Row(mut pivot) => {
+                    let mut solve_for = |pivot: Pivot, share: f64| {
+                        let dof = pivot.best(share, rank)?;
+                        fill += pivot.others.len() * (pivot.others.len() + rank(dof).1);
+                        found.solve_for(dof, pivot);
+                        (fill <= most).then_some(())
+                    };
+                    while pivot.others.len() > long {
+                        let mut of_sums = Sparse::new();
+                        for part in pivot.others.chunks(CUT) {
+                            let (sum, number) = (problem.dofs() + all_sums.len(), equalities.len() + all_sums.len());
+                            // In the unit of its dofs, and no pivot itself.
+                            let unit: Twice = (NO_PIVOT * ldexp(1.0, exponent(largest(part)))).into();
+                            let others = part.iter().copied().chain([(sum, -unit)]).collect();
+                            let weights = vec![(number, 1.0.into())];
+                            of_sums.push((sum, unit));
+                            all_sums.push(part.iter().map(|&(dof, a)| (dof, a / unit)).collect());
+                            if solve_for(Pivot { dof: 0, constant: Twice::ZERO, others, weights }, CUT_PIVOT).is_none()
+                            {
+                                return Ok(None);
+                            }
+                        }
+                        pivot.others = of_sums;
+                    }
+                    if solve_for(pivot, PIVOT).is_none() {
                         return Ok(None);
                     }
-                    found.solve_for(dof, pivot);
                 }
                 Reduced::Follows { .. } => {}
                 Reduced::Contradicts(weights) => {
@@ -78,18 +130,18 @@ impl Elimination {
                 Reduced::Unclear => return Ok(None),
             }
         }
-        Ok(Some(Self::with(problem, equalities, found.pivots)))
+        Ok(Some(Self::with(problem, equalities, (found.pivots, all_sums))))
     }
 
-    fn with(problem: &ContactProblem, equalities: Vec<Equality>, pivots: Vec<Pivot>) -> Self {
-        let mut place = vec![Ok(0); problem.dofs()];
+    fn with(problem: &ContactProblem, equalities: Vec<Equality>, (pivots, sums): (Vec<Pivot>, Vec<Sparse>)) -> Self {
+        let mut place = vec![Ok(0); problem.dofs() + sums.len()];
         pivots.iter().enumerate().for_each(|(number, pivot)| place[pivot.dof] = Err(number));
-        let dofs: Vec<usize> = (0..problem.dofs()).filter(|&dof| place[dof].is_ok()).collect();
+        let dofs: Vec<usize> = (0..place.len()).filter(|&dof| place[dof].is_ok()).collect();
         dofs.iter().enumerate().for_each(|(number, &dof)| place[dof] = Ok(number));
         let mut is_equality = vec![false; problem.rows()];
         equalities.iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| is_equality[row] = true);
         let rows = (0..problem.rows()).filter(|&row| !is_equality[row]).collect();
-        Elimination { equalities, pivots, place, dofs, rows }
+        Elimination { equalities, pivots, sums, place, dofs, rows }
     }
 
     /// The problem in the dofs that stay.
@@ -171,7 +223,7 @@ impl Elimination {
     /// `Z'(f - K u_0)`.
     fn load(&self, problem: &ContactProblem) -> Vec<f64> {
         let constant = |dof: usize| self.place[dof].err().map_or(Twice::ZERO, |pivot| self.pivots[pivot].constant);
-        let mut forces: Vec<Sum> = vec![Sum::default(); problem.dofs()];
+        let mut forces: Vec<Sum> = vec![Sum::default(); self.place.len()];
         forces.iter_mut().zip(problem.load()).for_each(|(force, &f)| force.add(f.into()));
         for (row, column, value) in problem.stiffness().lower().triplets() {
             let value = Twice::from(value);
@@ -189,9 +241,13 @@ impl Elimination {
         load.into_iter().map(|sum| sum.settled().rounded()).collect()
     }
 
-    /// The entries of those dofs that stay, of one for each dof.
+    /// The entries of those dofs and sums that stay, of one for each dof.
     pub fn staying(&self, of_dofs: &[f64]) -> Vec<f64> {
-        self.dofs.iter().map(|&dof| of_dofs[dof]).collect()
+        let mut all = of_dofs.to_vec();
+        for sum in &self.sums {
+            all.push(sum.iter().fold(Twice::ZERO, |all_terms, &(dof, a)| all_terms + a * all[dof].into()).rounded());
+        }
+        self.dofs.iter().map(|&dof| all[dof]).collect()
     }
 
     /// The set of the rows that stay, from one of all rows.
@@ -209,18 +265,19 @@ impl Elimination {
             Ok(place) => y[place],
             Err(pivot) => given(&self.pivots[pivot]),
         };
-        self.place.iter().map(value).collect()
+        self.place[..self.place.len() - self.sums.len()].iter().map(value).collect()
     }
 
     /// The multipliers of the equalities, one for each, that balance these forces on the pivots.
     fn balancing(&self, force: &[f64]) -> Vec<f64> {
-        let mut multipliers = vec![Twice::ZERO; self.equalities.len()];
-        for pivot in &self.pivots {
+        // No force acts on a sum, and the equalities that define sums are none of the problem.
+        let mut multipliers = vec![Twice::ZERO; self.equalities.len() + self.sums.len()];
+        for pivot in self.pivots.iter().filter(|pivot| pivot.dof < force.len()) {
             for &(number, weight) in &pivot.weights {
                 multipliers[number] = multipliers[number] + weight * force[pivot.dof].into();
             }
         }
-        multipliers.into_iter().map(Twice::rounded).collect()
+        multipliers[..self.equalities.len()].iter().map(|sum| sum.rounded()).collect()
     }
 
     /// An answer in the dofs that stay as one of the whole, without a certificate.
@@ -263,11 +320,11 @@ impl Elimination {
 /// The rows of the pairs, each on the side of its weight, with their magnitudes.
 fn signed(equalities: &[Equality], weights: &Sparse) -> (Vec<usize>, Vec<f64>) {
     let of = |&(number, weight): &(usize, Twice)| {
-        let Equality { row, opposed, ratio } = equalities[number];
+        let &Equality { row, opposed, ratio } = equalities.get(number)?;
         let weight = weight.rounded();
-        if weight >= 0.0 { (row, weight) } else { (opposed, -weight / ratio) }
+        Some(if weight >= 0.0 { (row, weight) } else { (opposed, -weight / ratio) })
     };
-    weights.iter().filter(|entry| entry.1.rounded() != 0.0).map(of).unzip()
+    weights.iter().filter(|entry| entry.1.rounded() != 0.0).filter_map(of).unzip()
 }
 
 #[cfg(test)]
