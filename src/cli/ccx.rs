@@ -48,12 +48,22 @@ pub(super) fn run(options: &Ccx, watch: &Watch) -> Outcome {
     let Some(name) = options.job.as_ref().or(options.deck.as_ref()) else {
         return Outcome { ending: Ending::BadInput, ..Outcome::done(USAGE.to_string()) };
     };
-    let mut text = String::new();
-    let ending = answered(options, named_files(name), watch, &mut text).unwrap_or_else(|error| {
-        text += &format!(" *ERROR: {}\n", sentence(&error));
+    let mut said = Said::default();
+    let ending = answered(options, named_files(name), watch, &mut said);
+    let Said { mut text, step } = said;
+    let ending = ending.unwrap_or_else(|error| {
+        let step = step.map_or_else(String::new, |step| format!("step {step}: "));
+        text += &format!(" *ERROR: {step}{}\n", sentence(&error));
         failed(&error, Format::Text).ending
     });
     Outcome { ending, ..Outcome::done(text) }
+}
+
+/// Warnings and reports, and the step that is being solved, if there are several.
+#[derive(Default)]
+struct Said {
+    text: String,
+    step: Option<usize>,
 }
 
 /// The file of a deck, and its name without the ending.
@@ -71,9 +81,9 @@ fn with_ending(stem: &Path, ending: &str) -> PathBuf {
     name.into()
 }
 
-/// Solves the steps of the deck in `file` and writes the files of its name `stem`; `text` gets warnings and reports.
+/// Solves the steps of the deck in `file` and writes the files of its name `stem`.
 /// The files of an earlier run are gone from the start, and fields are written last, of certified answers only.
-fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, text: &mut String) -> Result<Ending, Error> {
+fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, said: &mut Said) -> Result<Ending, Error> {
     let folder = with_ending(&stem, ".signorini");
     CalculixFiles::remove(&stem)?;
     let of_steps = (1..).map(|step| folder.join(format!("step-{step}"))).take_while(|folder| folder.exists());
@@ -81,7 +91,7 @@ fn answered(options: &Ccx, [file, stem]: [PathBuf; 2], watch: &Watch, text: &mut
         .chain(of_steps)
         .try_for_each(|folder| remove_files(&folder, &["report.html", "report.json"]))?;
     let mut answers: Vec<(Answer, Requests)> = Vec::new();
-    let ending = steps_solved(options, [&file, &folder], watch, text, &mut answers);
+    let ending = steps_solved(options, [&file, &folder], watch, said, &mut answers);
     // A step without an answer leaves those of the steps before it.
     if !answers.is_empty() {
         CalculixFiles::new(&answers)?.write(&stem)?;
@@ -94,19 +104,21 @@ fn steps_solved(
     options: &Ccx,
     [file, folder]: [&Path; 2],
     watch: &Watch,
-    text: &mut String,
+    said: &mut Said,
     answers: &mut Vec<(Answer, Requests)>,
 ) -> Result<Ending, Error> {
     let deck = &options.limits.deck;
     let (mut step, mut earlier) = (deck.step.unwrap_or(1), Vec::new());
     loop {
-        let (scene, requests) = Scene::read_step(file, &deck.permits(), step, &earlier)?;
+        let read = Scene::read_step(file, &deck.permits(), step, &earlier);
+        said.step = Some(step).filter(|_| step > 1 || read.as_ref().is_ok_and(|(_, requests)| requests.steps > 1));
+        let (scene, requests) = read?;
         let scene = Scene { is_linear: deck.linear, ..scene };
         let of_step =
             if requests.steps > 1 && deck.step.is_none() { folder.join(format!("step-{step}")) } else { folder.into() };
         let mut options = options.clone();
         options.limits.deck.step = Some(step);
-        let (ending, answer) = solved(&options, file, of_step, (scene, &requests), watch, text)?;
+        let (ending, answer) = solved(&options, file, of_step, (scene, &requests), watch, &mut said.text)?;
         if ending != Ending::Certified || watch.is_stopped() {
             return Ok(ending);
         }

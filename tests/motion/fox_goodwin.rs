@@ -217,6 +217,19 @@ fn two_more_runs_estimate_the_errors_of_a_motion() {
     assert!(!error.resolved, "{error:?} of {}", own.summary.contact.peak_force());
 }
 
+/// The step of a bar is the time of a wave through a cell: half the step would be the same motion again.
+#[test]
+fn the_errors_of_a_bar_are_those_of_its_cells_alone() {
+    let value = scene_of("bouncing_bar", 20);
+    let scene: Scene = serde_json::from_value(value.clone()).unwrap();
+    let [own, finer] =
+        [20, 40].map(|cells| moved(&scene_of("bouncing_bar", cells), SchemeSpec::FoxGoodwin, 0.5).unwrap());
+    assert!((own.step / finer.step - 2.0).abs() < 1e-12, "{} {}", own.step, finer.step);
+    let error = MotionError::of(&scene, own.step, &own.summary, &Settings::default()).unwrap();
+    let apart = (finer.summary.contact.impulse - own.summary.contact.impulse).abs();
+    assert!((error.impulse - apart).abs() <= 1e-12 * own.summary.contact.impulse, "{error:?}, not {apart}");
+}
+
 #[test]
 fn the_command_prints_the_estimated_errors() {
     let desk = Desk::new();

@@ -454,6 +454,16 @@ fn an_edge_between_two_nodes_is_warned_of() {
         message.starts_with("between its nodes the body goes 1.") && message.contains("near [0.625, 0.5]"),
         "{message}"
     );
+    // A flat foot that stands on the floor as it is: what its nodes move is rounding.
+    let cells = |count: usize| json!({"points": [0, 1], "divisions": [count]});
+    let standing = json!({
+        "model": "axisymmetric", "material": {"young": 1e3, "poisson": 0.3},
+        "body": {"rectangle": {"x": cells(4), "y": cells(4)}},
+        "points": [{"name": "ram", "at": [0, 1], "force": [0, -10]}],
+        "ties": [{"coupling": {"point": "ram", "boundary": "top"}}],
+        "obstacles": [{"boundary": "bottom", "approach": "-y", "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}]
+    });
+    assert!(!solved(&standing).0.to_string().contains("between-nodes"));
 }
 
 /// A gap with the wrong sign in a problem directory: no row closes, and the answer is that of a free body.

@@ -7,7 +7,7 @@ use signorini::Model;
 use signorini::scene::Answer;
 use support::decks::Block;
 use support::draws::Draws;
-use support::scenes::{answer, built};
+use support::scenes::{answer, build};
 use support::{cases, seed};
 
 use super::decks;
@@ -352,7 +352,7 @@ fn no_row_of_random_assemblies_leads_through_a_body() {
     let (mut draws, mut rows) = (Draws(seed(20_261_129)), 0);
     for case in 0..cases(60, 400) {
         let Assembly { scene, boxes, .. } = assembly(&mut draws, true);
-        let model = built(&scene);
+        let model = build(&scene).unwrap_or_else(|error| panic!("case {case}: {error}: {scene}"));
         assert!(!is_through(&model, &boxes), "case {case}: {scene}");
         // Each body touches the next, and no other.
         assert_eq!(model.obstacles().len(), boxes.len() - 1, "case {case}: {scene}");

@@ -57,6 +57,28 @@ fn nodes_follow_a_reference_node_of_equations() {
     stretched(&answer(&(deck + &step("*CLOAD\n9001, 2, -3.\n"))), 3.0 / E);
 }
 
+/// In the plane direction 3 of a ROT NODE is the rotation, as direction 6 of its reference node is. Of other nodes it
+/// is the displacement that a plane model does not have.
+#[test]
+fn direction_3_of_a_rotation_node_turns_a_plane_rigid_body() {
+    let rigid = "*RIGID BODY, NSET=END, REF NODE=9001, ROT NODE=9002\n";
+    let equation = "*EQUATION\n2\n9001, 1, 1., 9003, 1, -1.\n";
+    for more in ["", equation] {
+        let deck = bar("CPS4", [2, 2, 0], 0.25, "X0, 1, 2\n") + rigid + more;
+        let turned = |cards: &str| {
+            answer(&(deck.clone() + &step(&format!("*BOUNDARY\n9001, 1, 2\n{cards}")))).displacement().to_vec()
+        };
+        let [by_node, by_reference, held] = ["9002, 3, 3, 0.01\n", "9001, 6, 6, 0.01\n", "9002, 3\n"].map(turned);
+        let off = by_node.iter().zip(&by_reference).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-15 && by_node.iter().any(|u| u.abs() > 4e-3) && held.iter().all(|u| u.abs() < 1e-15), "{off}");
+    }
+    let deck = bar("CPS4", [1, 1, 0], 0.25, "X0, 1, 2\n");
+    for cards in ["END, 3, 3, 0.01\n", "9003, 3, 3, 0.01\n"] {
+        let (_, message) = refusal(&(deck.clone() + &step(&format!("*BOUNDARY\n{cards}"))));
+        assert!(message.contains("a plane model has no displacement along z"), "{message}");
+    }
+}
+
 /// The end follows along x only, and may narrow; a moment bends the bar as a beam, exactly for elements with quadratic
 /// displacements.
 #[test]
@@ -188,14 +210,14 @@ fn couplings_that_cannot_be_read_are_refused_with_their_line() {
         (
             String::from("*EQUATION\n2\n9001, 1, 1., 9002, 1, 1.\n"),
             "*CLOAD\n9001, 1, 1.\n",
-            6,
-            "node 9002 is free in direction 1, and carries no force there",
+            1,
+            "the reference point `9002` is free in `x`; it carries no force there",
         ),
         (
             String::from("*EQUATION\n2\n9001, 1, 1., 9002, 1, 1.\n"),
             "*BOUNDARY\n9001, 1, 1, 0.5\n9002, 1\n",
             1,
-            "the displacements that are prescribed at reference nodes contradict this equation",
+            "the displacements that are prescribed at reference points contradict this equation",
         ),
     ] {
         let load = if load.is_empty() { "*CLOAD\nEND, 1, 1.\n" } else { load };
@@ -293,7 +315,7 @@ fn springs_and_constraints_that_cannot_be_read_are_refused_with_their_line() {
     };
     let grounded = spring("SPRING1", "9001", "1\n5.\n");
     for (cards, line, phrase) in [
-        (grounded.clone(), 1, "node 9001 is free in direction 1; nothing but springs holds it"),
+        (grounded.clone(), 1, "the reference point `9001` is free in `x`; nothing but springs holds it"),
         (grounded.replace("*SPRING, ", "*SPRING, NONLINEAR, "), 2, "the parameter NONLINEAR, which is not read"),
         (grounded.replace("*SPRING, ELSET=S", "*SPRING, ELSET=T"), 2, "there is no set of elements `T`"),
         (grounded.replace("*SPRING, ELSET=S", "*SPRING"), 2, "*SPRING names no elements"),

@@ -51,6 +51,37 @@ fn the_width_of_a_contact_has_the_derivatives_that_differences_show() {
     }
 }
 
+/// GOAL: outputs of one obstacle are those of its rows.
+/// CONDITIONS: a block between a sharp and a blunt circle at different depths.
+/// REFERENCE: differences; the width of all is the sum, the peak of all is the larger one, the note names the sum.
+#[test]
+fn outputs_of_one_obstacle_have_its_own_derivatives() {
+    let circle = |boundary: &str, approach: &str, y: f64, radius: f64| {
+        let shape = json!({"circle": {"apex": [0.7, y], "radius": radius}});
+        json!({"boundary": boundary, "approach": approach, "gap": -0.004 * radius, "shape": shape})
+    };
+    let scene = json!({
+        "model": "plane-stress", "material": {"young": 1e6, "poisson": 0.34},
+        "body": {"rectangle": {"x": {"points": [0, 1.4], "divisions": [12]}, "y": {"points": [0, 1.1], "divisions": [6]}}},
+        "supports": [{"on": {"boundary": "left"}, "x": 0, "y": 0}, {"on": {"boundary": "right"}, "x": 0, "y": 0}],
+        "obstacles": [circle("top", "+y", 1.1, 1.0), circle("bottom", "-y", 0.0, 4.0)]
+    });
+    let scene = Scene::from_json(&scene.to_string(), "press").unwrap();
+    let found = wrong_slopes(&scene);
+    assert!(found.wrong.is_empty(), "{:#?}", found.wrong);
+    let names = ["width", "peak-pressure", "force"];
+    let all = names.iter().flat_map(|name| ["", "obstacles[0].", "obstacles[1]."].map(|of| format!("{of}{name}")));
+    let all: Vec<String> = all.collect();
+    let outputs: Vec<&str> = all.iter().map(String::as_str).collect();
+    let found = scene.sensitivity(&outputs, &["young"], &Settings::default()).unwrap().outputs;
+    let value = |place: usize| found[place].value;
+    assert!((value(0) - value(1) - value(2)).abs() < 1e-12 && value(1) > 0.0 && value(2) > 0.0, "{found:?}");
+    assert!(value(3) == value(4).max(value(5)) && value(4) != value(5), "{found:?}");
+    let noted: Vec<bool> =
+        found.iter().map(|output| output.notes.iter().any(|note| note.contains("sum over"))).collect();
+    assert_eq!(noted, [true, false, false, false, false, false, true, false, false]);
+}
+
 #[test]
 fn derivatives_with_respect_to_the_gap_are_the_slopes_of_the_exact_path() {
     let scenes = (1..=12).map(|seed| plane_scenes::scene(seed).0);

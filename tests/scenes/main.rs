@@ -25,6 +25,7 @@ mod mortar;
 mod obstacle_rows;
 mod obstacles_in_space;
 mod parts;
+mod points;
 mod preload;
 mod pressed;
 mod resultants;

@@ -3,8 +3,11 @@
 //! by independent arithmetic.
 
 use serde_json::{Value, json};
-use signorini::{Error, Scene, qp, solve_qp};
+use signorini::{Error, Model, Scene, qp, solve_qp};
+use support::draws::Draws;
 use support::oracles::Dense;
+use support::scenes::build;
+use support::{cases, seed};
 
 /// Rounding of K d for a null vector d, relative to its terms.
 const NULL: f64 = 1e-9;
@@ -58,7 +61,7 @@ fn floor(model: &str) -> Value {
 /// Supports, obstacles and the words that name a motion, or `None` if the body has enough supports.
 type Case = (&'static str, Vec<Value>, bool, Option<&'static str>);
 
-fn cases() -> Vec<Case> {
+fn single_bodies() -> Vec<Case> {
     let mut cases: Vec<Case> = Vec::new();
     let mut add = |model, supports: Vec<Value>, on_floor, motion| cases.push((model, supports, on_floor, motion));
     // A bar can only translate.
@@ -203,7 +206,7 @@ fn cases() -> Vec<Case> {
 #[test]
 fn exactly_the_bodies_without_enough_supports_are_refused_with_their_motion() {
     let (mut caught, mut held, mut wrong) = (0, 0, Vec::new());
-    for (model, supports, on_floor, motion) in cases() {
+    for (model, supports, on_floor, motion) in single_bodies() {
         let obstacles = if on_floor { json!([floor(model)]) } else { json!([]) };
         let text = scene(model, &json!(supports), &obstacles).to_string();
         let built = Scene::from_json(&text, "scene").unwrap().build();
@@ -307,4 +310,79 @@ fn contradicting_rows_have_farkas_weights_and_an_overlap() {
     assert_eq!(problem.overlap(&[0, 1], &[1.0, -1.0]), None, "a weight is negative");
     assert_eq!(problem.overlap(&[0, 2], &[1.0, 1.0]), None, "there is no row 2");
     assert_eq!(problem.overlap(&[], &[]), None);
+}
+
+/// GOAL: bodies that ties or bolts join move together, and what the load drives off is named on every mesh.
+///
+/// CONDITIONS: two or three columns on a floor, tied to a cap, all with meshes that do not match; they are lifted,
+/// pressed, or tipped over; then two halves of a bolt, of which a tension draws the upper one in, or a shortening.
+#[test]
+fn joined_bodies_that_the_load_drives_off_are_named_and_others_are_answered() {
+    let mut draws = Draws(seed(17));
+    for case in 0..cases(6, 60) {
+        let mut count = || 1 + draws.below(3);
+        let (columns, width, height) = (2 + count() / 3, [1.0, 0.33, 7.1][count() - 1], [2.0, 3.17][count() / 3]);
+        let mut solid = |x: [f64; 2], z: [f64; 2]| {
+            let mut axis = |ends: [f64; 2]| json!({"points": ends, "divisions": [count()]});
+            json!({"box": {"x": axis(x), "y": axis([0.0, width]), "z": axis(z)}})
+        };
+        let material = json!({"young": 2.1e5, "poisson": 0.3});
+        let end = 2.0 * columns as f64 * width;
+        let standing: Vec<Value> = (0..columns)
+            .map(|column| {
+                let from = 2.0 * column as f64 * width;
+                json!({"name": format!("c{column}"), "material": material, "body": solid([from, from + width], [0.0, height])})
+            })
+            .collect();
+        let names = || standing.iter().map(|body| body["name"].as_str().unwrap());
+        let mut scene = json!({
+            "model": "space", "material": material, "body": solid([0.0, end], [height, height + width]),
+            "further-bodies": standing,
+            "ties": names().map(|name| json!({"surfaces": {"boundary": format!("{name}.top"), "to": "bottom"}})).collect::<Vec<_>>(),
+            "obstacles": names().map(|name| {
+                let mut floor = floor("space");
+                floor["boundary"] = json!(format!("{name}.bottom"));
+                floor
+            }).collect::<Vec<_>>(),
+        });
+        let held =
+            |at: [f64; 3], free: &str| json!([boundary("front", json!({"y": 0})), point(json!(at), json!({free: 0}))]);
+        let guides = json!([boundary("front", json!({"y": 0})), boundary("left", json!({"x": 0}))]);
+        let hinge = held([0.0, 0.0, height + width], "x");
+        let pressed = |by: f64| json!({"pressure": {"boundary": "top", "value": by}});
+        let tipped = json!({"moment": {"boundary": "top", "value": [0, 9.0 * end * end * width, 0]}});
+        for (supports, loads, named) in [
+            (&guides, json!([pressed(1.0)]), None),
+            (&guides, json!([pressed(-1.0)]), Some("translation along z")),
+            (&hinge, json!([pressed(1.0)]), None),
+            (&hinge, json!([pressed(1.0), tipped]), Some("rotation about y")),
+        ] {
+            (scene["supports"], scene["loads"]) = (supports.clone(), loads);
+            ends(&scene, named, &format!("case {case}"));
+        }
+        scene = json!({
+            "model": "space", "material": material, "body": solid([0.0, width], [0.0, height]),
+            "further-bodies": [{"name": "up", "material": material, "body": solid([0.0, width], [height, 2.0 * height])}],
+            "supports": [boundary("bottom", json!({"x": 0, "y": 0, "z": 0}))],
+            "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [2.0 * width, 0, 0], "normal": [1, 0, 0]}}}],
+            "loads": [],
+        });
+        for (key, named) in [("force", Some("translation along z of `up`")), ("shortening", None)] {
+            scene["ties"] = json!([{"preload": {"boundary": "top", "to": "up.bottom", key: 1e-3}}]);
+            ends(&scene, named, &format!("case {case}, {key}"));
+        }
+    }
+}
+
+/// Checks that the load drives this motion, named or not, or that there is an answer.
+#[track_caller]
+fn ends(scene: &Value, named: Option<&str>, case: &str) {
+    let solved = |model: Model| solve_qp(model.problem()).map(drop).map_err(|error| model.explain(error));
+    match (build(scene).and_then(solved), named) {
+        (Ok(()), None) => {}
+        (Err(Error::Qp(qp::Error::Unbounded { mode, .. } | qp::Error::UnderHeld { mode, .. })), Some(named)) => {
+            assert!(mode.contains(named), "{case}: {mode}, not {named}");
+        }
+        (ended, _) => panic!("{case}: {ended:?}, not {named:?}"),
+    }
 }

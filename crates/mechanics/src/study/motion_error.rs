@@ -36,12 +36,12 @@ impl MotionError {
     /// [`Error::Scene`] for a body from a mesh file, which cannot be refined; those of the scene and of its steps;
     /// [`qp::Error::Interrupted`] if the watch of `settings` stops a run.
     pub fn of(scene: &Scene, step: f64, summary: &MotionSummary, settings: &Settings) -> Result<Self, Error> {
-        let finer = [scene.clone(), scene.refined(2)?];
-        let [same, finer] =
-            [summary_of(&finer[0], step / 2.0, settings)?, summary_of(&finer[1], step / 2.0, settings)?];
+        let finer = scene.refined(2)?;
+        // The step of a bar is the time of a wave through a cell, whatever is asked for: half of it is the same motion.
+        let same = summary_of(scene, step / 2.0, step, settings)?;
+        let finer = summary_of(&finer, step / 2.0, f64::INFINITY, settings)?;
         let apart = |value: &dyn Fn(&MotionSummary) -> f64| {
-            let own = value(summary);
-            (value(&same) - own).abs() + (value(&finer) - own).abs()
+            same.iter().chain(&finer).map(|other| (value(other) - value(summary)).abs()).sum::<f64>()
         };
         let of_window = (summary.contact.peak_force() - summary.contact.wide_peak()).abs();
         let peak_force = apart(&|summary| summary.contact.peak_force()).max(of_window);
@@ -56,8 +56,8 @@ impl MotionError {
     }
 }
 
-/// The summary of a motion in steps of another length.
-fn summary_of(scene: &Scene, step: f64, settings: &Settings) -> Result<MotionSummary, Error> {
+/// The summary of a motion in steps of another length; `None` if the step is `known` all the same.
+fn summary_of(scene: &Scene, step: f64, known: f64, settings: &Settings) -> Result<Option<MotionSummary>, Error> {
     let mut scene = scene.clone();
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
         (spec.step, spec.courant) = (Some(step), None);
@@ -65,6 +65,9 @@ fn summary_of(scene: &Scene, step: f64, settings: &Settings) -> Result<MotionSum
     let model = scene.build()?;
     let still = || Error::Scene { path: "analysis".into(), message: "the scene does not move".into() };
     let dynamics = scene.dynamics(&model)?.ok_or_else(still)?;
+    if dynamics.step == known {
+        return Ok(None);
+    }
     let mut integrator = Integrator::new(dynamics.problem, dynamics.scheme, dynamics.step, settings)?;
     let mut summary =
         MotionSummary::starting(&model.of_whole(integrator.observe()), 0, dynamics.windows, dynamics.step);
@@ -76,5 +79,5 @@ fn summary_of(scene: &Scene, step: f64, settings: &Settings) -> Result<MotionSum
         integrator.advance()?;
         summary.add(&model.of_whole(integrator.observe()), &[]);
     }
-    Ok(summary)
+    Ok(Some(summary))
 }

@@ -9,7 +9,7 @@ use crate::fem::geometry::{along_axis, dot};
 use crate::scene::models::overlap::Overlap;
 use crate::scene::models::rigid_body_modes::soft::SoftMotion;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
-use signorini_qp::{Certificate, ContactProblem, Solution};
+use signorini_qp::{Certificate, ContactProblem, Solution, largest};
 
 /// Overlaps below this share of the size of the mesh are rounding of coordinates.
 const ROUNDING_OF_PLACES: f64 = 1e-12;
@@ -46,6 +46,9 @@ const ASIDE: f64 = 0.5;
 /// Allowed depth of a body in an obstacle between its nodes, as a share of the displacement that contact imposes: with
 /// two cells in each half of a smooth contact it is a sixteenth.
 const BETWEEN: f64 = 0.25;
+
+/// A displacement below this share of the largest is rounding: far above that of doubles.
+const ROUNDED: f64 = 1e-9;
 
 /// A motion that is softly held is visible above this share of the largest displacement.
 const VISIBLE: f64 = 0.1;
@@ -281,7 +284,9 @@ fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
             }
         }
     }
-    let (deep, index, at) = worst.filter(|_| dimension > 1 && depth > 0.0)?;
+    // Rows that closed without a displacement left its rounding.
+    let is_moved = depth > ROUNDED * largest(answer.displacement());
+    let (deep, index, at) = worst.filter(|_| dimension > 1 && is_moved)?;
     let (place, unit) = (&at[..dimension], &model.units().length);
     let message = format!(
         "between its nodes the body goes {deep:.2e} {unit} into obstacles[{index}], near {place:?}, {:.0} % of how far the contact moves \

@@ -18,12 +18,14 @@ pub(crate) struct Springs {
     pairs: Vec<(usize, usize, Block)>,
     /// The nodes of a spring between nodes, each with its vector in the elongation; empty for springs to the ground.
     elongation: Vec<(usize, [f64; 3])>,
+    /// The forces on nodes that do not move.
+    strained: Vec<(usize, [f64; 3])>,
 }
 
 impl Springs {
     /// Springs at a node, a stiffness along each axis.
     pub fn at_node(node: usize, along: [f64; 3]) -> Self {
-        Springs { pairs: vec![(node, node, diagonal(along))], elongation: Vec::new() }
+        Springs { pairs: vec![(node, node, diagonal(along))], ..Springs::default() }
     }
 
     /// A foundation under a boundary: the stiffness (per area) along each axis and along the normal.
@@ -41,18 +43,20 @@ impl Springs {
                 }
             }
         });
-        Springs { pairs, elongation: Vec::new() }
+        Springs { pairs, ..Springs::default() }
     }
 
-    /// A spring along an elongation: the sum of the displacements of nodes along vectors.
-    pub fn between(elongation: &[(usize, [f64; 3])], stiffness: f64) -> Self {
+    /// A spring along an elongation: the sum of the displacements of nodes along vectors, and a length.
+    pub fn between(elongation: &[(usize, [f64; 3])], longer: f64, stiffness: f64) -> Self {
         let mut pairs = Vec::with_capacity(elongation.len() * elongation.len());
         for (a, of_a) in elongation {
             for (b, of_b) in elongation {
                 pairs.push((*a, *b, of_a.map(|i| of_b.map(|j| stiffness * i * j))));
             }
         }
-        Springs { pairs, elongation: elongation.to_vec() }
+        let force = |vector: [f64; 3]| vector.map(|part| 0.0 - stiffness * longer * part);
+        let strained = elongation.iter().map(|&(node, vector)| (node, force(vector))).collect();
+        Springs { pairs, elongation: elongation.to_vec(), strained }
     }
 
     /// The forces of the springs on the nodes (length `dim * n_nodes`) at a nodal displacement.
@@ -63,6 +67,9 @@ impl Springs {
                 let along: f64 = (0..dimension).map(|j| block[i][j] * displacement[dimension * b + j]).sum();
                 forces[dimension * a + i] -= along;
             }
+        }
+        for (node, force) in &self.strained {
+            forces[dimension * node..dimension * (node + 1)].iter_mut().zip(force).for_each(|(sum, part)| *sum += part);
         }
         forces
     }

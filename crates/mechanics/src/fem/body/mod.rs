@@ -264,6 +264,15 @@ impl ElasticBody {
         self.formulation.dimension()
     }
 
+    /// The axes about which a rigid part of the body turns, in increasing order: at most three, 0 for x.
+    pub fn turns(&self) -> &'static [usize] {
+        match self.dimension() {
+            2 if !self.formulation.is_axisymmetric() => &[2],
+            3 => &[0, 1, 2],
+            _ => &[],
+        }
+    }
+
     /// Number of nodal dofs, `dimension * n_nodes`.
     pub fn nodal_dofs(&self) -> usize {
         self.dimension() * self.mesh.nodes().len()

@@ -229,10 +229,11 @@ impl Answer {
         [self.multiplier.as_slice(), &self.of_ties].concat()
     }
 
-    /// The multiplier of the equation of a tie; `None` for one without, as if it follows from others.
-    pub(crate) fn multiplier_of_tie(&self, tie: usize) -> Option<f64> {
-        let rows = self.model.parts.ties.of_tie.get(tie)?;
-        self.of_ties.get(rows.start).filter(|_| !rows.is_empty()).copied()
+    /// Of each reference point the displacements and rotations, and the forces and moments from outside; see
+    /// [`ReferencePoints::values`](crate::scene::models::points::ReferencePoints::values).
+    pub(crate) fn values_of_points(&self) -> Vec<[[f64; 6]; 2]> {
+        let displacement = |node: usize| self.model.at_node(&self.displacement, node);
+        self.model.parts.points.values(displacement, &self.model.parts.ties.rows, &self.of_ties)
     }
 
     /// The answer with other multipliers of the rows: only its pressures are computed again.
@@ -326,6 +327,7 @@ impl Answer {
             all.extend(self.model.spring_resultants(&self.displacement));
             all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
             all.extend(self.model.tie_resultants(&self.of_ties, &self.unknowns));
+            all.extend(self.model.point_resultants(&self.values_of_points()));
             all.extend(self.model.load_resultant());
             without_rounding(&mut all);
             Ok(all)

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::answer::Answer;
 use crate::error::Error;
 use crate::fem::geometry::cross;
-use crate::scene::input::deck::reference_node::{Amount, Part};
+use crate::scene::input::deck::reference_node::{Of, ReferenceNode};
 use crate::scene::input::deck::requests::Requests;
 use crate::scene::models::resultants::Resultant;
 
@@ -17,24 +17,36 @@ impl Answer {
     /// # Errors
     /// As [`Answer::forces`].
     pub fn of_references(&self, requests: &Requests) -> Result<HashMap<usize, [[f64; 6]; 2]>, Error> {
-        if requests.references.is_empty() {
-            return Ok(HashMap::new());
-        }
-        let numbers = self.model().mesh().node_numbers().unwrap_or_default();
-        let places: HashMap<usize, usize> = numbers.into_iter().zip(0..).collect();
         let resultants = self.resultants()?;
-        let values = |node: usize, amounts: &[Amount; 6]| {
-            let values = amounts.each_ref().map(|amount| self.amount(amount, &places, resultants));
+        let named = |of: String| resultants.iter().find(|one| one.of == of);
+        // The points of a deck are called by the numbers of their nodes.
+        let points = self.model().parts.points.all.iter().zip(self.values_of_points());
+        let mut all: HashMap<usize, [[f64; 6]; 2]> =
+            points.filter_map(|(point, values)| Some((point.name.parse().ok()?, values))).collect();
+        let of_node = |node: &ReferenceNode| {
+            let values = match node.of {
+                Of::Turns { point } => all.get(&point).map(|values| values.map(|of_point| from(3, of_point))),
+                Of::Face { face, first, centre } => {
+                    named(format!("rigid-faces[{face}]")).map(|one| self.of_face(one, centre, first))
+                }
+                // The node of a bolt moves along the direction of the deck.
+                Of::Bolt { tie } => named(format!("ties[{tie}]")).map(|one| {
+                    let bolts = &self.model().parts.ties.shortenings;
+                    let sense = bolts.iter().find(|bolt| bolt.tie == tie).map_or(1.0, |bolt| bolt.sense);
+                    let along = |part: Option<f64>| [sense * part.unwrap_or(0.0), 0.0, 0.0, 0.0, 0.0, 0.0];
+                    [along(one.shortening), along(one.tension)]
+                }),
+            };
+            (node.number, values.unwrap_or_default())
+        };
+        let along_axes = |node: usize, values: [f64; 6]| {
             // Components of a node with local axes are along these.
             let Some(axes) = requests.axes.get(&node) else { return values };
             let along = |axis: usize| (0..3).map(|own| values[own] * axes[own][axis]).sum();
             [along(0), along(1), along(2), values[3], values[4], values[5]]
         };
-        let of_node = requests
-            .references
-            .iter()
-            .map(|node| (node.number, [&node.displacement, &node.force].map(|amounts| values(node.number, amounts))));
-        Ok(of_node.collect())
+        all.extend(requests.references.iter().map(of_node).collect::<Vec<_>>());
+        Ok(all.into_iter().map(|(number, values)| (number, values.map(|values| along_axes(number, values)))).collect())
     }
 
     /// The displacement of each node of the deck that this is an answer to, in length, and the rotation of its
@@ -53,37 +65,24 @@ impl Answer {
         Ok(references.into_iter().map(|(number, [displacement, _])| (number, displacement)).chain(of_mesh).collect())
     }
 
-    fn amount(&self, amount: &Amount, places: &HashMap<usize, usize>, resultants: &[Resultant]) -> f64 {
-        let named = |of: String| resultants.iter().find(|one| one.of == of);
-        let face = |face: usize| named(format!("rigid-faces[{face}]"));
-        let tie = |tie: usize| named(format!("ties[{tie}]"));
-        // The node of a bolt moves along the direction of the deck.
-        let bolts = &self.model().parts.ties.shortenings;
-        let sense = |tie: usize| bolts.iter().find(|bolt| bolt.tie == tie).map_or(1.0, |bolt| bolt.sense);
-        let value = |part: Part| match part {
-            Part::Displacement(number, axis) => {
-                places.get(&number).map(|&node| self.model().at_node(self.displacement(), node)[axis])
-            }
-            Part::Multiplier(tie) => self.multiplier_of_tie(tie),
-            Part::Motion(number, kind) => {
-                let motion = face(number).and_then(|face| face.motion.as_ref());
-                motion.and_then(|motion| match kind {
-                    0..3 => motion.displacement.get(kind).copied(),
-                    _ => motion.rotation.get(if motion.rotation.len() == 1 { 0 } else { kind - 3 }).copied(),
-                })
-            }
-            Part::Force(number, kind, centre) => face(number).map(|face| {
-                let force = [0, 1, 2].map(|axis| face.force.get(axis).copied().unwrap_or(0.0));
-                let moment = match face.moment[..] {
-                    [z] => [0.0, 0.0, z],
-                    [x, y, z] => [x, y, z],
-                    _ => return if kind < 3 { force[kind] } else { 0.0 },
-                };
-                if kind < 3 { force[kind] } else { moment[kind - 3] - cross(centre, force)[kind - 3] }
-            }),
-            Part::Shortening(number) => tie(number).and_then(|tie| Some(sense(number) * tie.shortening?)),
-            Part::Tension(number) => tie(number).and_then(|tie| Some(sense(number) * tie.tension?)),
+    /// Motion and force of a rigid face about a centre, from the motion `first` on.
+    fn of_face(&self, face: &Resultant, centre: [f64; 3], first: usize) -> [[f64; 6]; 2] {
+        let turns = self.model().body().turns();
+        let in_six = |along: &[f64], about: &[f64]| {
+            let mut all = [0.0; 6];
+            all.iter_mut().zip(along).for_each(|(all, part)| *all = *part);
+            turns.iter().zip(about).for_each(|(&axis, part)| all[3 + axis] = *part);
+            all
         };
-        amount.parts.iter().fold(amount.constant, |sum, &(factor, part)| sum + factor * value(part).unwrap_or(0.0))
+        let moved = face.motion.as_ref().map_or([0.0; 6], |motion| in_six(&motion.displacement, &motion.rotation));
+        let mut force = in_six(&face.force, &face.moment);
+        let about = cross(centre, [force[0], force[1], force[2]]);
+        turns.iter().for_each(|&axis| force[3 + axis] -= about[axis]);
+        [from(first, moved), from(first, force)]
     }
+}
+
+/// The values from this one on, and zeros.
+fn from(first: usize, all: [f64; 6]) -> [f64; 6] {
+    [0, 1, 2, 3, 4, 5].map(|kind| all.get(first + kind).copied().unwrap_or(0.0))
 }

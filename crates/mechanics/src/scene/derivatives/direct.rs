@@ -2,7 +2,7 @@
 
 use super::differences::derivative;
 use super::effect::Why;
-use super::output::{Branch, Direct, by_component, moment_of, stress_of};
+use super::output::{Branch, Direct, by_component, moment_of, obstacles_of, stress_of};
 use super::places::{Slopes, add_width, areas_by_places};
 use crate::fem::assembly::{internal_work_by_places, own_energy_by_places};
 use crate::fem::body::BodyElement;
@@ -18,7 +18,7 @@ impl Branch {
         let mut gradient = vec![0.0; body.nodal_dofs()];
         match &self.direct {
             Direct::None => {}
-            Direct::Width => {
+            Direct::Width(obstacle) => {
                 // The width depends on the pressures, the forces of rows over their areas.
                 let rows = model.rows().iter().zip(answer.multiplier()).zip(&self.by_multiplier);
                 let weight = |((row, lambda), by_force): ((&ContactRow, &f64), &f64)| match *by_force {
@@ -26,7 +26,7 @@ impl Branch {
                     by_force => -by_force * lambda / row.projected_area(),
                 };
                 gradient = areas_by_places(model, &rows.map(weight).collect::<Vec<f64>>())?;
-                for obstacle in 0..model.obstacles().len() {
+                for obstacle in obstacles_of(model, *obstacle) {
                     add_width(answer, obstacle, model.parts_of_whole(), &mut gradient)?;
                 }
             }

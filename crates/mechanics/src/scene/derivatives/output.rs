@@ -36,15 +36,15 @@ pub(crate) struct Output {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// The sum of the contact forces, on one obstacle or on all, of the whole body.
+    /// The sum of the contact forces, of the whole body. This and the next two are of one obstacle or of all.
     Force(Option<usize>),
+    PeakPressure(Option<usize>),
+    Width(Option<usize>),
     /// The moment of the contact forces of an obstacle about an axis through the origin, of the whole body.
     Moment(usize, usize),
     Travel(usize),
-    PeakPressure,
     /// At the candidate nearest to a place.
     PressureAt([f64; 3]),
-    Width,
     LargestDisplacement,
     StrainEnergy,
     /// A component of the stress of the element at a place.
@@ -80,8 +80,8 @@ pub(super) enum Direct {
         at: [f64; 3],
         component: usize,
     },
-    /// Of a width, on the places of nodes and on the areas of its rows.
-    Width,
+    /// Of a width, on one obstacle or on all, on the places of nodes and on the areas of its rows.
+    Width(Option<usize>),
 }
 
 impl Output {
@@ -90,13 +90,14 @@ impl Output {
         let dimension = model.body().dimension();
         let place = ["X", "X,Y", "X,Y,Z"][dimension - 1];
         let mut names: Vec<String> = Vec::new();
+        let of_contact = ["force", "peak-pressure", "width"];
+        let of_contact = &of_contact[..if dimension == 2 { 3 } else { 2 }];
         if !model.obstacles().is_empty() {
-            names.extend(["force", "peak-pressure"].map(String::from));
+            names.extend(of_contact.iter().map(|name| name.to_string()));
             names.push(format!("pressure@{place}"));
-            names.extend((dimension == 2).then(|| "width".to_string()));
         }
         for (index, _) in model.obstacles().iter().enumerate() {
-            names.push(format!("obstacles[{index}].force"));
+            names.extend(of_contact.iter().map(|name| format!("obstacles[{index}].{name}")));
             match dimension {
                 2 if !model.body().formulation().is_axisymmetric() => names.push(format!("obstacles[{index}].moment")),
                 3 => names.extend((0..3).map(|axis| format!("obstacles[{index}].moment[{axis}]"))),
@@ -133,22 +134,19 @@ impl Output {
     }
 
     fn plain(name: &str) -> Option<Kind> {
-        Some(match name {
-            "force" => Kind::Force(None),
-            "peak-pressure" => Kind::PeakPressure,
-            "width" => Kind::Width,
+        let (obstacle, what) = match name.strip_prefix("obstacles[").and_then(|rest| rest.split_once("].")) {
+            Some((index, what)) => (Some(index.parse().ok()?), what),
+            None => (None, name),
+        };
+        Some(match what {
+            "force" => Kind::Force(obstacle),
+            "peak-pressure" => Kind::PeakPressure(obstacle),
+            "width" => Kind::Width(obstacle),
+            "travel" => Kind::Travel(obstacle?),
+            "moment" => Kind::Moment(obstacle?, 2),
             "largest-displacement" => Kind::LargestDisplacement,
             "strain-energy" => Kind::StrainEnergy,
-            _ => {
-                let (index, what) = name.strip_prefix("obstacles[")?.split_once("].")?;
-                let index = index.parse().ok()?;
-                match what {
-                    "force" => Kind::Force(Some(index)),
-                    "travel" => Kind::Travel(index),
-                    "moment" => Kind::Moment(index, 2),
-                    axis => Kind::Moment(index, axis.strip_prefix("moment[")?.strip_suffix(']')?.parse().ok()?),
-                }
-            }
+            axis => Kind::Moment(obstacle?, axis.strip_prefix("moment[")?.strip_suffix(']')?.parse().ok()?),
         })
     }
 
@@ -183,9 +181,17 @@ impl Output {
         match self.kind {
             Kind::Force(_) => units.force.clone(),
             Kind::Moment(..) | Kind::StrainEnergy => product(),
-            Kind::Travel(_) | Kind::Width | Kind::LargestDisplacement => units.length.clone(),
-            Kind::PeakPressure | Kind::PressureAt(_) | Kind::StressAt(..) => units.pressure(),
+            Kind::Travel(_) | Kind::Width(_) | Kind::LargestDisplacement => units.length.clone(),
+            Kind::PeakPressure(_) | Kind::PressureAt(_) | Kind::StressAt(..) => units.pressure(),
         }
+    }
+
+    /// What the number does not say by itself: that it is of several obstacles.
+    pub(super) fn note(&self, model: &Model) -> Option<String> {
+        let count = model.obstacles().len();
+        let is_sum = matches!(self.kind, Kind::Force(None) | Kind::Width(None)) && count > 1;
+        is_sum
+            .then(|| format!("the sum over all {count} obstacles; `obstacles[0].{}` is of the first alone", self.name))
     }
 
     /// The branches of the output at an answer; several if values tie for the largest.
@@ -228,8 +234,10 @@ impl Output {
                 branch.by_displacement[travel] = 1.0;
                 vec![branch]
             }
-            Kind::PeakPressure => {
-                let rows: Vec<usize> = (0..lambda.len()).filter(|&row| has_own_pressure(answer, row)).collect();
+            Kind::PeakPressure(obstacle) => {
+                let is_of = |row: usize| obstacle.is_none_or(|own| own == model.rows()[row].obstacle);
+                let counts = |row: &usize| is_of(*row) && has_own_pressure(answer, *row);
+                let rows: Vec<usize> = (0..lambda.len()).filter(counts).collect();
                 let pressure = |row: usize| answer.pressure()[row];
                 let largest = rows.iter().fold(0.0, |largest: f64, &row| largest.max(pressure(row)));
                 if largest == 0.0 {
@@ -244,7 +252,7 @@ impl Output {
                 let nearest = rows.min_by(|a, b| away(a).total_cmp(&away(b))).ok_or("there are no candidates")?;
                 vec![of_pressure(answer, nearest, blank())]
             }
-            Kind::Width => vec![width(answer, blank())?],
+            Kind::Width(obstacle) => vec![width(answer, obstacle, blank())?],
             Kind::LargestDisplacement => {
                 let values = answer.displacement();
                 let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
@@ -302,14 +310,19 @@ fn of_pressure(answer: &Answer, row: usize, blank: Branch) -> Branch {
     Branch { of: format!("node {}", own.node), ..branch }
 }
 
+/// The obstacles that an output of one or of all of them is of.
+pub(super) fn obstacles_of(model: &Model, one: Option<usize>) -> std::ops::Range<usize> {
+    one.map_or(0..model.obstacles().len(), |obstacle| obstacle..obstacle + 1)
+}
+
 /// The estimated width of the contact: it depends on the forces of the rows next to its edges.
-fn width(answer: &Answer, blank: Branch) -> Result<Branch, Why> {
+fn width(answer: &Answer, obstacle: Option<usize>, blank: Branch) -> Result<Branch, Why> {
     let model = answer.model();
     let parts = model.parts_of_whole();
-    let of = |answer: &Answer| parts * (0..model.obstacles().len()).map(|index| answer.width_on(index)).sum::<f64>();
+    let of = |answer: &Answer| parts * obstacles_of(model, obstacle).map(|index| answer.width_on(index)).sum::<f64>();
     let lambda = answer.multiplier();
     let step = STEP_OF_FORCE * lambda.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
-    let mut branch = Branch { value: of(answer), direct: Direct::Width, ..blank };
+    let mut branch = Branch { value: of(answer), direct: Direct::Width(obstacle), ..blank };
     if step == 0.0 {
         return Err("nothing presses".to_string());
     }
@@ -412,7 +425,7 @@ impl Branch {
                 };
                 sorted(&effect.normals).iter().map(|(row, normal)| of_row((row, normal))).sum()
             }
-            Direct::Pressure(_) | Direct::Width => {
+            Direct::Pressure(_) | Direct::Width(_) => {
                 // A pressure is a force over the area that faces the obstacle, which changes with the normal.
                 let of_row = |(row, normal): &(usize, [f64; 3])| {
                     let own = &model.rows()[*row];

@@ -216,6 +216,7 @@ impl At<'_> {
             relative,
             places,
         };
+        let mut notes: Vec<String> = output.note(model).into_iter().collect();
         let (output, branches) = (output.name.clone(), output.branches(self.answer));
         let branches = match branches {
             Ok(branches) => branches,
@@ -253,10 +254,9 @@ impl At<'_> {
             });
         }
         let names: Vec<&str> = branches.iter().map(|branch| branch.of.as_str()).collect();
-        let notes = match names.len() {
-            1 => Vec::new(),
-            _ => vec![format!("{} tie for the largest value: the output itself has a kink", names.join(" and "))],
-        };
+        if names.len() > 1 {
+            notes.push(format!("{} tie for the largest value: the output itself has a kink", names.join(" and ")));
+        }
         Ok(Sensitivity { output, value, unit, by, notes })
     }
 

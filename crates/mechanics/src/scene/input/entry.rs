@@ -155,17 +155,18 @@ pub(crate) fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Erro
     let away = |node: &[f64; 3]| distance(*node, place);
     let tolerance = PLACE_TOLERANCE * mesh.size();
     let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| away(&mesh.nodes()[node]) <= tolerance).collect();
-    match (&there[..], mesh.nearest_node(place)) {
-        ([node], _) => Ok(*node),
-        ([one, other, ..], _) => {
-            let message =
-                format!("nodes {one} and {other} of two bodies lie at {}; name a boundary instead", point(at));
-            Err(wrong(path, message))
-        }
-        ([], Some((node, _))) => {
-            let nearest = point(&mesh.nodes()[node][..dimension]);
-            Err(wrong(path, format!("there is no node at {}; the nearest is node {node} at {nearest}", point(at))))
-        }
-        ([], None) => Err(wrong(path, "the mesh has no nodes")),
+    if let [node] = there[..] {
+        return Ok(node);
     }
+    let message = match (&there[..], mesh.nearest_node(place)) {
+        ([one, other, ..], _) => {
+            format!("nodes {one} and {other} of two bodies lie at {}; name a boundary instead", point(at))
+        }
+        (_, Some((node, _))) => {
+            let nearest = point(&mesh.nodes()[node][..dimension]);
+            format!("there is no node at {}; the nearest is node {node} at {nearest}", point(at))
+        }
+        (_, None) => "the mesh has no nodes".into(),
+    };
+    Err(wrong(path, message))
 }

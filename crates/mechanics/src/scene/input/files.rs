@@ -1,10 +1,16 @@
 //! The files that a scene names.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::hash::Hash;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use super::entry::wrong;
 use crate::error::Error;
+use crate::fem::GmshFile;
+use crate::fem::mesh::deck::Deck;
 use signorini_qp as qp;
 
 /// The folder of the files of a scene, and the permission to read them.
@@ -50,6 +56,37 @@ impl Files<'_> {
     pub fn length(&self, name: &str) -> f64 {
         std::fs::metadata(self.folder.join(name)).map_or(0.0, |about| about.len() as f64)
     }
+}
+
+/// What was read, by its key.
+type Kept<K, T> = RefCell<HashMap<K, Rc<T>>>;
+
+/// The files of meshes that the bodies of a scene share, each read once: decks up to a step, and those of Gmsh.
+#[derive(Default)]
+pub(crate) struct MeshFiles {
+    decks: Kept<(PathBuf, Option<usize>), Deck>,
+    meshes: Kept<PathBuf, GmshFile>,
+}
+
+impl MeshFiles {
+    /// The deck in a file, whose includes lie in `folder` if it is given.
+    pub fn deck(&self, file: PathBuf, folder: Option<&Path>, step: Option<usize>) -> Result<Rc<Deck>, Error> {
+        once(&self.decks, (file.clone(), step), || Deck::read(&file, folder, step))
+    }
+
+    pub fn gmsh(&self, file: PathBuf) -> Result<Rc<GmshFile>, Error> {
+        once(&self.meshes, file.clone(), || GmshFile::read(file))
+    }
+}
+
+/// What is kept for a key, or what is read for it.
+fn once<K: Eq + Hash, T>(kept: &Kept<K, T>, key: K, read: impl FnOnce() -> Result<T, Error>) -> Result<Rc<T>, Error> {
+    if let Some(found) = kept.borrow().get(&key) {
+        return Ok(found.clone());
+    }
+    let found = Rc::new(read()?);
+    kept.borrow_mut().insert(key, found.clone());
+    Ok(found)
 }
 
 /// The reason why a file that a scene names cannot be read, with the place of its name.

@@ -16,4 +16,5 @@ mod refine;
 pub(crate) mod roles;
 pub(crate) mod schema;
 pub(crate) mod size;
+pub(crate) mod sum;
 pub(crate) mod warning;

@@ -68,13 +68,15 @@ impl Scene {
 
     /// The model of all bodies in one.
     fn build_joined(&self, body: ElasticBody, further: &[(&str, Arc<dyn Obstacle>)]) -> Result<Model, Error> {
-        let (symmetry, springs) = (self.planes_of_symmetry(&body)?, self.springs(&body)?);
+        let (symmetry, points) = (self.planes_of_symmetry(&body)?, self.reference_points(&body)?);
+        let springs = self.springs(&body, &points)?;
         let mut held = self.held(&body)?;
         symmetry.hold(&body, &mut held);
         let rigid_faces = self.rigid_faces(&body, &mut held)?;
         let dofs = self.with_contact_faces(held.dofs(body.mesh())?, &body, further);
         let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);
-        let load = self.load(&body)?;
+        let mut load = self.load(&body)?;
+        points.add_load(&mut load, body.dimension());
         let obstacles = self.placed_obstacles(&body, &dofs, further)?;
         let mut warnings = self.noted.clone();
         warnings.extend(locking(&body));
@@ -85,7 +87,7 @@ impl Scene {
         let (moves, vibrates) = (self.dynamic().is_some(), self.modes().is_some());
         let nodes = body.mesh().nodes();
         let unknowns = Unknowns::of(nodes, &dofs, body.dimension(), &rigid_faces, &obstacles)?;
-        let ties = self.tied(&body, &dofs, &unknowns)?;
+        let ties = self.tied(&body, (&dofs, &unknowns), &points)?;
         warnings.extend(ties.warnings.iter().cloned());
         for &index in &unknowns.pressed {
             let (key, message) = match (moves, obstacles[index].inertia()) {
@@ -116,6 +118,7 @@ impl Scene {
                 obstacles,
                 unknowns,
                 ties,
+                points,
                 warnings,
                 moves,
                 vibrates,

@@ -7,6 +7,7 @@ use crate::fem::{ElasticBody, Formulation, Integration, Mesh, Region};
 use crate::scene::Warning;
 use crate::scene::input::body::{BodySpec, Site};
 use crate::scene::input::entry::{located, wrong};
+use crate::scene::input::files::MeshFiles;
 use crate::scene::input::schema::{ModelSpec, Scene, Units};
 use signorini_qp as qp;
 
@@ -45,7 +46,8 @@ struct DescribedBody<'a> {
 impl Scene {
     /// The bodies of the scene, separately.
     pub(crate) fn bodies(&self) -> Result<Vec<ElasticBody>, Error> {
-        self.described().map(|described| described.elastic_body()).collect()
+        let read = MeshFiles::default();
+        self.described().map(|described| described.elastic_body(&read)).collect()
     }
 
     /// The bodies in the order of the scene, combined in one.
@@ -100,9 +102,9 @@ impl DescribedBody<'_> {
     }
 
     /// The mesh of the shape.
-    fn mesh(&self) -> Result<Mesh, Error> {
+    fn mesh(&self, read: &MeshFiles) -> Result<Mesh, Error> {
         let (path, names_groups) = (self.path(""), self.names_groups());
-        let site = Site { path, model: self.scene.model, files: self.scene.files(), names_groups };
+        let site = Site { path, model: self.scene.model, files: self.scene.files(), read, names_groups };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
 
@@ -139,7 +141,7 @@ impl DescribedBody<'_> {
         Ok(formulation)
     }
 
-    fn elastic_body(&self) -> Result<ElasticBody, Error> {
+    fn elastic_body(&self, read: &MeshFiles) -> Result<ElasticBody, Error> {
         let first = self.materials.first()?;
         let formulation = self.formulation()?;
         self.materials.check(&formulation)?;
@@ -148,7 +150,7 @@ impl DescribedBody<'_> {
             Error::Qp(qp::Error::Setting { .. }) => located(error, ""),
             other => self.at_body(other),
         };
-        let body = ElasticBody::new(self.mesh()?, first, formulation).map_err(at_body)?;
+        let body = ElasticBody::new(self.mesh(read)?, first, formulation).map_err(at_body)?;
         let body = self.unstrained.placed(self.materials.placed(body)?, &self.place, self.scene.dynamic())?;
         body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
             Error::Mesh { message } => wrong(self.path(".integration"), message),

@@ -1,6 +1,6 @@
 //! Two surfaces that face each other, for ties: the means of one of them over the other.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use super::tie_row::TieRow;
 use crate::error::Error;
@@ -108,7 +108,8 @@ impl<'a> Facing<'a> {
             let own = row.slave.iter().filter(|end| end.1 != 0.0).count();
             let along = along(row.node);
             let terms = ends.into_iter().map(|(node, share)| (node, along.map(|part| share * part))).collect();
-            TieRow { terms, own: 0..own, at: Some(dofs.basis.place(mesh.nodes(), row.node)), value: 0.0 }
+            let at = Some(dofs.basis.place(mesh.nodes(), row.node));
+            TieRow { terms, own: 0..own, at, value: 0.0, on_points: BTreeMap::new() }
         };
         found.rows.iter().map(row).collect()
     }

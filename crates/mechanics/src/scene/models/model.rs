@@ -91,6 +91,10 @@ impl Model {
             problem = problem.with_near_null(near_null)?;
         }
         let problem = parts.tied(problem)?;
+        // A solver finds the motions of single bodies by itself.
+        if !(parts.moves || parts.ties.rows.is_empty()) {
+            RigidBodyModes::of_parts(&parts).check_bounded(&parts, &problem)?;
+        }
         let suspect = suspect_rows(&parts, &built.rows);
         let warnings = parts.warnings.iter().cloned().chain(built.warnings).chain(suspect).collect();
         Ok(Model { parts, gap, moved: Vec::new(), rows: built.rows, across: built.across, warnings, problem })

@@ -1,6 +1,7 @@
 //! The components of a model before its contact rows.
 
 use super::held::Held;
+use super::points::ReferencePoints;
 use super::rigid_face::RigidFace;
 use super::symmetry::Symmetry;
 use super::ties::Ties;
@@ -35,6 +36,7 @@ pub(crate) struct Parts {
     pub obstacles: Vec<PlacedObstacle>,
     pub unknowns: Unknowns,
     pub ties: Ties,
+    pub points: ReferencePoints,
     pub warnings: Vec<Warning>,
     /// `true` if inertia resists motions that no support holds: in a motion.
     pub moves: bool,
@@ -87,14 +89,31 @@ impl Parts {
     /// The forces of one tie on its first side, or of all ties on both sides: on the nodes, length `dim * n_nodes`, in
     /// force, from the multipliers of all equations.
     pub fn tie_forces(&self, of_ties: &[f64], one: Option<usize>) -> Vec<f64> {
-        let (ties, dimension) = (&self.ties, self.body.dimension());
+        let ties = &self.ties;
         let rows = one.map_or(0..ties.rows.len(), |tie| ties.of_tie[tie].clone());
         let of_rows = rows.map(|row| (&ties.rows[row].terms, &ties.rows[row].own, of_ties[row]));
         let tensions = ties.shortenings.iter().filter(|of| one.is_none_or(|tie| tie == of.tie));
+        let all = of_rows.chain(tensions.filter_map(|of| Some((&of.terms, &of.own, of.force?))));
+        self.nodal(
+            all.map(|(terms, own, size)| (&terms[if one.is_some() { own.clone() } else { 0..terms.len() }], size)),
+        )
+    }
+
+    /// The forces of the reference points on the nodes, as [`tie_forces`](Self::tie_forces): those of the equations at
+    /// points, and those that do the work of the forces on points.
+    pub fn forces_of_points(&self, of_ties: &[f64]) -> Vec<f64> {
+        let rows = self.points.ties.keys().flat_map(|&tie| self.ties.of_tie[tie].clone());
+        let mut forces = self.nodal(rows.map(|row| (&self.ties.rows[row].terms[..], of_ties[row])));
+        self.points.add_load(&mut forces, self.body.dimension());
+        forces
+    }
+
+    /// The forces on the nodes along vectors, each with a size.
+    fn nodal<'a>(&self, all: impl Iterator<Item = (&'a [(usize, [f64; 3])], f64)>) -> Vec<f64> {
+        let dimension = self.body.dimension();
         let mut forces = vec![0.0; self.dofs.nodal_count()];
-        for (terms, own, size) in of_rows.chain(tensions.filter_map(|of| Some((&of.terms, &of.own, of.force?)))) {
-            let own = if one.is_some() { own.clone() } else { 0..terms.len() };
-            for (node, vector) in &terms[own] {
+        for (terms, size) in all {
+            for (node, vector) in terms {
                 let entries = &mut forces[dimension * node..dimension * (node + 1)];
                 entries.iter_mut().zip(vector).for_each(|(entry, part)| *entry += size * part);
             }

@@ -6,11 +6,12 @@ use std::ops::Range;
 use serde::Serialize;
 
 use super::held::Holder;
+use super::points::ReferencePoint;
 use super::rigid_face::Motion;
 use crate::error::Error;
 use crate::fem::assembly::Springs;
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::{cross, dot, length, minus};
+use crate::fem::geometry::{COORDINATES, cross, dot, length, minus};
 use crate::scene::Model;
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::input::schema::approach::Rule;
@@ -27,7 +28,8 @@ pub struct Resultant {
     /// The source of the forces: `obstacles[0]`; `pair[0]` for the first obstacle that is another body; `supports[0]`;
     /// `loads`.
     pub of: String,
-    /// The body on which the forces act, if there are several; the first one is called `body`.
+    /// The body on which the forces act, if there are several; the first one is called `body`. Of a reference point its
+    /// name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
     /// The rule for the rows of the obstacle; `None` for a user-defined obstacle, and for supports and loads.
@@ -47,7 +49,7 @@ pub struct Resultant {
     /// Displacement of an obstacle that a force presses, against its approach direction, in length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub travel: Option<f64>,
-    /// The motion of the rigid face that the resultant acts on; `None` for other forces.
+    /// The motion of the rigid face or the reference point that the resultant acts on; `None` for other forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<FaceMotion>,
     /// The shortening of a bolt by its preload, in length: positive if its parts are drawn together, whatever its
@@ -59,10 +61,10 @@ pub struct Resultant {
     pub tension: Option<f64>,
 }
 
-/// Displacement and rotation of a rigid face.
+/// Displacement and rotation of a rigid face or a reference point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaceMotion {
-    /// Displacement of its centre, in length, a component for each coordinate.
+    /// Displacement of its centre, or of the point, in length, a component for each coordinate.
     pub displacement: Vec<f64>,
     /// Its rotation, in radians: about z in the plane, three components in space, otherwise empty.
     pub rotation: Vec<f64>,
@@ -317,11 +319,20 @@ impl Model {
     /// The resultants of the ties on their first sides, in the order of the scene, from the multipliers of all
     /// equations and the values of the unknowns.
     pub(crate) fn tie_resultants(&self, of_ties: &[f64], unknowns: &[f64]) -> Vec<Resultant> {
-        let ties = &self.parts.ties;
+        let (ties, at_points) = (&self.parts.ties, self.parts.forces_of_points(of_ties));
         let of_tie = |(index, rows): (usize, &Range<usize>)| {
-            let first = ties.rows[rows.clone()].first().and_then(|row| row.terms.first());
-            let sum = self.sum_of(&self.parts.tie_forces(of_ties, Some(index)));
-            let on = self.name_of_body(first.map(|term| term.0));
+            let first = ties.rows[rows.clone()].first().and_then(|row| Some(row.terms.first()?.0));
+            let first = self.parts.points.coupled.get(&index).and_then(|nodes| nodes.first().copied()).or(first);
+            let sum = match self.parts.points.coupled.get(&index) {
+                Some(nodes) => {
+                    let dimension = self.body().dimension();
+                    let own = at_points.iter().enumerate();
+                    let own = own.map(|(dof, force)| if nodes.contains(&(dof / dimension)) { *force } else { 0.0 });
+                    self.sum_of(&own.collect::<Vec<f64>>())
+                }
+                None => self.sum_of(&self.parts.tie_forces(of_ties, Some(index))),
+            };
+            let on = self.name_of_body(first);
             let shortening = ties.shortenings.iter().find(|one| one.tie == index);
             let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
             let places = (self.dofs(), &self.parts.unknowns);
@@ -331,9 +342,34 @@ impl Model {
         ties.of_tie.iter().enumerate().map(of_tie).collect()
     }
 
-    /// The resultant of the loads, if there are any.
+    /// The forces from outside on the reference points, with their motions, in the order of the scene.
+    pub(crate) fn point_resultants(&self, values: &[[[f64; 6]; 2]]) -> Vec<Resultant> {
+        let (size, dimension, turns) = (self.mesh().size(), self.body().dimension(), self.body().turns());
+        let of_point = |(index, (point, [moved, force])): (usize, (&ReferencePoint, &[[f64; 6]; 2]))| {
+            let mut sum = Sum::default();
+            self.add_images(&mut sum, point.at, [force[0], force[1], force[2]], |_| true);
+            // A moment is a pair of forces.
+            for axis in (0..3).filter(|&axis| force[3 + axis] != 0.0) {
+                let [arm, across] = [COORDINATES[(axis + 1) % 3], COORDINATES[(axis + 2) % 3]];
+                let pair = across.map(|part| force[3 + axis] / size * part);
+                let beside = [0, 1, 2].map(|i| point.at[i] + size * arm[i]);
+                self.add_images(&mut sum, beside, pair, |_| true);
+                self.add_images(&mut sum, point.at, pair.map(|part| 0.0 - part), |_| true);
+            }
+            let rotation = turns.iter().map(|&axis| moved[3 + axis]).collect();
+            let motion = Some(FaceMotion { displacement: moved[..dimension].to_vec(), rotation });
+            let on = Some(format!("`{}`", point.name));
+            Resultant { on, nodes: 1, motion, ..sum.resultant(self, format!("points[{index}]")) }
+        };
+        self.parts.points.all.iter().zip(values).enumerate().map(of_point).collect()
+    }
+
+    /// The resultant of the loads but those on reference points, if there are any.
     pub(crate) fn load_resultant(&self) -> Option<Resultant> {
-        let loads = self.sum_of(self.nodal_load());
+        let mut on_points = vec![0.0; self.nodal_load().len()];
+        self.parts.points.add_load(&mut on_points, self.body().dimension());
+        let loads: Vec<f64> = self.nodal_load().iter().zip(on_points).map(|(load, on_point)| load - on_point).collect();
+        let loads = self.sum_of(&loads);
         (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
     }
 

@@ -100,7 +100,13 @@ impl RigidFace {
         };
         let nodes: Vec<usize> = areas.into_iter().map(|(node, _)| node).collect();
         let reach = nodes.iter().map(|&node| distance(mesh.nodes()[node], centre)).fold(0.0, f64::max);
-        let motions = spec.motions(path, body)?;
+        let turns = spec.rotation.clone().unwrap_or_default();
+        let given = Given {
+            motions: [spec.x, spec.y, spec.z, turns.x, turns.y, turns.z],
+            force: spec.force.as_deref(),
+            moment: spec.moment.as_deref(),
+        };
+        let motions = motions(&given, path, body)?;
         Ok(RigidFace { nodes, centre, reach: if reach > 0.0 { reach } else { 1.0 }, motions })
     }
 
@@ -153,52 +159,57 @@ impl RigidFace {
     }
 }
 
-impl RigidFaceSpec {
-    /// The motions of the model, with their prescribed values and forces.
-    fn motions(&self, path: &str, body: &ElasticBody) -> Result<Vec<Motion>, Error> {
-        let dimension = body.dimension();
-        let revolved = body.formulation().is_axisymmetric();
-        let turns: &[usize] = match dimension {
-            1 => &[],
-            2 if revolved => &[],
-            2 => &[5],
-            _ => &[3, 4, 5],
-        };
-        let rotation = self.rotation.clone().unwrap_or_default();
-        let given = [self.x, self.y, self.z, rotation.x, rotation.y, rotation.z];
-        let force =
-            self.force.as_deref().map(|force| vector(&format!("{path}.force"), force, dimension)).transpose()?;
-        let moment = self.moment.as_deref().unwrap_or_default();
-        if self.moment.is_some() && moment.len() != turns.len() {
-            let message = format!(
-                "the array has {} entries; the faces of this model turn about {} axes",
-                moment.len(),
-                turns.len()
-            );
-            return Err(wrong(format!("{path}.moment"), message));
-        }
-        let mut motions = Vec::new();
-        for (kind, prescribed) in given.into_iter().enumerate() {
-            let field = format!("{path}.{}", NAMES[kind]);
-            if !((kind < dimension) || turns.contains(&kind)) {
-                if prescribed.is_some() {
-                    return Err(wrong(field, "the faces of this model have no such motion"));
-                }
-                continue;
-            }
-            finite(field.as_str(), prescribed.unwrap_or(0.0))?;
-            let along = match turns.iter().position(|&turn| turn == kind) {
-                Some(place) => moment.get(place).copied().unwrap_or(0.0),
-                None => force.map_or(0.0, |force| force[kind]),
-            };
-            finite(format!("{path}.{}", if kind < 3 { "force" } else { "moment" }), along)?;
-            if prescribed.is_some() && along != 0.0 {
-                return Err(wrong(field, "is prescribed, so that a force along it does nothing; give only one"));
-            }
-            // As a rigid body, a ring about its axis does not widen.
-            let prescribed = if revolved && kind == 0 { Some(prescribed.unwrap_or(0.0)) } else { prescribed };
-            motions.push(Motion { kind, prescribed, force: along });
-        }
-        Ok(motions)
+/// What a scene gives of the motions of a rigid face or a reference point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Given<'a> {
+    /// Prescribed displacements along x, y, z and rotations about them.
+    pub motions: [Option<f64>; 6],
+    pub force: Option<&'a [f64]>,
+    pub moment: Option<&'a [f64]>,
+}
+
+/// The key of a motion in a scene, as `rotation.z`.
+pub(super) fn motion_name(kind: usize) -> &'static str {
+    NAMES[kind]
+}
+
+/// The motions of the model, with their prescribed values and forces.
+///
+/// # Errors
+/// [`Error::Scene`] for a motion, a force or a moment that the model does not have, and for a force along a prescribed
+/// motion.
+pub(super) fn motions(given: &Given, path: &str, body: &ElasticBody) -> Result<Vec<Motion>, Error> {
+    let (dimension, turns) = (body.dimension(), body.turns());
+    let revolved = body.formulation().is_axisymmetric();
+    let force = given.force.map(|force| vector(&format!("{path}.force"), force, dimension)).transpose()?;
+    let moment = given.moment.unwrap_or_default();
+    if given.moment.is_some() && moment.len() != turns.len() {
+        let message =
+            format!("the array has {} entries; the faces of this model turn about {} axes", moment.len(), turns.len());
+        return Err(wrong(format!("{path}.moment"), message));
     }
+    let mut motions = Vec::new();
+    for (kind, prescribed) in given.motions.into_iter().enumerate() {
+        let field = format!("{path}.{}", NAMES[kind]);
+        let turn = turns.iter().position(|&turn| 3 + turn == kind);
+        if kind >= dimension && turn.is_none() {
+            if prescribed.is_some() {
+                return Err(wrong(field, "the faces of this model have no such motion"));
+            }
+            continue;
+        }
+        finite(field.as_str(), prescribed.unwrap_or(0.0))?;
+        let along = match turn {
+            Some(place) => moment.get(place).copied().unwrap_or(0.0),
+            None => force.map_or(0.0, |force| force[kind]),
+        };
+        finite(format!("{path}.{}", if kind < 3 { "force" } else { "moment" }), along)?;
+        if prescribed.is_some() && along != 0.0 {
+            return Err(wrong(field, "is prescribed, so that a force along it does nothing; give only one"));
+        }
+        // As a rigid body, a ring about its axis does not widen.
+        let prescribed = if revolved && kind == 0 { Some(prescribed.unwrap_or(0.0)) } else { prescribed };
+        motions.push(Motion { kind, prescribed, force: along });
+    }
+    Ok(motions)
 }

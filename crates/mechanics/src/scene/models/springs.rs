@@ -1,6 +1,7 @@
 //! Springs and foundations of a scene, on its nodes.
 
-use super::ties::terms_of;
+use super::points::ReferencePoints;
+use super::terms::{no_point, terms_of};
 use crate::error::Error;
 use crate::fem::Boundary;
 use crate::fem::assembly::{Springs, tributary_areas};
@@ -14,8 +15,11 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Scene`] for springs without a direction, a positive stiffness or a place.
-    pub(crate) fn springs(&self, body: &ElasticBody) -> Result<Vec<Springs>, Error> {
-        let placed = |(index, spec): (usize, &SpringSpec)| spec.placed(&format!("springs[{index}]"), body);
+    pub(crate) fn springs(&self, body: &ElasticBody, points: &ReferencePoints) -> Result<Vec<Springs>, Error> {
+        let placed = |(index, spec): (usize, &SpringSpec)| match points.spring(index) {
+            Some(springs) => Ok(springs),
+            None => spec.placed(&format!("springs[{index}]"), body),
+        };
         self.springs.iter().enumerate().map(placed).collect()
     }
 }
@@ -92,6 +96,15 @@ impl SpringSpec {
 
     /// A spring along the elongation that its terms give.
     fn between(&self, path: &str, body: &ElasticBody) -> Result<Springs, Error> {
+        let along = positive(&format!("{path}.along"), self.along_alone(path)?)?;
+        Ok(Springs::between(&terms_of(&self.terms, path, body, &no_point)?, 0.0, along))
+    }
+
+    /// The stiffness along the elongation that terms give.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] without it, and with others.
+    pub(crate) fn along_alone(&self, path: &str) -> Result<f64, Error> {
         if self.terms.is_empty() {
             return Err(wrong(path, "needs a place `on`, or `terms` of its elongation with the stiffness `along` it"));
         }
@@ -108,9 +121,6 @@ impl SpringSpec {
                 "nodes have no area; `along` is the stiffness of the spring",
             ));
         }
-        let Some(along) = self.along else {
-            return Err(wrong(format!("{path}.along"), "is missing: the stiffness along the elongation"));
-        };
-        Ok(Springs::between(&terms_of(&self.terms, path, body)?, positive(&format!("{path}.along"), along)?))
+        self.along.ok_or_else(|| wrong(format!("{path}.along"), "is missing: the stiffness along the elongation"))
     }
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::Parts;
 use super::rows::ContactRow;
-use super::ties::terms_of;
+use super::terms::terms_of;
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::fem::{Boundary, DofMap, ElasticBody};
@@ -36,7 +36,8 @@ impl Scene {
         for (index, tie) in self.ties.iter().enumerate() {
             if let TieSpec::Equation(EquationSpec { terms, .. }) = tie {
                 let path = format!("ties[{index}].equation");
-                joined.extend(terms_of(terms, &path, body)?.into_iter().map(|(node, _)| node));
+                let points = |_: &str, _: String| Ok(usize::MAX);
+                joined.extend(terms_of(terms, &path, body, &points)?.into_iter().map(|(node, _)| node));
             }
         }
         for index in 0..self.loads.len() {

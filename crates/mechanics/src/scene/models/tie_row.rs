@@ -1,9 +1,11 @@
 //! One equation of a tie.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::unknowns::Unknowns;
 use crate::fem::assembly::DofMap;
+use crate::scene::input::sum::Component;
 
 /// A sum of `vector . u` over nodes in the unknowns, and its prescribed part, in length.
 pub(crate) fn in_unknowns(
@@ -30,6 +32,8 @@ pub(crate) struct TieRow {
     /// The place at which two surfaces are tied; `None` for an equation between nodes.
     pub at: Option<[f64; 3]>,
     pub value: f64,
+    /// The coefficients of the prescribed components of reference points, which are in the value.
+    pub on_points: BTreeMap<Component, f64>,
 }
 
 impl TieRow {
@@ -40,7 +44,7 @@ impl TieRow {
         };
         let [(own, across), (of_own, of_across)] = [self, other].map(|row| row.terms.split_at(row.own.end));
         let terms = [own, &negative(of_own), across, &negative(of_across)].concat();
-        TieRow { terms, own: 0..own.len() + of_own.len(), at: self.at, value: 0.0 }
+        TieRow { terms, own: 0..own.len() + of_own.len(), at: self.at, value: 0.0, on_points: BTreeMap::new() }
     }
 
     /// Its nodes, each with a node of the other side.

@@ -1,18 +1,22 @@
 //! Ties of a scene: linear equations E u = e between displacements.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::facing::Facing;
+use super::points::ReferencePoints;
 use super::preload::Shortening;
+use super::terms::{no_point, terms_of};
 use super::tie_row::{TieRow, in_unknowns};
 use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::scene::Warning;
-use crate::scene::input::entry::{COORDINATE_ROUNDING, boundary, finite, node_at, nodes_named_once, number, wrong};
+use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, number, wrong};
 use crate::scene::input::obstacle::SideOrder;
-use crate::scene::input::schema::{EquationSpec, Place, PreloadSpec, Scene, TermSpec, TieSpec, TiedSurfacesSpec};
+use crate::scene::input::schema::{EquationSpec, PreloadSpec, Scene, TieSpec, TiedSurfacesSpec};
+use crate::scene::input::sum::Sum;
 use signorini_qp::SparseMatrix;
 
 /// An equation of which less than this share is left by others follows from them: far above the rounding of integrals
@@ -59,7 +63,12 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] for a boundary or a node that does not exist, surfaces that do not face each other, an equation
     /// without terms, and for one that supports contradict.
-    pub(crate) fn tied(&self, body: &ElasticBody, dofs: &DofMap, unknowns: &Unknowns) -> Result<Ties, Error> {
+    pub(crate) fn tied(
+        &self,
+        body: &ElasticBody,
+        (dofs, unknowns): (&DofMap, &Unknowns),
+        points: &ReferencePoints,
+    ) -> Result<Ties, Error> {
         if !self.ties.is_empty() && self.dynamic().is_some() {
             return Err(wrong("ties", "ties are for equilibria only; a motion has only supports"));
         }
@@ -71,6 +80,7 @@ impl Scene {
         let (dimension, rounding) = (body.dimension(), COORDINATE_ROUNDING * body.mesh().size());
         for (index, tie) in self.ties.iter().enumerate() {
             let path = format!("ties[{index}]");
+            let at_points = points.ties.get(&index);
             let found = match tie {
                 TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, reach }) => {
                     let path = format!("{path}.surfaces");
@@ -84,7 +94,12 @@ impl Scene {
                     shortenings.push(shortening);
                     rows
                 }
+                TieSpec::Equation(_) | TieSpec::Coupling(_) if at_points.is_some() => {
+                    let of_one = matches!(tie, TieSpec::Equation(_));
+                    at_points.into_iter().flatten().map(|sum| of_sum(sum, dofs, of_one)).collect()
+                }
                 TieSpec::Equation(spec) => vec![of_equation(spec, &path, body, dofs)?],
+                TieSpec::Coupling(_) => Vec::new(),
             };
             let first = rows.len();
             for row in found {
@@ -105,18 +120,28 @@ impl Scene {
             of_tie.push(first..rows.len());
         }
         let matrix = SparseMatrix::from_triplets(rows.len(), unknowns.count(), &entries)?;
-        for shortening in shortenings.iter().filter(|one| one.force.is_some()) {
-            let own = in_unknowns(&shortening.terms, (dofs, unknowns), dimension).0;
-            let own = own.into_iter().map(|(column, part)| (rows.len(), column, part));
+        let tensioned: Vec<&Shortening> = shortenings.iter().filter(|one| one.force.is_some()).collect();
+        let first = rows.len();
+        // Number of rows that follow from no others, with zeros as values: nothing contradicts.
+        let independent = |bolts: &[&Shortening]| -> Result<usize, Error> {
+            let own = bolts.iter().enumerate().flat_map(|(number, bolt)| {
+                let own = in_unknowns(&bolt.terms, (dofs, unknowns), dimension).0;
+                own.into_iter().map(move |(column, part)| (first + number, column, part))
+            });
             let all: Vec<_> = entries.iter().copied().chain(own).collect();
-            let with_own = SparseMatrix::from_triplets(rows.len() + 1, unknowns.count(), &all)?;
-            // With zeros as values nothing contradicts: what follows from the others is left out.
-            let [before, after] = [&matrix, &with_own].map(|rows| rows.independent_rows(&[], REPEATED).len());
-            if before == after {
-                let message = "supports and ties fix the distance of the faces along the bolt, so that the tension would do nothing; change \
-                               them, or the `direction`";
-                return Err(wrong(format!("ties[{}].preload.force", shortening.tie), message));
-            }
+            let all = SparseMatrix::from_triplets(first + bolts.len(), unknowns.count(), &all)?;
+            Ok(all.independent_rows(&[], REPEATED).len())
+        };
+        let alone = if tensioned.is_empty() { 0 } else { independent(&[])? };
+        // All bolts at once first: one of them is seldom stuck.
+        let stuck = match tensioned.is_empty() || independent(&tensioned)? == alone + tensioned.len() {
+            true => None,
+            false => tensioned.iter().find(|bolt| independent(&[**bolt]).is_ok_and(|with| with == alone)),
+        };
+        if let Some(bolt) = stuck {
+            let message = "supports and ties fix the distance of the faces along the bolt, so that the tension would do nothing; change \
+                           them, or the `direction`";
+            return Err(wrong(format!("ties[{}].preload.force", bolt.tie), message));
         }
         let ties = Ties { rows, of_tie, covered, matrix, values, shortenings, warnings };
         Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })
@@ -127,7 +152,7 @@ impl Scene {
         self.ties.iter().filter_map(|tie| match tie {
             TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
             TieSpec::Preload(PreloadSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
-            TieSpec::Equation(_) => None,
+            TieSpec::Equation(_) | TieSpec::Coupling(_) => None,
         })
     }
 }
@@ -144,63 +169,22 @@ fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMa
     let path = format!("{path}.equation");
     finite(format!("{path}.value"), spec.value)?;
     let (mut terms, mut own) = (Vec::new(), 0);
-    for (index, (node, vector)) in terms_of(&spec.terms, &path, body)?.into_iter().enumerate() {
+    for (index, (node, vector)) in terms_of(&spec.terms, &path, body, &no_point)?.into_iter().enumerate() {
         // The displacement of a node with a coefficient is a sum of coefficients.
         terms.extend(dofs.basis.values(node).map(|(of, part)| (of, vector.map(|along| part * along))));
         if index == 0 {
             own = terms.len();
         }
     }
-    Ok(TieRow { terms, own: 0..own, at: None, value: spec.value })
+    Ok(TieRow { terms, own: 0..own, at: None, value: spec.value, on_points: BTreeMap::new() })
 }
 
-/// The nodes of terms, each with its vector [x, y, z].
-///
-/// # Errors
-/// [`Error::Scene`] for a list without terms, a term without a node or a coefficient, and for a displacement that the
-/// model does not have.
-pub(super) fn terms_of(terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<Vec<(usize, [f64; 3])>, Error> {
-    let mut found = Vec::with_capacity(terms.len());
-    for (index, term) in terms.iter().enumerate() {
-        let path = format!("{path}.terms[{index}]");
-        let node = node_of(&term.on, &path, body)?;
-        let vector = [term.x, term.y, term.z];
-        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            finite(format!("{path}.{name}"), vector[axis])?;
-            if axis >= body.dimension() && vector[axis] != 0.0 {
-                return Err(wrong(
-                    format!("{path}.{name}"),
-                    format!("a node of this model has no displacement {name}"),
-                ));
-            }
-        }
-        if vector == [0.0; 3] {
-            return Err(wrong(path, "has no coefficient; give x, y or z"));
-        }
-        found.push((node, vector));
+/// The row of a sum that is zero; its own side is its first node if it `is_of_one` equation, otherwise all nodes.
+fn of_sum(sum: &Sum, dofs: &DofMap, is_of_one: bool) -> TieRow {
+    let (mut terms, mut own) = (Vec::new(), 0);
+    for (node, vector) in sum.vectors() {
+        terms.extend(dofs.basis.values(node).map(|(of, part)| (of, vector.map(|along| part * along))));
+        own = if own > 0 && is_of_one { own } else { terms.len() };
     }
-    match found.is_empty() {
-        true => Err(wrong(format!("{path}.terms"), "has no term; give at least one")),
-        false => Ok(found),
-    }
-}
-
-/// The one node of a term.
-fn node_of(place: &Place, path: &str, body: &ElasticBody) -> Result<usize, Error> {
-    let mesh = body.mesh();
-    let (nodes, path) = match place {
-        Place::Point(at) => (vec![node_at(mesh, at, &format!("{path}.on.point"))?], String::new()),
-        Place::Boundary(name) => {
-            let path = format!("{path}.on.boundary");
-            (boundary(mesh, name, &path)?.nodes(), path)
-        }
-        Place::Nodes(names) => {
-            let path = format!("{path}.on.nodes");
-            (nodes_named_once(mesh, names, &path)?, path)
-        }
-    };
-    match nodes[..] {
-        [node] => Ok(node),
-        _ => Err(wrong(path, format!("has {} nodes; a term of an equation has one", nodes.len()))),
-    }
+    TieRow { terms, own: 0..own, at: None, value: -sum.constant, on_points: sum.replaced.clone() }
 }

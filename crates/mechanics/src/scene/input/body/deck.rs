@@ -46,7 +46,8 @@ impl BodyShape for DeckSpec {
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         let file = site.files.named(&self.file, format!("{}.file", site.path))?;
-        let deck = Deck::read(&file, Some(site.files.folder).filter(|_| !site.files.reads_outside), self.step)?;
+        let folder = Some(site.files.folder).filter(|_| !site.files.reads_outside);
+        let deck = site.read.deck(file, folder, self.step)?;
         if self.group.is_empty() && deck.bodies > 1 {
             let message = format!(
                 "the deck has {} bodies that share no node; name one by `group`: {}",

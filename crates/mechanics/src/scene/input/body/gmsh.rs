@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
-use crate::fem::{ElementKind, GmshFile, Integration, Mesh};
+use crate::fem::{ElementKind, Integration, Mesh};
 use crate::scene::input::entry::{refused, wrong};
 use crate::scene::input::files::Files;
 use crate::scene::input::names;
@@ -43,7 +43,7 @@ impl BodyShape for GmshSpec {
     }
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
-        let file = GmshFile::read(site.files.named(&self.file, format!("{}.file", site.path))?)?;
+        let file = site.read.gmsh(site.files.named(&self.file, format!("{}.file", site.path))?)?;
         let bodies = file.bodies();
         if self.group.is_empty() && bodies.len() > 1 && !site.names_groups {
             let names = bodies.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");

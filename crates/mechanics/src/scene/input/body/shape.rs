@@ -5,7 +5,7 @@ use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
 use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
 use crate::scene::input::entry::wrong;
-use crate::scene::input::files::Files;
+use crate::scene::input::files::{Files, MeshFiles};
 use crate::scene::input::schema::model::ModelSpec;
 
 /// The approximate part of a round body's radius outside the core, along the diagonal.
@@ -57,6 +57,8 @@ pub(crate) struct Site<'a> {
     pub model: ModelSpec,
     /// The files of the scene.
     pub files: Files<'a>,
+    /// The files of meshes that were read for other bodies.
+    pub read: &'a MeshFiles,
     /// `true` if the scene names groups of elements with their own materials.
     pub names_groups: bool,
 }

@@ -6,14 +6,17 @@
 
 use std::collections::BTreeSet;
 
-use super::sums::{Equation, Sum};
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, cross, dot, inertia, minus, principal, trace};
 use crate::fem::mesh::deck::{Card, Deck, Line, Place};
+use crate::scene::input::sum::{Sum, following, mean};
 
-/// A determinant of the moments of inertia below this share of the cube of their sum is rounding: the nodes lie on a
-/// line.
-const ON_LINE: f64 = 1e-12;
+/// A sum that is zero. Its components are those of the nodes of the deck; a node without elements has its displacements
+/// along its local axes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Equation {
+    pub sum: Sum,
+    pub place: Place,
+}
 
 /// How a coupling joins the nodes of its surface to the reference node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,84 +195,28 @@ impl Coupling {
     }
 
     /// The rotations of this model.
-    fn turns(deck: &Deck) -> &'static [usize] {
+    pub fn turns(deck: &Deck) -> &'static [usize] {
         if deck.dimension() == 3 { &[0, 1, 2] } else { &[2] }
     }
 
     /// u_k = U_k + (R x r)_k at each node, with r from the reference node.
     fn kinematic(&self, deck: &Deck, axes: [bool; 3]) -> Result<Vec<Sum>, String> {
-        let centre = deck.place_of_node(self.reference);
-        let mut sums = Vec::new();
-        for node in self.nodes(deck)? {
-            let away = minus(deck.place_of_node(node), centre);
-            for axis in (0..deck.dimension()).filter(|&axis| axes[axis]) {
-                let mut sum = Sum::default();
-                sum.add((node, axis), 1.0);
-                sum.add((self.reference, axis), -1.0);
-                for &about in Self::turns(deck) {
-                    sum.add((self.reference, 3 + about), -cross(COORDINATES[about], away)[axis]);
-                }
-                sums.push(sum);
-            }
-        }
-        Ok(sums)
+        let axes: Vec<usize> = (0..deck.dimension()).filter(|&axis| axes[axis]).collect();
+        let centre = (self.reference, deck.place_of_node(self.reference));
+        let of_node = |node: usize| following((node, deck.place_of_node(node)), centre, &axes, Self::turns(deck));
+        Ok(self.nodes(deck)?.into_iter().flat_map(of_node).collect())
     }
 
-    /// A force F and a moment M at the reference node become the forces w (F + (T^-1 M') x r) on the nodes, with the
-    /// share w of a node in the area, its distance r from the centre of area, T = sum of w (r.r I - r r'), and the
-    /// moment M' about the centre. The work of these forces is that of F and M, so that U and R are means of the
-    /// displacements of the nodes.
+    /// The reference node follows the mean over the areas of a surface.
     fn distributing(&self, deck: &Deck, about: [bool; 3]) -> Result<Vec<Sum>, String> {
         let Joined::Surface(surface) = &self.nodes else {
             return Err("forces are distributed over a surface of faces".into());
         };
         let areas = deck.areas(&deck.surface_or(surface)?.faces);
-        let whole: f64 = areas.values().map(|(area, _)| area).sum();
-        let nodes: Vec<(usize, f64, [f64; 3])> =
-            areas.into_iter().map(|(node, (area, _))| (node, area / whole, deck.place_of_node(node))).collect();
-        let mean = |axis: usize| nodes.iter().map(|(_, share, at)| share * at[axis]).sum::<f64>();
-        let centre = [0, 1, 2].map(mean);
-        let mut of_area = [0.0; 6];
-        for (_, share, at) in &nodes {
-            let of_node = inertia(minus(*at, centre));
-            of_area.iter_mut().zip(of_node).for_each(|(sum, part)| *sum += share * part);
-        }
-        if deck.dimension() == 2 {
-            // Only the rotation about z exists.
-            of_area = [of_area[2], of_area[2], of_area[2], 0.0, 0.0, 0.0];
-        }
-        let determinant = |of: &[(f64, [f64; 3]); 3]| of.iter().map(|(about, _)| about).product::<f64>();
-        let has_extent = |of: &_| determinant(of) > ON_LINE * trace(&of_area).powi(3);
-        let Some(principal) = principal(&of_area).filter(has_extent) else {
-            return Err(format!("the nodes of the surface `{surface}` lie on a line, about which no moment acts"));
-        };
-        let lever = minus(deck.place_of_node(self.reference), centre);
-        let mut sums = Vec::new();
-        for kind in 0..6 {
-            let axis = COORDINATES[kind % 3];
-            let is_turn = kind >= 3;
-            let exists = if is_turn {
-                Self::turns(deck).contains(&(kind - 3)) && about[kind - 3]
-            } else {
-                kind < deck.dimension()
-            };
-            if !exists {
-                continue;
-            }
-            let (force, mut moment) = if is_turn { ([0.0; 3], axis) } else { (axis, cross(lever, axis)) };
-            if deck.dimension() == 2 {
-                moment = [0.0, 0.0, moment[2]];
-            }
-            let part = |(about, along): (f64, [f64; 3]), axis: usize| dot(along, moment) / about * along[axis];
-            let turn = [0, 1, 2].map(|axis| principal.iter().map(|&one| part(one, axis)).sum::<f64>());
-            let mut sum = Sum::default();
-            sum.add((self.reference, kind), -1.0);
-            for &(node, share, at) in &nodes {
-                let by_turn = cross(turn, minus(at, centre));
-                sum.add_along(node, [0, 1, 2].map(|axis| share * (force[axis] + by_turn[axis])));
-            }
-            sums.push(sum);
-        }
-        Ok(sums)
+        let areas: Vec<_> = areas.into_iter().map(|(node, (area, _))| (node, area, deck.place_of_node(node))).collect();
+        let turns = Self::turns(deck).iter().copied().filter(|&axis| about[axis]).map(|axis| 3 + axis);
+        let kinds: Vec<usize> = (0..deck.dimension()).chain(turns).collect();
+        mean(&areas, (self.reference, deck.place_of_node(self.reference)), &kinds, deck.dimension() == 2)
+            .ok_or_else(|| format!("the nodes of the surface `{surface}` lie on a line, about which no moment acts"))
     }
 }

@@ -1,10 +1,11 @@
 //! Equations between components of nodes: the cards *EQUATION.
 
-use super::sums::{Equation, Sum};
+use super::coupling::Equation;
 use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::geometry::COORDINATES;
 use crate::fem::mesh::deck::{Card, Deck};
+use crate::scene::input::sum::Sum;
 
 /// The component that a direction of a node names, from 1, as a sum: of a node of elements the displacement along its
 /// local axis.

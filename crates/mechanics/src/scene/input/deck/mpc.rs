@@ -4,12 +4,13 @@
 //! # Source
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, keyword *MPC.
 
+use super::coupling::Equation;
 use super::equations::along;
-use super::sums::{Equation, Sum};
 use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::geometry::{across, cross, distance, dot, length, minus, unit};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
+use crate::scene::input::sum::Sum;
 
 /// Nodes farther from their plane or line than this share of its extent lie outside: far above the digits of
 /// coordinates in decks.

@@ -1,26 +1,28 @@
 //! Reference nodes: components of nodes without elements, which rigid bodies, couplings, equations and springs move.
-//! Those that are in equations are unknowns of the deck only: they are eliminated here, so that the scene has nodes of
-//! elements alone.
+//! Those that are in equations and springs are reference points of the scene, called by the numbers of their nodes.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use serde_json::{Value, json};
 
 use super::bodies::name_of_node;
-use super::coupling::{Coupling, Kind};
+use super::coupling::{Coupling, Equation, Kind};
 use super::equations::equations;
 use super::mpc::constraints;
-use super::reference_node::{Amount, Part, ReferenceNode};
+use super::reference_node::{Of, ReferenceNode};
 use super::rigid::RigidBodies;
 use super::scene_text::{Entry, object};
 use super::springs::{Spring, springs};
-use super::sums::{Component, Equation, Sum};
 use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Deck, Place};
+use crate::scene::input::sum::{Component, Sum};
 
-/// What is left of a value below this share of its parts is rounding.
-const CONTRADICTION: f64 = 1e-9;
+/// The refusal of a displacement other than 0.
+pub(super) const NO_Z: &str = "a plane model has no displacement along z";
+
+/// The keys of displacements and rotations.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The reference nodes of a deck.
 pub(super) struct References<'a> {
@@ -34,21 +36,19 @@ pub(super) struct References<'a> {
     rotations: HashMap<usize, usize>,
     /// The components without elements that are in equations or springs.
     joined: BTreeSet<Component>,
-    prescribed: HashMap<Component, f64>,
-    /// The forces on components, line by line.
-    loads: Vec<(Place, Sum)>,
-    /// The eliminated components, each with a sum that has it and is zero.
-    solved: Vec<(Component, Sum)>,
+    prescribed: BTreeMap<Component, f64>,
+    /// The forces on components, each with the place of the first.
+    loads: BTreeMap<Component, (Place, f64)>,
     warnings: Vec<(Place, String)>,
 }
 
-/// What the elimination leaves for the scene.
-pub(super) struct Eliminated {
+/// What they are in the scene.
+pub(super) struct Entries {
+    pub points: Vec<Entry>,
     pub ties: Vec<Entry>,
     pub springs: Vec<Entry>,
-    pub loads: Vec<Entry>,
     pub warnings: Vec<(Place, String)>,
-    /// The reference nodes of equations, couplings and springs.
+    /// The nodes whose displacements are rotations of points.
     pub nodes: Vec<ReferenceNode>,
 }
 
@@ -81,7 +81,7 @@ impl<'a> References<'a> {
                 means.push((coupling.reference, coupling.place));
             }
         }
-        let (prescribed, loads, solved, joined) = (HashMap::new(), Vec::new(), Vec::new(), BTreeSet::new());
+        let (prescribed, loads, joined) = (BTreeMap::new(), BTreeMap::new(), BTreeSet::new());
         let mut references = References {
             deck,
             rigid_bodies,
@@ -92,7 +92,6 @@ impl<'a> References<'a> {
             joined,
             prescribed,
             loads,
-            solved,
             warnings,
         };
         for (node, reference) in references.rotations.clone() {
@@ -132,6 +131,9 @@ impl<'a> References<'a> {
         let Some(component) = self.component(node, direction) else {
             return if value == 0.0 { Ok(true) } else { Err(no_rotation(direction)) };
         };
+        if component.1 == 2 && self.deck.dimension() == 2 && self.deck.body_of_node[node].is_none() {
+            return if value == 0.0 { Ok(true) } else { Err(NO_Z.into()) };
+        }
         let is_loose = self.deck.body_of_node[node].is_none() || self.joined.contains(&component);
         if is_loose {
             self.prescribed.insert(component, value);
@@ -160,176 +162,79 @@ impl<'a> References<'a> {
             let number = self.deck.nodes.numbers[node];
             return Err(format!("node {number} belongs to no element, and nothing follows its direction {direction}"));
         }
-        if self.loads.last().is_none_or(|(last, _)| *last != place) {
-            self.loads.push((place, Sum::default()));
-        }
-        self.loads.iter_mut().next_back().into_iter().for_each(|(_, sum)| sum.add(component, force));
+        self.loads.entry(component).or_insert((place, 0.0)).1 += force;
         Ok(true)
     }
 
-    /// Eliminates all components without elements. The work of a force on such a component is that of forces on the
-    /// nodes of the equation that gives it. A spring to a prescribed component is one to the ground, with the force of
-    /// its prescribed elongation.
-    ///
-    /// # Errors
-    /// An error with the line for equations that the prescribed components contradict, and for a force or a spring on a
-    /// component that is free. The equations are the ties of the scene from number `first_tie`.
-    pub fn eliminated(mut self, first_tie: usize) -> Result<Eliminated, Error> {
+    /// The reference points of the scene, with the ties and springs at them.
+    pub fn entries(mut self) -> Entries {
         for (node, place) in &self.means {
             if self.prescribed.keys().any(|component| component.0 == *node && self.joined.contains(component)) {
                 let message = "the mean motion of *DISTRIBUTING is prescribed; CalculiX passes over it";
                 self.warnings.push((*place, message.into()));
             }
         }
-        let applied: HashMap<Component, f64> = self.loads.iter().fold(HashMap::new(), |mut all, (_, load)| {
-            load.terms.iter().for_each(|(component, force)| *all.entry(*component).or_default() += force);
-            all
-        });
-        let prescribed = self.insert_prescribed();
-        for component in std::mem::take(&mut self.joined) {
-            self.eliminate(component);
-        }
-        let mut nodes = self.reference_nodes(&prescribed, &applied);
-        let mut ties = Vec::new();
-        for Equation { sum, place } in &self.equations {
-            if !sum.terms.is_empty() {
-                let multiplier = Amount::one(Part::Multiplier(first_tie + ties.len()));
-                self.resisted(sum, 1.0, &multiplier, &mut nodes);
-                ties.push(Entry::new(object("equation", self.tie(sum)), *place));
-            } else if sum.constant.abs() > CONTRADICTION * sum.scale {
-                let message = "the displacements that are prescribed at reference nodes contradict this equation";
-                return Err(self.deck.source.fault(*place, message));
-            }
-        }
-        let (mut springs, mut loads) = (Vec::new(), Vec::new());
-        for Spring { elongation, stiffness, place } in &self.springs {
-            if let Some((node, kind)) = self.loose(elongation) {
-                let number = self.deck.nodes.numbers[node];
-                let message = format!("node {number} is free in direction {}; nothing but springs holds it", kind + 1);
-                return Err(self.deck.source.fault(*place, message));
-            }
-            self.resisted(elongation, -stiffness, &self.amount(elongation), &mut nodes);
-            if elongation.terms.is_empty() {
-                continue;
-            }
-            springs.push(Entry::new(json!({"terms": self.terms(elongation), "along": stiffness}), *place));
-            let mut pull = Sum::default();
-            pull.add_multiple(-stiffness * elongation.constant, elongation);
-            loads.extend(self.forces(&pull).map(|forces| Entry::new(forces, *place)));
-        }
-        for (place, sum) in &self.loads {
-            if let Some((node, kind)) = self.loose(sum) {
-                let number = self.deck.nodes.numbers[node];
-                let message = format!("node {number} is free in direction {}, and carries no force there", kind + 1);
-                return Err(self.deck.source.fault(*place, message));
-            }
-            self.resisted(sum, 1.0, &Amount { constant: 1.0, parts: Vec::new() }, &mut nodes);
-            loads.extend(self.forces(sum).map(|forces| Entry::new(forces, *place)));
-        }
-        let nodes = nodes.into_values().collect();
-        Ok(Eliminated { ties, springs, loads, warnings: self.warnings, nodes })
-    }
-
-    /// The reference nodes with their displacements, and with the forces on components that are not prescribed.
-    fn reference_nodes(
-        &self,
-        prescribed: &HashMap<Component, f64>,
-        applied: &HashMap<Component, f64>,
-    ) -> BTreeMap<usize, ReferenceNode> {
-        let mut nodes = BTreeMap::new();
-        let solved = self.solved.iter().map(|(component, zero)| {
-            let mut others = zero.clone();
-            let own = others.terms.remove(component).unwrap_or(1.0);
-            let Amount { constant, parts } = self.amount(&others);
-            let parts = parts.into_iter().map(|(factor, part)| (-factor / own, part)).collect();
-            (*component, Amount { constant: -constant / own, parts })
-        });
-        let given =
-            prescribed.iter().map(|(component, &constant)| (*component, Amount { constant, parts: Vec::new() }));
-        for (component, amount) in solved.chain(given) {
-            let force = applied.get(&component).copied().unwrap_or_default();
-            for (node, kind) in self.names(component) {
-                let node = nodes.entry(node).or_insert_with(|| ReferenceNode::new(self.deck.nodes.numbers[node]));
-                node.displacement[kind] = amount.clone();
-                node.force[kind].constant += force;
-            }
-        }
-        nodes
-    }
-
-    /// A component, and its other name if it is a rotation that has a node of its own.
-    fn names(&self, (node, kind): Component) -> impl Iterator<Item = Component> {
-        let rotation = self.rotations.iter().filter(move |entry| kind >= 3 && *entry.1 == node);
-        std::iter::once((node, kind)).chain(rotation.map(move |entry| (*entry.0, kind - 3)).collect::<Vec<_>>())
-    }
-
-    /// Adds the forces that hold prescribed components against `factor` times an amount along a sum.
-    fn resisted(&self, sum: &Sum, factor: f64, amount: &Amount, nodes: &mut BTreeMap<usize, ReferenceNode>) {
-        for (&component, coefficient) in &sum.replaced {
-            for (node, kind) in self.names(component) {
-                let Some(ReferenceNode { force, .. }) = nodes.get_mut(&node) else { continue };
-                let own = -factor * coefficient;
-                force[kind].constant += own * amount.constant;
-                force[kind].parts.extend(amount.parts.iter().map(|(factor, part)| (own * factor, *part)));
-            }
-        }
-    }
-
-    /// The value of a sum of components of elements.
-    fn amount(&self, sum: &Sum) -> Amount {
-        let of_body = sum.terms.iter().filter(|(component, _)| !is_loose(self.deck, **component));
-        let part = |(&(node, axis), &factor): (&Component, &f64)| {
-            (factor, Part::Displacement(self.deck.nodes.numbers[node], axis))
+        let whole = Place { file: 0, line: 1 };
+        let mut places: BTreeMap<usize, Place> = self.prescribed.keys().map(|component| (component.0, whole)).collect();
+        let named = terms(&self.equations, &self.springs).filter(|one| self.joined.contains(&one.0));
+        places.extend(named.map(|(component, place)| (component.0, place)).collect::<Vec<_>>().into_iter().rev());
+        places.extend(self.loads.iter().map(|(component, (place, _))| (component.0, *place)));
+        let points = places.into_iter().map(|(node, place)| Entry::new(self.point(node), place)).collect();
+        let tie = |Equation { sum, place }: &Equation| Entry::new(object("equation", self.tie(sum)), *place);
+        let spring = |Spring { elongation, stiffness, place }: &Spring| {
+            Entry::new(json!({"terms": self.terms(elongation), "along": stiffness}), *place)
         };
-        Amount { constant: sum.constant, parts: of_body.map(part).collect() }
+        let (ties, springs) = (self.equations.iter().map(tie).collect(), self.springs.iter().map(spring).collect());
+        let number = |node: usize| self.deck.nodes.numbers[node];
+        let turns = |(&node, &point): (&usize, &usize)| ReferenceNode {
+            number: number(node),
+            of: Of::Turns { point: number(point) },
+        };
+        let nodes = self.rotations.iter().map(turns).collect();
+        Entries { points, ties, springs, warnings: self.warnings, nodes }
     }
 
-    /// All sums of components: equations, springs and loads.
+    /// A reference point.
+    fn point(&self, node: usize) -> Value {
+        let (dimension, turns) = (self.deck.dimension(), Coupling::turns(self.deck));
+        let at = self.deck.place_of_node(node);
+        let mut point = json!({"name": self.deck.nodes.numbers[node].to_string(), "at": at[..dimension]});
+        let force = |kind: usize| self.loads.get(&(node, kind)).map_or(0.0, |load| load.1);
+        let turns: Vec<usize> = turns.iter().map(|turn| 3 + turn).collect();
+        for kind in (0..dimension).chain(turns.iter().copied()) {
+            if let Some(value) = self.prescribed.get(&(node, kind)) {
+                let of = if kind < 3 { &mut point } else { &mut point["rotation"] };
+                of[AXES[kind % 3]] = (*value).into();
+            }
+        }
+        let loads: [(&str, Vec<f64>); 2] =
+            [("force", (0..dimension).map(force).collect()), ("moment", turns.into_iter().map(force).collect())];
+        for (name, parts) in loads.into_iter().filter(|(_, parts)| parts.iter().any(|&part| part != 0.0)) {
+            point[name] = parts.into();
+        }
+        point
+    }
+
+    /// All sums of components: those of equations and springs.
     fn sums(&mut self) -> impl Iterator<Item = &mut Sum> {
         let equations = self.equations.iter_mut().map(|equation| &mut equation.sum);
-        let springs = self.springs.iter_mut().map(|spring| &mut spring.elongation);
-        let solved = self.solved.iter_mut().map(|(_, zero)| zero);
-        equations.chain(springs).chain(solved).chain(self.loads.iter_mut().map(|(_, load)| load))
-    }
-
-    /// Replaces the prescribed components by their values, and returns these.
-    fn insert_prescribed(&mut self) -> HashMap<Component, f64> {
-        let prescribed = std::mem::take(&mut self.prescribed);
-        self.joined.retain(|component| !prescribed.contains_key(component));
-        for sum in self.sums() {
-            let own = sum.terms.keys().filter_map(|component| Some((*component, *prescribed.get(component)?)));
-            own.collect::<Vec<_>>().into_iter().for_each(|(component, value)| sum.insert(component, value));
-        }
-        prescribed
-    }
-
-    /// Takes the equation in which a component has the largest share, and with it removes the component everywhere
-    /// else.
-    fn eliminate(&mut self, component: Component) {
-        let shares = self.equations.iter().map(|equation| equation.sum.share(component)).enumerate();
-        let largest = shares.filter(|(_, share)| *share > 0.0).max_by(|one, other| one.1.total_cmp(&other.1));
-        if let Some((pivot, _)) = largest {
-            let zero = self.equations.remove(pivot).sum;
-            self.sums().for_each(|sum| sum.eliminate(component, &zero));
-            self.solved.push((component, zero));
-        }
-    }
-
-    /// The first component without elements of a sum.
-    fn loose(&self, sum: &Sum) -> Option<Component> {
-        sum.terms.keys().copied().find(|&component| is_loose(self.deck, component))
+        equations.chain(self.springs.iter_mut().map(|spring| &mut spring.elongation))
     }
 
     /// The terms of a sum.
     fn terms(&self, sum: &Sum) -> Vec<Value> {
-        let term = |(node, vector): (usize, [f64; 3])| {
-            let mut term = json!({"on": {"nodes": name_of_node(self.deck, node)?}});
-            for (axis, part) in ["x", "y", "z"].into_iter().zip(vector).filter(|(_, part)| *part != 0.0) {
-                term[axis] = part.into();
-            }
-            Some(term)
-        };
-        sum.vectors().into_iter().filter_map(term).collect()
+        let mut terms: BTreeMap<(bool, usize), Value> = BTreeMap::new();
+        for (&(node, kind), &part) in &sum.terms {
+            let is_loose = is_loose(self.deck, (node, kind));
+            let on = || match is_loose {
+                true => json!({"reference": self.deck.nodes.numbers[node].to_string()}),
+                false => json!({"nodes": name_of_node(self.deck, node)}),
+            };
+            let term = terms.entry((is_loose, node)).or_insert_with(|| json!({"on": on()}));
+            let of = if kind < 3 { term } else { &mut term["rotation"] };
+            of[AXES[kind % 3]] = part.into();
+        }
+        terms.into_values().collect()
     }
 
     /// The terms and the value of an equation.
@@ -339,14 +244,6 @@ impl<'a> References<'a> {
             tie["value"] = (-sum.constant).into();
         }
         tie
-    }
-
-    /// The forces of a load on nodes; `None` if there are none.
-    fn forces(&self, sum: &Sum) -> Option<Value> {
-        let size = self.deck.dimension();
-        let force = |(node, force): (usize, [f64; 3])| Some((name_of_node(self.deck, node)?, force[..size].to_vec()));
-        let forces: BTreeMap<String, Vec<f64>> = sum.vectors().into_iter().filter_map(force).collect();
-        (!forces.is_empty()).then(|| object("nodal-forces", json!(forces)))
     }
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
 use super::bolts::Bolts;
 use super::coupling::{Coupling, Joined, couplings};
-use super::reference_node::{Amount, Part, ReferenceNode};
+use super::reference_node::{Of, ReferenceNode};
 use super::scene_text::Entry;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Deck, Place};
@@ -82,20 +82,11 @@ impl RigidBodies {
     /// The reference nodes of rigid bodies and bolts, with what an answer says of them; `first_bolt` is the tie of the
     /// first bolt.
     pub fn reference_nodes(&self, deck: &Deck, first_bolt: usize) -> Vec<ReferenceNode> {
-        let of_body = |(&node, &(body, first)): (&usize, &(usize, usize))| {
-            let mut of_node = ReferenceNode::new(deck.nodes.numbers[node]);
-            for kind in (first..6).filter(|&kind| self.exists(kind)) {
-                of_node.displacement[kind - first] = Amount::one(Part::Motion(body, kind));
-                of_node.force[kind - first] = Amount::one(Part::Force(body, kind, self.all[body].centre));
-            }
-            of_node
+        let of_node = |node: usize, of: Of| ReferenceNode { number: deck.nodes.numbers[node], of };
+        let of_body = |(&node, &(face, first)): (&usize, &(usize, usize))| {
+            of_node(node, Of::Face { face, first, centre: self.all[face].centre })
         };
-        let of_bolt = |(bolt, node): (usize, usize)| {
-            let mut of_node = ReferenceNode::new(deck.nodes.numbers[node]);
-            of_node.displacement[0] = Amount::one(Part::Shortening(first_bolt + bolt));
-            of_node.force[0] = Amount::one(Part::Tension(first_bolt + bolt));
-            of_node
-        };
+        let of_bolt = |(bolt, node): (usize, usize)| of_node(node, Of::Bolt { tie: first_bolt + bolt });
         self.by_node.iter().map(of_body).chain(self.bolts.references().enumerate().map(of_bolt)).collect()
     }
 

@@ -1,11 +1,11 @@
 //! Springs: the cards *SPRING with the elements SPRINGA, SPRING1, SPRING2, each as an elongation and a stiffness.
 
 use super::equations::along;
-use super::sums::Sum;
 use super::transforms::Transforms;
 use crate::error::Error;
 use crate::fem::geometry::{COORDINATES, minus, unit};
 use crate::fem::mesh::deck::{Card, Deck, Place, SpringType};
+use crate::scene::input::sum::Sum;
 
 /// A spring: its energy is half the stiffness times the square of the elongation.
 #[derive(Clone, Debug)]

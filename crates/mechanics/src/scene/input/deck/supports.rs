@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_nodes};
 use super::reference_node::Displacements;
-use super::references::References;
+use super::references::{NO_Z, References};
 use super::scene_text::Entry;
 use super::transforms::Transforms;
 use crate::error::Error;
@@ -168,7 +168,11 @@ fn off_references(deck: &Deck, line: Prescribed, references: &mut References) ->
     if !nodes.is_empty() && line.turns.iter().flatten().any(|&value| value != 0.0) {
         return Err(deck.source.fault(line.place, "a node of a solid has no rotation that could be prescribed"));
     }
-    Ok((!nodes.is_empty()).then_some(Prescribed { nodes, ..line }))
+    let mut line = Prescribed { nodes, ..line };
+    if !line.nodes.is_empty() && names_z_of_plane(deck, &mut line.values) {
+        return Err(deck.source.fault(line.place, NO_Z));
+    }
+    Ok((!line.nodes.is_empty()).then_some(line))
 }
 
 /// All lines that OP=NEW does not remove.
@@ -284,9 +288,6 @@ fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Presc
             }
         }
         fields.pass_over();
-        if names_z_of_plane(deck, &mut values) {
-            return Err(fields.fault("a plane model has no displacement along z"));
-        }
         lines.push(Prescribed { card: index, target, nodes, is_part: false, values, turns, place: line.place });
     }
     Ok(lines)

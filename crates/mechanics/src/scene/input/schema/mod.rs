@@ -13,6 +13,7 @@ pub(crate) mod load;
 pub(crate) mod model;
 pub(crate) mod obstacle;
 pub(crate) mod part;
+mod point;
 pub(crate) mod profile;
 mod rigid_face;
 pub(crate) mod spring;
@@ -29,10 +30,11 @@ pub use load::LoadSpec;
 pub use model::ModelSpec;
 pub use obstacle::{ContactSpec, ObstacleSpec};
 pub use part::PartSpec;
+pub use point::PointSpec;
 pub use rigid_face::RigidFaceSpec;
 pub use spring::SpringSpec;
 pub use symmetry::SymmetryPlane;
-pub use tie::{EquationSpec, PreloadSpec, TermSpec, TieSpec, TiedSurfacesSpec};
+pub use tie::{CouplingSpec, EquationSpec, PreloadSpec, TermPlace, TermSpec, TieSpec, TiedSurfacesSpec};
 
 use std::path::PathBuf;
 
@@ -97,6 +99,9 @@ pub struct Scene {
     /// Boundaries that move as rigid plates.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rigid_faces: Vec<RigidFaceSpec>,
+    /// Places that move without being nodes: couplings, equations and springs join them to nodes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<PointSpec>,
     /// Displacements that are tied to each other.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ties: Vec<TieSpec>,

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::condition::Place;
+use crate::scene::input::names;
 
 /// One tie of displacements: between two surfaces, or by an equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -15,6 +15,8 @@ pub enum TieSpec {
     Equation(EquationSpec),
     /// Two faces of a bolt that is cut across: they move together along the faces, and are drawn together.
     Preload(PreloadSpec),
+    /// Nodes that move with a reference point.
+    Coupling(CouplingSpec),
 }
 
 /// Two surfaces that stay together, in the mean over the area of each node of one of them. Their meshes need not match.
@@ -53,23 +55,43 @@ pub struct PreloadSpec {
     pub direction: Option<Vec<f64>>,
 }
 
+/// Nodes that follow a reference point as those of a rigid body, or whose mean motion the point follows. Couplings to
+/// one point join their nodes, also those of several bodies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CouplingSpec {
+    /// The name of the point.
+    pub point: String,
+    /// The boundary that is coupled; `nodes` instead of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<String>,
+    /// The coupled nodes: those of a set, or of several, of a deck.
+    #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
+    #[schemars(schema_with = "names::schema")]
+    pub nodes: Vec<String>,
+    /// `true` if the point follows the mean motion over the area of the boundary, so that the body stays soft there.
+    #[serde(default)]
+    pub mean: bool,
+}
+
 /// An equation: the sum of the terms is the value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EquationSpec {
-    /// Displacements of nodes, each with its coefficients.
+    /// Displacements of nodes and motions of points, each with its coefficients.
     pub terms: Vec<TermSpec>,
     /// The value, in length; 0 if it is left out.
     #[serde(default)]
     pub value: f64,
 }
 
-/// The displacement of one node: the sum of its components times their coefficients, which are dimensionless.
+/// The displacement of one node, or the motion of one reference point: the sum of its components times their
+/// coefficients, which are dimensionless; lengths for rotations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TermSpec {
-    /// The node: a point, or the number of a node of a deck.
-    pub on: Place,
+    /// The node or the reference point.
+    pub on: TermPlace,
     /// The coefficient of the displacement along x.
     #[serde(default)]
     pub x: f64,
@@ -79,4 +101,41 @@ pub struct TermSpec {
     /// The coefficient of the displacement along z.
     #[serde(default)]
     pub z: f64,
+    /// The coefficients of the rotations of a reference point.
+    #[serde(default, skip_serializing_if = "Turns::is_none")]
+    pub rotation: Turns,
+}
+
+/// The node or the reference point of a term.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TermPlace {
+    /// The only node of a named boundary.
+    Boundary(String),
+    /// The node at these coordinates.
+    Point(Vec<f64>),
+    /// A node of a deck, by its number, or a set with one node.
+    #[serde(with = "names")]
+    #[schemars(schema_with = "names::schema")]
+    Nodes(Vec<String>),
+    /// The name of a reference point.
+    Reference(String),
+}
+
+/// Coefficients of rotations, in length.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Turns {
+    /// Of the rotation about x, in space.
+    pub x: f64,
+    /// Of the rotation about y, in space.
+    pub y: f64,
+    /// Of the rotation about z.
+    pub z: f64,
+}
+
+impl Turns {
+    fn is_none(&self) -> bool {
+        *self == Turns::default()
+    }
 }

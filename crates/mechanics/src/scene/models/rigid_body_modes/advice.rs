@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use super::RigidBodyModes;
 use super::unit::{AXES, NAMED};
+use super::{RigidBodyModes, component};
 use crate::fem::geometry::COORDINATES;
 use crate::scene::input::entry::number;
 use crate::scene::models::parts::Parts;
@@ -114,7 +114,7 @@ impl RigidBodyModes {
         for &node in candidates {
             for (axis, direction) in COORDINATES.into_iter().enumerate().take(self.dimension) {
                 let unit = self.along(node, nodes[node], direction);
-                let components: Vec<f64> = motions.iter().map(|motion| dot(&unit, motion)).collect();
+                let components: Vec<f64> = motions.iter().map(|motion| component(&unit, motion)).collect();
                 let size = dot(&components, &components).sqrt();
                 // Of nodes as good, the first: several directions are then held at one node.
                 if size > (1.0 + MOVES) * largest {

@@ -1,6 +1,7 @@
 //! Rigid-body modes: those that nothing resists, and their names.
 
 mod advice;
+mod driven;
 pub(crate) mod soft;
 mod unit;
 
@@ -14,12 +15,20 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::dense::DenseMatrix;
 use crate::fem::geometry::COORDINATES;
-use signorini_qp::dot;
+use signorini_qp::{Forest, dot};
 use unit::{NAMED, Sense, Sum, UnitMotions};
 
 /// A motion is held if its singular value exceeds this times the largest. A free motion has zero up to rounding, 1e-16,
 /// and any intended support or normal gives a value far above.
 const HELD: f64 = 1e-10;
+
+/// Components of unit motions other than zero, each with its place among all amplitudes, which increases.
+type Components = Vec<(usize, f64)>;
+
+/// The component of a motion, given by its amplitudes.
+fn component(of_units: &Components, motion: &[f64]) -> f64 {
+    of_units.iter().map(|&(place, part)| part * motion[place]).sum()
+}
 
 /// The rigid-body modes of the bodies of a model; each body moves independently.
 ///
@@ -55,36 +64,40 @@ impl RigidBodyModes {
         self.bodies.iter().enumerate().flat_map(|entry| of_body(entry).collect::<Vec<_>>()).collect()
     }
 
-    /// The component along `direction` of each unit motion at a place that moves with a node; zero for those of other
-    /// bodies.
-    fn along(&self, node: usize, at: [f64; 3], direction: [f64; 3]) -> Vec<f64> {
+    /// The components of unit motions along `direction` at a place that moves with a node.
+    fn along(&self, node: usize, at: [f64; 3], direction: [f64; 3]) -> Components {
         self.in_sum(&vec![(node, at, direction)])
     }
 
-    /// The component of each unit motion at a nodal dof: along an axis of the node's frame if it has one.
-    fn at_dof(&self, parts: &Parts, dof: usize) -> Vec<f64> {
+    /// The components of unit motions at a nodal dof, or its coefficient: along an axis of the node's frame if it has
+    /// one.
+    fn at_dof(&self, parts: &Parts, dof: usize) -> Components {
         let (node, axis) = (dof / self.dimension, dof % self.dimension);
-        self.along(node, parts.body.mesh().nodes()[node], parts.dofs.axes(node)[axis])
+        self.along(node, parts.dofs.basis.place(parts.body.mesh().nodes(), node), parts.dofs.axes(node)[axis])
     }
 
-    /// The component of each unit motion along a contact row, positive towards closing.
-    fn in_row(&self, nodes: &[[f64; 3]], row: &ContactRow) -> Vec<f64> {
-        let mut components = vec![0.0; 6 * self.bodies.len()];
-        for &(node, share) in &row.ends {
-            let of_node = self.along(node, nodes[node], row.normal);
-            components.iter_mut().zip(of_node).for_each(|(component, part)| *component += share * part);
-        }
+    /// The components of unit motions along a contact row, positive towards closing.
+    fn in_row(&self, nodes: &[[f64; 3]], row: &ContactRow) -> Components {
+        let of_end = |&(node, share): &(usize, f64)| (node, nodes[node], row.normal.map(|part| share * part));
+        let mut components = self.in_sum(&row.ends.iter().map(of_end).collect());
         if let Some(place) = self.obstacles.iter().position(|&obstacle| obstacle == row.obstacle) {
             let body = self.bodies.len() - self.obstacles.len() + place;
-            let of_obstacle = self.bodies[body].along([0.0; 3], row.normal);
-            (0..6).for_each(|mode| components[6 * body + mode] -= of_obstacle[mode]);
+            let of_obstacle = self.bodies[body].along([0.0; 3], row.normal).into_iter().enumerate();
+            components.extend(of_obstacle.filter(|of| of.1 != 0.0).map(|(mode, part)| (6 * body + mode, -part)));
         }
         components
     }
 
-    /// The component of each unit motion in a sum.
-    fn in_sum(&self, sum: &Sum) -> Vec<f64> {
-        self.bodies.iter().flat_map(|body| body.in_sum(sum)).collect()
+    /// The components of unit motions in a sum.
+    fn in_sum(&self, sum: &Sum) -> Components {
+        let elastic = &self.bodies[..self.bodies.len() - self.obstacles.len()];
+        let body_of = |node: usize| elastic.partition_point(|body| body.nodes.end <= node);
+        let mut bodies: Vec<usize> = sum.iter().map(|term| body_of(term.0)).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let of_body =
+            |body: usize| self.bodies[body].in_sum(sum).into_iter().enumerate().map(move |(m, c)| (6 * body + m, c));
+        bodies.into_iter().flat_map(of_body).filter(|component| component.1 != 0.0).collect()
     }
 
     /// The travel of each pressed obstacle in a motion, against its approach direction.
@@ -111,7 +124,7 @@ impl RigidBodyModes {
 
     /// A motion in the unknowns of the model.
     fn in_unknowns(&self, parts: &Parts, motion: &[f64]) -> Vec<f64> {
-        let of_free = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), motion)).collect();
+        let of_free = parts.dofs.free().iter().map(|&dof| component(&self.at_dof(parts, dof), motion)).collect();
         let travels = self.travels(parts, motion);
         let travel = |obstacle: usize| {
             self.obstacles.iter().position(|&other| other == obstacle).map_or(0.0, |place| travels[place])
@@ -124,27 +137,52 @@ impl RigidBodyModes {
         motions.iter().map(|motion| self.describe(motion, Sense::Either)).collect()
     }
 
-    /// A basis of the motions that nothing resists: unit motions first.
+    /// A basis of the motions that nothing resists: unit motions first. Bodies that nothing joins are looked at one by
+    /// one.
     pub fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Vec<f64>> {
         let nodes = parts.body.mesh().nodes();
         let firm = resisted_firmly(parts);
         let of_rows = rows.iter().map(|row| self.in_row(nodes, row));
-        let resisted: Vec<Vec<f64>> = firm.iter().map(|sum| self.in_sum(sum)).chain(of_rows).collect();
-        let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
-        let matrix = DenseMatrix::from_fn(resisted.len(), modes.len(), |row, column| resisted[row][modes[column]]);
+        let resisted: Vec<Components> = firm.iter().map(|sum| self.in_sum(sum)).chain(of_rows).collect();
+        let mut forest = Forest::new(self.bodies.len());
+        for row in &resisted {
+            row.windows(2).for_each(|pair| forest.join(pair[0].0 / 6, pair[1].0 / 6));
+        }
+        let (group_of, groups) = forest.into_trees();
+        let (mut rows_of, mut modes_of) = (vec![Vec::new(); groups], vec![Vec::new(); groups]);
+        resisted.iter().for_each(|row| row.iter().take(1).for_each(|(mode, _)| rows_of[group_of[mode / 6]].push(row)));
+        self.modes().into_iter().for_each(|mode| modes_of[group_of[mode / 6]].push(mode));
+        let (mut units, mut others) = (Vec::new(), Vec::new());
+        for (rows, modes) in rows_of.iter().zip(&modes_of) {
+            let of_group = self.free_of(rows, modes);
+            units.extend(of_group.0);
+            others.extend(of_group.1);
+        }
+        units.extend(others);
+        units
+    }
+
+    /// A basis of the motions in some modes that none of the rows resists: the unit motions, and the others.
+    fn free_of(&self, rows: &[&Components], modes: &[usize]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let mut matrix = DenseMatrix::zeros(rows.len(), modes.len());
+        for (row, entries) in rows.iter().enumerate() {
+            for &(mode, value) in *entries {
+                matrix[(row, modes.partition_point(|&other| other < mode))] = value;
+            }
+        }
         let svd = matrix.triangle().singular_values();
         let largest = svd.values.first().copied().unwrap_or(0.0);
         let mut null: Vec<Vec<f64>> = Vec::new();
         for (of_modes, _) in svd.right.columns().zip(&svd.values).filter(|(_, value)| **value <= HELD * largest) {
-            let mut motion = vec![0.0; amplitudes];
+            let mut motion = vec![0.0; 6 * self.bodies.len()];
             modes.iter().zip(of_modes).for_each(|(&mode, &amount)| motion[mode] = amount);
             null.push(motion);
         }
         // Rotate the basis towards the unit motions, then add the rest.
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        for mode in modes {
+        for &mode in modes {
             if null.iter().map(|motion| motion[mode].powi(2)).sum::<f64>() > 1.0 - NAMED {
-                let mut unit = vec![0.0; amplitudes];
+                let mut unit = vec![0.0; 6 * self.bodies.len()];
                 unit[mode] = 1.0;
                 basis.push(unit);
             }
@@ -161,8 +199,7 @@ impl RigidBodyModes {
             }
         }
         let rest = basis.split_off(units);
-        basis.extend(translations_first(&rest));
-        basis
+        (basis, translations_first(&rest))
     }
 
     /// The rigid-body mode closest to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.

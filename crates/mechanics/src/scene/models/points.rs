@@ -1,0 +1,314 @@
+//! Reference points: components without nodes, which couplings, equations and springs join to nodes. They are
+//! eliminated here, so that the problem has unknowns of nodes alone; what they do follows from its answer.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::rigid_face::{Given, motion_name, motions};
+use super::terms::terms_of;
+use super::tie_row::TieRow;
+use crate::error::{Error, nearly};
+use crate::fem::assembly::Springs;
+use crate::fem::body::ElasticBody;
+use crate::fem::tributary_areas;
+use crate::scene::input::entry::{boundary, finite, nodes_named_once, positive, vector, wrong};
+use crate::scene::input::schema::{CouplingSpec, Scene, TermPlace, TermSpec, TieSpec};
+use crate::scene::input::sum::{Component, Sum, following, mean};
+
+/// What is left of a value below this share of its parts is rounding.
+const CONTRADICTION: f64 = 1e-9;
+
+/// The reference points of a scene, and what its ties and springs at points mean for nodes. In sums the points come
+/// after the nodes of the mesh.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ReferencePoints {
+    pub all: Vec<ReferencePoint>,
+    /// Number of nodes of the mesh.
+    nodes: usize,
+    /// The sums of each tie at points that are zero.
+    pub ties: BTreeMap<usize, Vec<Sum>>,
+    /// The elongations of springs at points, with their stiffnesses in force per length.
+    springs: BTreeMap<usize, (Sum, f64)>,
+    /// The nodes of each coupling, by its tie.
+    pub coupled: BTreeMap<usize, BTreeSet<usize>>,
+    /// The work of the forces and moments on points.
+    load: Sum,
+}
+
+/// A point, with what moves it.
+#[derive(Clone, Debug)]
+pub(crate) struct ReferencePoint {
+    pub name: String,
+    pub at: [f64; 3],
+    /// Its motions in the order of [`Component`]; `None` for those that nothing gives.
+    moved: [Option<Sum>; 6],
+    /// The forces and moments on it in the scene.
+    applied: [f64; 6],
+}
+
+impl Scene {
+    /// The number of a reference point.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a name that no point has.
+    fn point_named(&self, name: &str, path: &str) -> Result<usize, Error> {
+        self.points.iter().position(|point| point.name == name).ok_or_else(|| {
+            let names = || self.points.iter().map(|point| point.name.as_str());
+            let listed: Vec<String> = names().map(|name| format!("`{name}`")).collect();
+            let there = if listed.is_empty() { "none; add it to `points`".into() } else { listed.join(", ") };
+            wrong(path, format!("there is no reference point `{name}`; there are {there}{}", nearly(name, names())))
+        })
+    }
+
+    /// A sum of terms with their places in the list; points come after the nodes.
+    ///
+    /// # Errors
+    /// As [`terms_of`]; [`Error::Scene`] for a point that does not exist, and a rotation of a node.
+    fn sum_of(&self, terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<Sum, Error> {
+        let (mut sum, nodes) = (Sum::default(), body.mesh().nodes().len());
+        let point = |name: &str, path: String| self.point_named(name, &path).map(|point| nodes + point);
+        for (term, (place, vector)) in terms.iter().zip(terms_of(terms, path, body, &point)?) {
+            sum.add_along(place, vector);
+            let turns = [term.rotation.x, term.rotation.y, term.rotation.z].into_iter().enumerate();
+            turns.filter(|turn| turn.1 != 0.0).for_each(|(axis, part)| sum.add((place, 3 + axis), part));
+        }
+        Ok(sum)
+    }
+
+    /// The reference points, eliminated from all ties, springs and loads.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a point without a name of its own, for couplings and terms that name no point or no node,
+    /// for equations that prescribed components contradict, and for a force or a spring on a component that is free.
+    pub(crate) fn reference_points(&self, body: &ElasticBody) -> Result<ReferencePoints, Error> {
+        let nodes = body.mesh().nodes().len();
+        let mut points = ReferencePoints { nodes, ..ReferencePoints::default() };
+        let mut prescribed = BTreeMap::new();
+        for (index, spec) in self.points.iter().enumerate() {
+            let path = format!("points[{index}]");
+            if spec.name.is_empty() || self.points[..index].iter().any(|other| other.name == spec.name) {
+                let message = format!("`{}` is not allowed: every point needs a name of its own", spec.name);
+                return Err(wrong(format!("{path}.name"), message));
+            }
+            let at = vector(&format!("{path}.at"), &spec.at, body.dimension())?;
+            let turns = spec.rotation.clone().unwrap_or_default();
+            let given = Given {
+                motions: [spec.x, spec.y, spec.z, turns.x, turns.y, turns.z],
+                force: spec.force.as_deref(),
+                moment: spec.moment.as_deref(),
+            };
+            let mut applied = [0.0; 6];
+            for motion in motions(&given, &path, body)? {
+                applied[motion.kind] = motion.force;
+                points.load.add((nodes + index, motion.kind), motion.force);
+                prescribed.extend(motion.prescribed.map(|value| ((nodes + index, motion.kind), value)));
+            }
+            points.all.push(ReferencePoint { name: spec.name.clone(), at, moved: Default::default(), applied });
+        }
+        if !points.all.is_empty() {
+            Elimination::of(self, body, points.load)?.points(self, &prescribed, points.all)
+        } else {
+            Ok(points)
+        }
+    }
+}
+
+/// Returns `true` if a reference point is among the terms.
+fn names_point(terms: &[TermSpec]) -> bool {
+    terms.iter().any(|term| matches!(term.on, TermPlace::Reference(_)))
+}
+
+impl CouplingSpec {
+    /// The sums that the coupling makes zero.
+    fn sums(&self, scene: &Scene, path: &str, body: &ElasticBody) -> Result<Vec<Sum>, Error> {
+        let (mesh, dimension) = (body.mesh(), body.dimension());
+        let number = scene.point_named(&self.point, &format!("{path}.point"))?;
+        let at = vector(&format!("points[{number}].at"), &scene.points[number].at, dimension)?;
+        let point = (mesh.nodes().len() + number, at);
+        let all = motions(&Given::default(), path, body)?;
+        let kinds = |turns: bool| all.iter().map(|motion| motion.kind).filter(move |&kind| (kind >= 3) == turns);
+        let (axes, turns): (Vec<usize>, Vec<usize>) = (kinds(false).collect(), kinds(true).map(|k| k - 3).collect());
+        let areas = match &self.boundary {
+            Some(name) if self.nodes.is_empty() => {
+                tributary_areas(body, boundary(mesh, name, &format!("{path}.boundary"))?)
+            }
+            None if !self.nodes.is_empty() && !self.mean => {
+                let nodes = nodes_named_once(mesh, &self.nodes, &format!("{path}.nodes"))?;
+                nodes.into_iter().map(|node| (node, 0.0)).collect()
+            }
+            None if !self.nodes.is_empty() => return Err(wrong(path, "a `mean` is over the area of a `boundary`")),
+            _ => return Err(wrong(path, "needs either a `boundary` or `nodes`; give one of them")),
+        };
+        let places = areas.into_iter().map(|(node, area)| (node, area, mesh.nodes()[node]));
+        if !self.mean {
+            return Ok(places.flat_map(|(node, _, place)| following((node, place), point, &axes, &turns)).collect());
+        }
+        // About an axis of revolution the mean of a radial displacement is no motion of a point.
+        let revolved = body.formulation().is_axisymmetric();
+        let kinds: Vec<usize> = kinds(false).filter(|&kind| !revolved || kind != 0).chain(kinds(true)).collect();
+        mean(&places.collect::<Vec<_>>(), point, &kinds, dimension == 2)
+            .ok_or_else(|| wrong(path, "the nodes of the boundary lie on a line, about which no moment acts"))
+    }
+}
+
+/// The sums from which components are taken one after the other.
+struct Elimination {
+    nodes: usize,
+    equations: Vec<(usize, Sum)>,
+    springs: BTreeMap<usize, (Sum, f64)>,
+    load: Sum,
+    /// The eliminated components, each with a sum that has it and is zero.
+    solved: Vec<(Component, Sum)>,
+}
+
+impl Elimination {
+    fn of(scene: &Scene, body: &ElasticBody, load: Sum) -> Result<Self, Error> {
+        let (mut equations, mut springs) = (Vec::new(), BTreeMap::new());
+        for (index, tie) in scene.ties.iter().enumerate() {
+            match tie {
+                TieSpec::Equation(spec) if names_point(&spec.terms) => {
+                    let path = format!("ties[{index}].equation");
+                    finite(format!("{path}.value"), spec.value)?;
+                    let mut sum = scene.sum_of(&spec.terms, &path, body)?;
+                    (sum.constant, sum.scale) = (-spec.value, spec.value.abs());
+                    equations.push((index, sum));
+                }
+                TieSpec::Coupling(spec) => {
+                    let sums = spec.sums(scene, &format!("ties[{index}].coupling"), body)?;
+                    equations.extend(sums.into_iter().map(|sum| (index, sum)));
+                }
+                _ => {}
+            }
+        }
+        for (index, spec) in scene.springs.iter().enumerate().filter(|(_, spec)| names_point(&spec.terms)) {
+            let path = format!("springs[{index}]");
+            let along = positive(&format!("{path}.along"), spec.along_alone(&path)?)?;
+            springs.insert(index, (scene.sum_of(&spec.terms, &path, body)?, along));
+        }
+        Ok(Elimination { nodes: body.mesh().nodes().len(), equations, springs, load, solved: Vec::new() })
+    }
+
+    /// All sums.
+    fn sums(&mut self) -> impl Iterator<Item = &mut Sum> {
+        let Elimination { equations, springs, load, solved, .. } = self;
+        let equations = equations.iter_mut().map(|(_, sum)| sum);
+        let springs = springs.values_mut().map(|(elongation, _)| elongation);
+        equations.chain(springs).chain(solved.iter_mut().map(|(_, zero)| zero)).chain(std::iter::once(load))
+    }
+
+    /// Takes the equation in which a component has the largest share, and with it removes the component everywhere
+    /// else.
+    fn eliminate(&mut self, component: Component) {
+        let shares = self.equations.iter().map(|(_, sum)| sum.share(component)).enumerate();
+        let largest = shares.filter(|(_, share)| *share > 0.0).max_by(|one, other| one.1.total_cmp(&other.1));
+        if let Some((pivot, _)) = largest {
+            let zero = self.equations.remove(pivot).1;
+            self.sums().for_each(|sum| sum.eliminate(component, &zero));
+            self.solved.push((component, zero));
+        }
+    }
+
+    /// The points after the elimination of all their components.
+    ///
+    /// # Errors
+    /// As [`Scene::reference_points`].
+    fn points(
+        mut self,
+        scene: &Scene,
+        prescribed: &BTreeMap<Component, f64>,
+        mut all: Vec<ReferencePoint>,
+    ) -> Result<ReferencePoints, Error> {
+        let nodes = self.nodes;
+        let mut coupled: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        for (index, sum) in &self.equations {
+            if matches!(scene.ties[*index], TieSpec::Coupling(_)) {
+                let own = sum.terms.keys().map(|component| component.0).filter(|&node| node < nodes);
+                coupled.entry(*index).or_default().extend(own);
+            }
+        }
+        // A tie of which nothing is left keeps its place.
+        let mut ties: BTreeMap<usize, Vec<Sum>> = self.equations.iter().map(|one| (one.0, Vec::new())).collect();
+        let (equations, springs) = (self.equations.iter().map(|one| &one.1), self.springs.values().map(|one| &one.0));
+        let named = equations.chain(springs).flat_map(|sum| sum.terms.keys().copied());
+        let joined: BTreeSet<Component> = named.filter(|component| component.0 >= nodes).collect();
+        let word = |(point, kind): Component| (&scene.points[point - nodes].name, motion_name(kind));
+        let free = |component: Component, what: &str| {
+            let (name, motion) = word(component);
+            format!("the reference point `{name}` is free in `{motion}`; {what}")
+        };
+        if let Some(&alone) = self.load.terms.keys().find(|component| !joined.contains(component)) {
+            let message =
+                free(alone, "nothing follows it, and carries the force; add a coupling, an equation or a spring");
+            return Err(wrong(format!("points[{}]", alone.0 - nodes), message));
+        }
+        for sum in self.sums() {
+            let own = sum.terms.keys().filter_map(|component| Some((*component, *prescribed.get(component)?)));
+            own.collect::<Vec<_>>().into_iter().for_each(|(component, value)| sum.insert(component, value));
+        }
+        joined.iter().filter(|component| !prescribed.contains_key(component)).for_each(|&one| self.eliminate(one));
+        let loose = |sum: &Sum| sum.terms.keys().copied().find(|component| component.0 >= nodes);
+        for (index, sum) in self.equations {
+            let of_tie = ties.entry(index).or_default();
+            if !sum.terms.is_empty() {
+                of_tie.push(sum);
+            } else if sum.constant.abs() > CONTRADICTION * sum.scale {
+                let message = "the displacements that are prescribed at reference points contradict this equation";
+                return Err(wrong(format!("ties[{index}]"), message));
+            }
+        }
+        if let Some((index, component)) = self.springs.iter().find_map(|(index, one)| Some((index, loose(&one.0)?))) {
+            return Err(wrong(format!("springs[{index}]"), free(component, "nothing but springs holds it")));
+        }
+        if let Some(component) = loose(&self.load) {
+            let message = free(component, "it carries no force there");
+            return Err(wrong(format!("points[{}]", component.0 - nodes), message));
+        }
+        for (&(point, kind), &constant) in prescribed {
+            all[point - nodes].moved[kind] = Some(Sum { constant, ..Sum::default() });
+        }
+        for ((point, kind), zero) in self.solved {
+            let (mut value, own) = (Sum::default(), zero.terms[&(point, kind)]);
+            value.add_multiple(-1.0 / own, &zero);
+            value.terms.retain(|component, _| component.0 < nodes);
+            all[point - nodes].moved[kind] = Some(value);
+        }
+        Ok(ReferencePoints { all, nodes, ties, springs: self.springs, coupled, load: self.load })
+    }
+}
+
+impl ReferencePoints {
+    /// The spring of this number, if a point is among its terms.
+    pub fn spring(&self, number: usize) -> Option<Springs> {
+        let (elongation, along) = self.springs.get(&number)?;
+        let terms: Vec<(usize, [f64; 3])> = elongation.vectors().into_iter().collect();
+        Some(Springs::between(&terms, elongation.constant, *along))
+    }
+
+    /// Adds the forces on nodes that do the work of those on points, `dimension` entries for each node.
+    pub fn add_load(&self, load: &mut [f64], dimension: usize) {
+        for (node, force) in self.load.vectors() {
+            load[dimension * node..dimension * (node + 1)].iter_mut().zip(force).for_each(|(sum, part)| *sum += part);
+        }
+    }
+
+    /// Of each point the displacements and rotations, and the forces and moments from outside: those of the scene, and
+    /// those that hold prescribed motions; from the displacement of each node and the multipliers of all equations.
+    pub fn values(
+        &self,
+        displacement: impl Fn(usize) -> [f64; 3],
+        rows: &[TieRow],
+        of_ties: &[f64],
+    ) -> Vec<[[f64; 6]; 2]> {
+        let value = |sum: &Sum| {
+            sum.terms.iter().fold(sum.constant, |all, (&(node, axis), part)| all + part * displacement(node)[axis])
+        };
+        let moved = |point: &ReferencePoint| point.moved.each_ref().map(|sum| sum.as_ref().map_or(0.0, value));
+        let mut all: Vec<[[f64; 6]; 2]> = self.all.iter().map(|point| [moved(point), point.applied]).collect();
+        let mut hold = |factor: f64, replaced: &BTreeMap<Component, f64>| {
+            replaced.iter().for_each(|(&(point, kind), part)| all[point - self.nodes][1][kind] += factor * part);
+        };
+        hold(-1.0, &self.load.replaced);
+        rows.iter().zip(of_ties).for_each(|(row, multiplier)| hold(-multiplier, &row.on_points));
+        self.springs.values().for_each(|(elongation, along)| hold(along * value(elongation), &elongation.replaced));
+        all
+    }
+}
