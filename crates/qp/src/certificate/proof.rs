@@ -224,15 +224,18 @@ pub(super) struct ComplianceFactor<'a> {
     rows: RowsOnBoundary,
     /// The boundary, if all rows are on it.
     boundary: Option<&'a Boundary>,
+    /// That of a sweep, relative.
+    rounding: f64,
 }
 
 impl<'a> ComplianceFactor<'a> {
     pub(super) fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
+        let rounding = norm.rounding();
         match norm.rows_on_boundary(&problem.contact, |_| true) {
-            Some(rows) => ComplianceFactor { norm, rows, boundary: norm.boundary.as_deref() },
+            Some(rows) => ComplianceFactor { norm, rows, boundary: norm.boundary.as_deref(), rounding },
             None => {
                 let rows = RowsOnBoundary::of(&norm.rows_in_body(&problem.contact));
-                ComplianceFactor { norm, rows, boundary: None }
+                ComplianceFactor { norm, rows, boundary: None, rounding }
             }
         }
     }
@@ -290,7 +293,7 @@ impl<'a> ComplianceFactor<'a> {
                 dot(&column, &column)
             }
         };
-        ldexp(self.norm.rounding() * self.norm.length(square), -self.rows.shift[row])
+        ldexp(self.rounding * self.norm.length(square), -self.rows.shift[row])
     }
 
     /// The reach of all rows, if their compliance is known; otherwise upper bounds by one sweep, if the contact
@@ -301,7 +304,7 @@ impl<'a> ComplianceFactor<'a> {
             return Some(all.map(|row| self.reach(row)).collect());
         }
         let sums = self.rows.by_row.mul_abs_transposed(&self.boundary?.block.sums_of_inverse());
-        let reach = |row: usize| self.norm.rounding() * self.norm.length(sums[row].powi(2));
+        let reach = |row: usize| self.rounding * self.norm.length(sums[row].powi(2));
         Some(all.map(|row| ldexp(reach(row), -self.rows.shift[row])).collect())
     }
 
@@ -322,7 +325,7 @@ impl<'a> ComplianceFactor<'a> {
     fn moved_together(&self, contact: &SparseMatrix, rows: &[usize]) -> Vec<f64> {
         let none = || vec![f64::INFINITY; rows.len()];
         let of_reciprocal = |row: usize, reciprocal: f64| {
-            self.norm.rounding() * ldexp_root(reciprocal, -self.norm.equilibration.factor, self.rows.shift[row])
+            self.rounding * ldexp_root(reciprocal, -self.norm.equilibration.factor, self.rows.shift[row])
         };
         if self.norm.is_sharp()
             && let Some(products) = self.products(rows)
