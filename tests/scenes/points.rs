@@ -264,6 +264,15 @@ fn points_that_cannot_be_read_are_refused_with_their_place() {
             "nothing but springs holds it",
         ),
         (
+            with(
+                end.clone(),
+                coupled.clone(),
+                json!([{"on": {"boundary": "top"}, "terms": [{"on": {"reference": "end"}, "x": 1}], "along": 5}]),
+            ),
+            "springs[0]",
+            "has both a place `on` and `terms`",
+        ),
+        (
             with(moved(json!({"x": 0.5})), equation(json!({"on": {"reference": "end"}, "x": 1})), none.clone()),
             "ties[0]",
             "contradict this equation",

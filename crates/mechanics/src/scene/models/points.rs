@@ -237,7 +237,7 @@ impl Elimination {
         };
         if let Some(&alone) = self.load.terms.keys().find(|component| !joined.contains(component)) {
             let message =
-                free(alone, "nothing follows it, and carries the force; add a coupling, an equation or a spring");
+                free(alone, "nothing follows it that could carry the force; add a coupling, an equation or a spring");
             return Err(wrong(format!("points[{}]", alone.0 - nodes), message));
         }
         for sum in self.sums() {

@@ -184,8 +184,11 @@ pub(super) fn motions(given: &Given, path: &str, body: &ElasticBody) -> Result<V
     let force = given.force.map(|force| vector(&format!("{path}.force"), force, dimension)).transpose()?;
     let moment = given.moment.unwrap_or_default();
     if given.moment.is_some() && moment.len() != turns.len() {
-        let message =
-            format!("the array has {} entries; the faces of this model turn about {} axes", moment.len(), turns.len());
+        let message = format!(
+            "the array has {} entries; faces and points of this model turn about {} axes",
+            moment.len(),
+            turns.len()
+        );
         return Err(wrong(format!("{path}.moment"), message));
     }
     let mut motions = Vec::new();
@@ -194,7 +197,7 @@ pub(super) fn motions(given: &Given, path: &str, body: &ElasticBody) -> Result<V
         let turn = turns.iter().position(|&turn| 3 + turn == kind);
         if kind >= dimension && turn.is_none() {
             if prescribed.is_some() {
-                return Err(wrong(field, "the faces of this model have no such motion"));
+                return Err(wrong(field, "faces and points of this model have no such motion"));
             }
             continue;
         }

@@ -10,6 +10,9 @@ use crate::scene::input::entry::{boundary, node_at, positive, wrong};
 use crate::scene::input::schema::spring::StiffnessOf;
 use crate::scene::input::schema::{Place, Scene, SpringSpec};
 
+/// The refusal of a spring that is written in two ways.
+const BOTH: &str = "has both a place `on` and `terms` with `along`; give one of them";
+
 impl Scene {
     /// The springs, in the order of the scene.
     ///
@@ -29,7 +32,7 @@ impl SpringSpec {
         let dimension = body.dimension();
         let Some(on) = &self.on else { return self.between(path, body) };
         if !self.terms.is_empty() || self.along.is_some() {
-            return Err(wrong(path, "has both a place `on` and `terms` with `along`; give one of them"));
+            return Err(wrong(path, BOTH));
         }
         match on {
             Place::Point(_) if self.normal.is_some() => {
@@ -105,6 +108,9 @@ impl SpringSpec {
     /// # Errors
     /// [`Error::Scene`] without it, and with others.
     pub(crate) fn along_alone(&self, path: &str) -> Result<f64, Error> {
+        if self.on.is_some() {
+            return Err(wrong(path, BOTH));
+        }
         if self.terms.is_empty() {
             return Err(wrong(path, "needs a place `on`, or `terms` of its elongation with the stiffness `along` it"));
         }
