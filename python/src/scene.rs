@@ -59,8 +59,8 @@ use crate::work::{End, Place, run};
 #[pyclass(frozen, module = "signorini")]
 pub struct Scene {
     pub inner: Arc<signorini::Scene>,
-    /// The file of the scene, for the line and column in messages, and the step if it is a deck.
-    file: Option<(PathBuf, Option<usize>)>,
+    /// The file of the scene, for the line and column in messages.
+    file: Option<PathBuf>,
     model: Mutex<Option<Arc<Model>>>,
 }
 
@@ -99,11 +99,11 @@ impl Scene {
     }
 }
 
-fn built(scene: &signorini::Scene, file: Option<(PathBuf, Option<usize>)>) -> Result<Model, Error> {
+fn built(scene: &signorini::Scene, file: Option<PathBuf>) -> Result<Model, Error> {
     let most = Settings::default().with_available_memory().memory;
     scene.check_size_without_factor(most.unwrap_or(f64::INFINITY))?;
     scene.build().map_err(|error| match &file {
-        Some((file, step)) => signorini::Scene::located(error, file, *step),
+        Some(file) => signorini::Scene::located(error, file),
         None => error,
     })
 }
@@ -142,9 +142,9 @@ impl Scene {
                 let named = [("outside", allow_outside), ("friction", without_friction)];
                 let permits: Vec<&str> =
                     named.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
-                (signorini::Scene::read_deck(&path, &permits, step), Some((path, step)))
+                (signorini::Scene::read_deck(&path, &permits, step), Some(path))
             }
-            (false, Ok(path)) => (signorini::Scene::read(&path), Some((path, None))),
+            (false, Ok(path)) => (signorini::Scene::read(&path), Some(path)),
             (false, Err(_)) => {
                 let kind = kind_of(source);
                 return Err(bad_type(py, format!("a scene is made of a file name or a dictionary, not of a {kind}")));

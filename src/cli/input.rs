@@ -164,7 +164,7 @@ pub(super) fn read_scene(path: &Path, limits: &Limits) -> Result<Scene, Error> {
 
 /// Builds the scene of a file; an error names the line and column of the wrong value.
 pub(super) fn build(scene: &Scene, path: &Path, limits: &Limits) -> Result<Model, Error> {
-    scene.build_within(limits.most_memory()).map_err(|error| Scene::located(error, path, limits.deck.step))
+    scene.build_within(limits.most_memory()).map_err(|error| Scene::located(error, path))
 }
 
 /// The title of a scene, or its file if it has none.

@@ -44,7 +44,7 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let even = |range: &Gaps| Swept::even_gaps(range.first, range.last, range.count);
     let swept = match (&options.gaps, &options.forces) {
         (_, Some(forces)) => Swept::over_forces(&model, &even(forces), &settings)
-            .map_err(|error| Scene::located(error, &options.scene, common.limits.deck.step))?,
+            .map_err(|error| Scene::located(error, &options.scene))?,
         (gaps, None) => Swept::over_gaps(&model, &gaps.as_ref().map_or_else(Vec::new, even), &settings)?,
     };
     watch.step("report", 0);

@@ -27,7 +27,7 @@ fn refused(desk: &Path, name: &str) -> Option<Error> {
     match file.extension().and_then(|extension| extension.to_str()) {
         Some("json") => {
             let built =
-                Scene::read(&file).and_then(|scene| scene.build()).map_err(|error| Scene::located(error, &file, None));
+                Scene::read(&file).and_then(|scene| scene.build()).map_err(|error| Scene::located(error, &file));
             built.and_then(|model| solved(model.problem()).map_err(|error| model.explain(error))).err()
         }
         Some("msh") => GmshFile::read(&file).and_then(|mesh| mesh.mesh(&[], 1.0)).err(),

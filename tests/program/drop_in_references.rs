@@ -126,3 +126,18 @@ fn fixed_holds_the_displacement_of_the_step_before_and_a_failed_step_keeps_those
         assert!(desk.path("cubes.frd").exists());
     }
 }
+
+/// A step after FIXED that is refused has the line of the card in its sentence.
+#[test]
+fn a_refused_step_after_fixed_names_the_line_of_the_deck() {
+    let desk = Desk::new();
+    let load = "5, 3, -1.\n6, 3, -1.\n7, 3, -1.\n8, 3, -1.\n";
+    let steps = format!(
+        "*STEP\n*STATIC\n*CLOAD\n{load}*END STEP\n*STEP\n*STATIC\n*BOUNDARY, FIXED\n5, 3\n*BOUNDARY\n8, 3, 3, 0.5\n*END STEP\n"
+    );
+    desk.write("cubes.inp", format!("{CUBES}*EQUATION\n2\n5, 3, 1., 8, 3, -1.\n{steps}"));
+    let said = desk.run(&["ccx", "cubes"]).ends_with(1).stdout;
+    let line = CUBES.lines().count() + 2;
+    assert!(said.contains("step 2: "), "{said}");
+    assert!(said.contains(&format!("cubes.inp:{line}: at `ties[0]")), "{said}");
+}

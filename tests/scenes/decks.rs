@@ -21,7 +21,7 @@ pub fn read(files: &[(&str, &str)], permits: &[&str]) -> Result<Scene, Error> {
     }
     let file = desk.path().join(files[0].0);
     let scene = Scene::read_deck(&file, permits, None)?;
-    scene.build().map_err(|error| Scene::located(error, &file, None))?;
+    scene.build().map_err(|error| Scene::located(error, &file))?;
     // The folder of the deck is gone when the scene is built again.
     let kept = desk.keep();
     Ok(Scene { folder: Some(kept), ..scene })
@@ -97,6 +97,32 @@ fn every_element_stretches_as_in_closed_form() {
         let along = 3.0 / E * if is_strain { 1.0 - NU * NU } else { 1.0 };
         let across = -NU * 3.0 / E * if is_strain { 1.0 + NU } else { 1.0 };
         compare(&answer, |[x, y, z]| [along * x, across * y, across * z]);
+    }
+}
+
+/// GOAL: a pressure on faces within a body.
+/// CONDITIONS: nu = 0; the faces across x (axisymmetric: y) of the elements before the last row, of all elements.
+/// REFERENCE: sigma = -3 up to there, 0 beyond.
+#[test]
+fn faces_within_a_body_are_pressed() {
+    for element in ["CPS3", "CPS4", "CPS6", "CPE8", "CAX4", "CAX6", "CAX8", "C3D4", "C3D8", "C3D20"] {
+        let is_plane = !element.starts_with("C3D");
+        let (axis, at) = if element.starts_with("CAX") { (1, 0.5) } else { (0, 4.0 / 3.0) };
+        let (high, cells) = if is_plane { ([2.0, 1.0, 0.0], [3, 2, 0]) } else { ([2.0, 1.0, 1.0], [3, 2, 2]) };
+        let mesh = Block { element, low: [0.0; 3], high, cells, after: 0 }.mesh();
+        let is_at = |place: f64| (place - at).abs() < 1e-9;
+        let low: Vec<usize> =
+            mesh.nodes.iter().filter(|(_, place)| place[axis] < at - 1e-9).map(|(number, _)| *number).collect();
+        let is_before = |element: usize| {
+            mesh.elements.iter().any(|one| one.0 == element && one.1.iter().any(|node| low.contains(node)))
+        };
+        let pressed = mesh.faces(|place| is_at(place[axis])).into_iter().filter(|(element, _)| is_before(*element));
+        let pressed: String = pressed.map(|(element, face)| format!("{element}, P{face}, 3.\n")).collect();
+        let thickness = if is_plane { "0.5\n" } else { "" };
+        let deck =
+            block(element).replace("200., 0.25", "200., 0.").replace("L=STEEL\n", &format!("L=STEEL\n{thickness}"));
+        let answer = answer(&(deck + SYMMETRIC + &step(&format!("*DLOAD\n{pressed}"))));
+        compare(&answer, |place| [0, 1, 2].map(|k| if k == axis { -3.0 * place[axis].min(at) / 200.0 } else { 0.0 }));
     }
 }
 

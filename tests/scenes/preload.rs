@@ -218,6 +218,104 @@ fn a_bolt_that_lengthens_has_a_negative_shortening() {
     }
 }
 
+/// GOAL: a point that stands for a bolt. CONDITIONS: a force, or a displacement along x, of the point, with another
+/// point that pulls at the bar. REFERENCE: the same tension or shortening of the preload; the point has both.
+#[test]
+fn a_point_stands_for_a_bolt() {
+    let pull = json!({"name": "end", "at": [0.5, 0.5, 2], "force": [0, 0, 1.5]});
+    for (key, of_point, value) in [("force", "force", 3.0), ("shortening", "x", 0.07), ("force", "force", -3.0)] {
+        let scene = |preload: Value, points: Value| {
+            let mut scene = bar("hex8", [2, 3], 0.3, &preload);
+            let coupling = json!({"coupling": {"point": "end", "boundary": "left"}});
+            scene["ties"].as_array_mut().unwrap().insert(0, coupling);
+            scene["points"] = points;
+            answer(&scene)
+        };
+        let mut bolt = json!({"name": "bolt", "at": [9, 9, 9]});
+        bolt[of_point] = if of_point == "x" { value.into() } else { json!([value, 0, 0]) };
+        let by_point = scene(json!({"boundary": "top", "to": "far.bottom", "point": "bolt"}), json!([pull, bolt]));
+        let by_tie = scene(preload(key, value), json!([pull]));
+        let largest = by_tie.displacement().iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+        for (one, two) in by_tie.displacement().iter().zip(by_point.displacement()) {
+            assert!((one - two).abs() < ROUNDING * largest, "{key}: {one} and {two}");
+        }
+        let of = |of: &str| by_point.resultants().unwrap().iter().find(|one| one.of == of).unwrap().clone();
+        let (tie, point) = (of("ties[1]"), of("points[1]"));
+        assert_eq!(point.on.as_deref(), Some("`bolt`"));
+        let near = |one: f64, two: f64| assert!((one - two).abs() < INTEGRATED * value.abs(), "{key}: {one} and {two}");
+        near(point.motion.unwrap().displacement[0], tie.shortening.unwrap());
+        near(point.force[0], tie.tension.unwrap());
+        near(if key == "force" { point.force[0] } else { tie.shortening.unwrap() }, value);
+    }
+}
+
+#[test]
+fn a_point_that_is_no_bolt_is_refused() {
+    let bolt = |keys: Value| {
+        let mut bolt = json!({"name": "bolt", "at": [0, 0, 0]});
+        keys.as_object().unwrap().iter().for_each(|(key, value)| bolt[key] = value.clone());
+        bolt
+    };
+    let preload = |keys: Value| {
+        let mut preload = json!({"boundary": "top", "to": "far.bottom", "point": "bolt"});
+        keys.as_object().unwrap().iter().for_each(|(key, value)| preload[key] = value.clone());
+        json!({"preload": preload})
+    };
+    let (plain, none) = (bolt(json!({"force": [3, 0, 0]})), json!({}));
+    let term = json!({"on": {"reference": "bolt"}, "x": 1});
+    for (points, ties, path, phrase) in [
+        (json!([bolt(json!({"y": 1}))]), json!([preload(none.clone())]), "points[0].y", "along x alone"),
+        (json!([bolt(json!({"force": [3, 1, 0]}))]), json!([preload(none.clone())]), "points[0].y", "along x alone"),
+        (
+            json!([bolt(json!({"rotation": {"z": 1}}))]),
+            json!([preload(none.clone())]),
+            "points[0].rotation.z",
+            "along x alone",
+        ),
+        (
+            json!([bolt(json!({"force": [3, 0, 0], "x": 1}))]),
+            json!([preload(none.clone())]),
+            "points[0].x",
+            "does nothing",
+        ),
+        (json!([plain]), json!([preload(json!({"force": 1}))]), "ties[0].preload", "has the point `bolt`"),
+        (
+            json!([plain]),
+            json!([preload(none.clone()), preload(none.clone())]),
+            "ties[1].preload.point",
+            "stands for the bolt of ties[0]",
+        ),
+        (
+            json!([bolt(none.clone())]),
+            json!([preload(json!({"point": "bold"}))]),
+            "ties[0].preload.point",
+            "did you mean `bolt`?",
+        ),
+        (
+            json!([plain]),
+            json!([preload(none.clone()), {"equation": {"terms": [term]}}]),
+            "ties[1].equation.terms[0].on.reference",
+            "stands for the bolt of ties[0]",
+        ),
+        (
+            json!([plain]),
+            json!([preload(none), {"coupling": {"point": "bolt", "boundary": "left"}}]),
+            "ties[1].coupling.point",
+            "stands for the bolt of ties[0]",
+        ),
+    ] {
+        let mut scene = bar("hex8", [2, 2], 0.3, &json!({}));
+        (scene["points"], scene["ties"]) = (points, ties);
+        match build(&scene) {
+            Err(Error::Scene { path: found, message }) => {
+                assert_eq!(found, path, "{message}");
+                assert!(message.contains(phrase), "{message}");
+            }
+            other => panic!("{path}: {other:?}"),
+        }
+    }
+}
+
 #[test]
 fn a_preload_that_describes_no_bolt_is_refused() {
     let refused = |preload: &Value, change: &dyn Fn(&mut Value)| {
@@ -230,7 +328,10 @@ fn a_preload_that_describes_no_bolt_is_refused() {
     };
     let none = |_: &mut Value| ();
     for (preload, phrase) in [
-        (json!({"boundary": "top", "to": "far.bottom"}), "ties[0].preload: needs one of `force` and `shortening`"),
+        (
+            json!({"boundary": "top", "to": "far.bottom"}),
+            "ties[0].preload: needs one of `force`, `shortening` and `point`",
+        ),
         (json!({"boundary": "top", "to": "far.bottom", "force": 1, "shortening": 1}), "needs one of `force`"),
         (json!({"boundary": "top", "to": "far.top", "force": 1}), "no facet of `top` faces `far.top`"),
         (json!({"boundary": "top", "to": "far.bottom", "force": 1, "direction": [1, 0, 0]}), "lies along the faces"),

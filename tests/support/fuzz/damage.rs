@@ -112,7 +112,7 @@ pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
                 path: desk.into(),
                 source,
             })?;
-            Scene::read(&file)?.build().map_err(|error| Scene::located(error, &file, None)).map(drop)
+            Scene::read(&file)?.build().map_err(|error| Scene::located(error, &file)).map(drop)
         }
         Some("msh") => GmshFile::parse(bytes, name)?.mesh(&[], 1.0).map(drop),
         _ => {

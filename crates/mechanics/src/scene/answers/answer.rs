@@ -233,7 +233,14 @@ impl Answer {
     /// [`ReferencePoints::values`](crate::scene::models::points::ReferencePoints::values).
     pub(crate) fn values_of_points(&self) -> Vec<[[f64; 6]; 2]> {
         let displacement = |node: usize| self.model.at_node(&self.displacement, node);
-        self.model.parts.points.values(displacement, &self.model.parts.ties.rows, &self.of_ties)
+        let points = &self.model.parts.points;
+        let mut all = points.values(displacement, &self.model.parts.ties.rows, &self.of_ties);
+        for (point, [moved, force]) in points.all.iter().zip(&mut all) {
+            if let Some(tie) = point.bolt {
+                [moved[0], force[0]] = self.model.of_bolt(tie, &self.of_ties, &self.unknowns);
+            }
+        }
+        all
     }
 
     /// The answer with other multipliers of the rows: only its pressures are computed again.
@@ -326,8 +333,9 @@ impl Answer {
             all.extend(self.model.support_resultants(|node| self.model.at_node(reactions, node)));
             all.extend(self.model.spring_resultants(&self.displacement));
             all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
-            all.extend(self.model.tie_resultants(&self.of_ties, &self.unknowns));
-            all.extend(self.model.point_resultants(&self.values_of_points()));
+            let ties = self.model.tie_resultants(&self.of_ties, &self.unknowns);
+            let points = self.model.point_resultants(&self.values_of_points(), &ties);
+            all.extend(ties.into_iter().chain(points));
             all.extend(self.model.load_resultant());
             without_rounding(&mut all);
             Ok(all)

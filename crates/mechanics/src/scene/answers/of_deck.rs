@@ -29,13 +29,6 @@ impl Answer {
                 Of::Face { face, first, centre } => {
                     named(format!("rigid-faces[{face}]")).map(|one| self.of_face(one, centre, first))
                 }
-                // The node of a bolt moves along the direction of the deck.
-                Of::Bolt { tie } => named(format!("ties[{tie}]")).map(|one| {
-                    let bolts = &self.model().parts.ties.shortenings;
-                    let sense = bolts.iter().find(|bolt| bolt.tie == tie).map_or(1.0, |bolt| bolt.sense);
-                    let along = |part: Option<f64>| [sense * part.unwrap_or(0.0), 0.0, 0.0, 0.0, 0.0, 0.0];
-                    [along(one.shortening), along(one.tension)]
-                }),
             };
             (node.number, values.unwrap_or_default())
         };

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::deck::{DeckScene, Reading, is_deck};
+use super::deck::is_deck;
 use super::files::Named;
 use super::json::{line_and_column, parsed, plain, start_of};
 use crate::error::Error;
@@ -15,16 +15,36 @@ use signorini_qp::file::read_text_capped;
 pub(super) const MOST_OF_SCENE: u64 = 256 << 20;
 
 impl Scene {
-    /// An error of a value with its line and column, if the scene was read from a file that can be read again: a scene,
-    /// or the deck of a `step` (the last one without it).
-    pub fn located(error: Error, file: &Path, step: Option<usize>) -> Error {
-        if is_deck(file) {
-            // Only the lines of its entries are wanted.
-            let reading = Reading { permits: &["outside", "friction"], step, earlier: &[] };
-            return match DeckScene::read(file, "", reading) {
-                Ok(deck) => deck.located(error),
-                Err(_) => error,
+    /// An error of a value of a scene of a deck with the line of the deck that it comes from.
+    pub(crate) fn with_line(&self, error: Error) -> Error {
+        let of = |path: &str| {
+            let is_in = |known: &str| {
+                path.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
             };
+            let known = self.lines.iter().filter(|(known, _)| known.is_empty() || is_in(known));
+            known.max_by_key(|(known, _)| known.len()).map(|(_, place)| place.clone())
+        };
+        match error {
+            Error::Scene { path, message } => match of(&path) {
+                Some((file, line)) => {
+                    let message = format!("at `{path}` of the scene of this deck: {message}");
+                    qp::Error::FileSyntax { file, line, message }.into()
+                }
+                None => Error::Scene { path, message },
+            },
+            Error::Refused { code, place, path, message } => {
+                let found = of(&path).map(|(file, line)| format!("{}:{line}: ", file.display()));
+                Error::Refused { code, place: found.unwrap_or(place), path, message }
+            }
+            other => other,
+        }
+    }
+
+    /// An error of a value with its line and column, if the scene was read from a file that can be read again. Errors
+    /// of decks have their lines.
+    pub fn located(error: Error, file: &Path) -> Error {
+        if is_deck(file) {
+            return error;
         }
         let place_of = |path: &str| match read_text_capped(file, MOST_OF_SCENE) {
             Ok(text) if file.is_file() => position(&text, path),

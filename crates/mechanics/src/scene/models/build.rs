@@ -18,8 +18,10 @@ impl Scene {
     /// Discretises the scene and sets up its contact problem.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a value that describes no problem, [`qp::Error::UnderHeld`](signorini_qp::Error::UnderHeld)
-    /// for a rigid-body mode that neither supports nor obstacles resist.
+    /// [`Error::Scene`] for a value that describes no problem; of a deck
+    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with its line;
+    /// [`qp::Error::UnderHeld`](signorini_qp::Error::UnderHeld) for a rigid-body mode that neither supports nor
+    /// obstacles resist.
     pub fn build(&self) -> Result<Model, Error> {
         self.build_with(&[])
     }
@@ -31,7 +33,7 @@ impl Scene {
     /// As [`Scene::build`]; [`Error::Scene`] for a boundary that does not exist, and for a direction or a normal that
     /// is not of unit length or leads out of the model.
     pub fn build_with(&self, further: &[(&str, Arc<dyn Obstacle>)]) -> Result<Model, Error> {
-        self.build_of(self.bodies()?, further)
+        self.bodies().and_then(|bodies| self.build_of(bodies, further)).map_err(|error| self.with_line(error))
     }
 
     /// As [`Scene::build`], for a scene that may take at most `most` bytes.
@@ -40,9 +42,8 @@ impl Scene {
     /// As [`Scene::build`]; [`qp::Error::TooLarge`](signorini_qp::Error::TooLarge) before the assembly of bodies that
     /// are too large.
     pub fn build_within(&self, most: f64) -> Result<Model, Error> {
-        let bodies = self.bodies()?;
-        Scene::check_bodies(&bodies, most)?;
-        self.build_of(bodies, &[])
+        let within = |bodies: Vec<_>| Scene::check_bodies(&bodies, most).and_then(|()| self.build_of(bodies, &[]));
+        self.bodies().and_then(within).map_err(|error| self.with_line(error))
     }
 
     /// The files that the scene names.

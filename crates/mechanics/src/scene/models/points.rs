@@ -39,6 +39,8 @@ pub(crate) struct ReferencePoints {
 pub(crate) struct ReferencePoint {
     pub name: String,
     pub at: [f64; 3],
+    /// The preload that it stands for.
+    pub bolt: Option<usize>,
     /// Its motions in the order of [`Component`]; `None` for those that nothing gives.
     moved: [Option<Sum>; 6],
     /// The forces and moments on it in the scene.
@@ -50,7 +52,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Scene`] for a name that no point has.
-    fn point_named(&self, name: &str, path: &str) -> Result<usize, Error> {
+    pub(super) fn point_named(&self, name: &str, path: &str) -> Result<usize, Error> {
         self.points.iter().position(|point| point.name == name).ok_or_else(|| {
             let names = || self.points.iter().map(|point| point.name.as_str());
             let listed: Vec<String> = names().map(|name| format!("`{name}`")).collect();
@@ -59,13 +61,28 @@ impl Scene {
         })
     }
 
+    /// The number of a reference point that equations, springs and couplings may name.
+    ///
+    /// # Errors
+    /// As [`point_named`](Self::point_named); [`Error::Scene`] for a point that stands for a bolt.
+    fn joining(&self, name: &str, path: &str) -> Result<usize, Error> {
+        match self.bolt_of(name) {
+            None => self.point_named(name, path),
+            Some(bolt) => Err(wrong(
+                path,
+                format!("`{name}` stands for the bolt of ties[{bolt}]; prescribe its `x` or its `force` instead"),
+            )),
+        }
+    }
+
     /// A sum of terms with their places in the list; points come after the nodes.
     ///
     /// # Errors
-    /// As [`terms_of`]; [`Error::Scene`] for a point that does not exist, and a rotation of a node.
+    /// As [`terms_of`]; [`Error::Scene`] for a point that does not exist or stands for a bolt, and a rotation of a
+    /// node.
     fn sum_of(&self, terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<Sum, Error> {
         let (mut sum, nodes) = (Sum::default(), body.mesh().nodes().len());
-        let point = |name: &str, path: String| self.point_named(name, &path).map(|point| nodes + point);
+        let point = |name: &str, path: String| self.joining(name, &path).map(|point| nodes + point);
         for (term, (place, vector)) in terms.iter().zip(terms_of(terms, path, body, &point)?) {
             sum.add_along(place, vector);
             let turns = [term.rotation.x, term.rotation.y, term.rotation.z].into_iter().enumerate();
@@ -96,13 +113,21 @@ impl Scene {
                 force: spec.force.as_deref(),
                 moment: spec.moment.as_deref(),
             };
-            let mut applied = [0.0; 6];
+            let (mut applied, bolt) = ([0.0; 6], self.bolt_of(&spec.name));
             for motion in motions(&given, &path, body)? {
                 applied[motion.kind] = motion.force;
+                if bolt.is_some() {
+                    if motion.kind > 0 && (motion.force != 0.0 || motion.prescribed.is_some_and(|value| value != 0.0)) {
+                        let message = "the point stands for a bolt, which has a shortening and a tension along x alone";
+                        return Err(wrong(format!("{path}.{}", motion.name()), message));
+                    }
+                    continue;
+                }
                 points.load.add((nodes + index, motion.kind), motion.force);
                 prescribed.extend(motion.prescribed.map(|value| ((nodes + index, motion.kind), value)));
             }
-            points.all.push(ReferencePoint { name: spec.name.clone(), at, moved: Default::default(), applied });
+            let (name, moved) = (spec.name.clone(), Default::default());
+            points.all.push(ReferencePoint { name, at, bolt, moved, applied });
         }
         if !points.all.is_empty() {
             Elimination::of(self, body, points.load)?.points(self, &prescribed, points.all)
@@ -121,7 +146,7 @@ impl CouplingSpec {
     /// The sums that the coupling makes zero.
     fn sums(&self, scene: &Scene, path: &str, body: &ElasticBody) -> Result<Vec<Sum>, Error> {
         let (mesh, dimension) = (body.mesh(), body.dimension());
-        let number = scene.point_named(&self.point, &format!("{path}.point"))?;
+        let number = scene.joining(&self.point, &format!("{path}.point"))?;
         let at = vector(&format!("points[{number}].at"), &scene.points[number].at, dimension)?;
         let point = (mesh.nodes().len() + number, at);
         let all = motions(&Given::default(), path, body)?;

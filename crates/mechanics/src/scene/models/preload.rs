@@ -16,7 +16,7 @@ use crate::fem::geometry::{cross, dot, length, unit};
 use crate::scene::Warning;
 use crate::scene::input::entry::{finite, refused, vector, wrong};
 use crate::scene::input::obstacle::SideOrder;
-use crate::scene::input::schema::PreloadSpec;
+use crate::scene::input::schema::{PointSpec, PreloadSpec, Scene, TieSpec};
 
 /// The shortening of a bolt: the sum of `vector . u` over its terms.
 #[derive(Clone, Debug)]
@@ -48,6 +48,36 @@ impl Shortening {
     pub fn value(&self, places: (&DofMap, &Unknowns), dimension: usize, values: &[f64]) -> f64 {
         let (entries, prescribed) = in_unknowns(&self.terms, places, dimension);
         entries.iter().fold(prescribed, |sum, &(unknown, part)| sum + part * values[unknown])
+    }
+}
+
+impl Scene {
+    /// The number of the preload that a reference point of this name stands for.
+    pub(super) fn bolt_of(&self, point: &str) -> Option<usize> {
+        let stands = |tie: &TieSpec| matches!(tie, TieSpec::Preload(spec) if spec.point.as_deref() == Some(point));
+        self.ties.iter().position(stands)
+    }
+
+    /// A preload with the force or the shortening of its point.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a point that does not exist or stands for another bolt, and for a preload with a force or a
+    /// shortening of its own.
+    pub(super) fn drawn(&self, spec: &PreloadSpec, (path, tie): (&str, usize)) -> Result<PreloadSpec, Error> {
+        let Some(name) = &spec.point else { return Ok(spec.clone()) };
+        let point = self.point_named(name, &format!("{path}.point"))?;
+        if let Some(other) = self.bolt_of(name).filter(|&other| other != tie) {
+            let message = format!("`{name}` stands for the bolt of ties[{other}]; give each bolt a point of its own");
+            return Err(wrong(format!("{path}.point"), message));
+        }
+        if spec.force.or(spec.shortening).is_some() {
+            let message = format!("has the point `{name}`; give the tension or the shortening there, along x");
+            return Err(wrong(path, message));
+        }
+        let PointSpec { x: shortening, force, .. } = &self.points[point];
+        let tension = force.as_ref().and_then(|force| force.first().copied()).unwrap_or(0.0);
+        let force = if shortening.is_none() { Some(tension) } else { None };
+        Ok(PreloadSpec { force, shortening: *shortening, ..spec.clone() })
     }
 }
 
@@ -86,7 +116,7 @@ impl PreloadSpec {
                 along.iter_mut().for_each(|row| row.value = shortening);
                 Shortening::of_row(&first, (tie, sense), None)
             }
-            _ => return Err(wrong(path, "needs one of `force` and `shortening`")),
+            _ => return Err(wrong(path, "needs one of `force`, `shortening` and `point`")),
         };
         rows.extend(along);
         Ok((rows, shortening))

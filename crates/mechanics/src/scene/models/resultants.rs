@@ -342,8 +342,19 @@ impl Model {
         ties.of_tie.iter().enumerate().map(of_tie).collect()
     }
 
-    /// The forces from outside on the reference points, with their motions, in the order of the scene.
-    pub(crate) fn point_resultants(&self, values: &[[[f64; 6]; 2]]) -> Vec<Resultant> {
+    /// The value and the force along the direction of the scene of a bolt, of the modelled part: positive if it draws
+    /// the parts together along this direction.
+    pub(crate) fn of_bolt(&self, tie: usize, of_ties: &[f64], unknowns: &[f64]) -> [f64; 2] {
+        let ties = &self.parts.ties;
+        let Some(one) = ties.shortenings.iter().find(|one| one.tie == tie) else { return [0.0; 2] };
+        let (forces, towards) = (self.parts.tie_forces(of_ties, Some(tie)), one.towards());
+        let force = (0..self.mesh().nodes().len()).map(|node| dot(self.at_node(&forces, node), towards)).sum();
+        [one.value((self.dofs(), &self.parts.unknowns), self.body().dimension(), unknowns), force]
+    }
+
+    /// The forces from outside on the reference points, with their motions, in the order of the scene; of a point that
+    /// stands for a bolt the tension of its tie among `ties`, without a moment.
+    pub(crate) fn point_resultants(&self, values: &[[[f64; 6]; 2]], ties: &[Resultant]) -> Vec<Resultant> {
         let (size, dimension, turns) = (self.mesh().size(), self.body().dimension(), self.body().turns());
         let of_point = |(index, (point, [moved, force])): (usize, (&ReferencePoint, &[[f64; 6]; 2]))| {
             let mut sum = Sum::default();
@@ -359,7 +370,13 @@ impl Model {
             let rotation = turns.iter().map(|&axis| moved[3 + axis]).collect();
             let motion = Some(FaceMotion { displacement: moved[..dimension].to_vec(), rotation });
             let on = Some(format!("`{}`", point.name));
-            Resultant { on, nodes: 1, motion, ..sum.resultant(self, format!("points[{index}]")) }
+            let mut found = Resultant { on, nodes: 1, motion, ..sum.resultant(self, format!("points[{index}]")) };
+            if let Some(tension) = point.bolt.and_then(|tie| ties[tie].tension) {
+                found.force[0] = tension.abs().copysign(force[0]);
+                found.moment.fill(0.0);
+                found.centre = None;
+            }
+            found
         };
         self.parts.points.all.iter().zip(values).enumerate().map(of_point).collect()
     }

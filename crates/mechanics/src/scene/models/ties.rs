@@ -90,7 +90,8 @@ impl Scene {
                 }
                 TieSpec::Preload(spec) => {
                     let path = format!("{path}.preload");
-                    let (rows, shortening) = spec.rows((&path, index), (body, dofs, &order), &mut warnings)?;
+                    let drawn = self.drawn(spec, (&path, index))?;
+                    let (rows, shortening) = drawn.rows((&path, index), (body, dofs, &order), &mut warnings)?;
                     shortenings.push(shortening);
                     rows
                 }
@@ -141,7 +142,7 @@ impl Scene {
         if let Some(bolt) = stuck {
             let message = "supports and ties fix the distance of the faces along the bolt, so that the tension would do nothing; change \
                            them, or the `direction`";
-            return Err(wrong(format!("ties[{}].preload.force", bolt.tie), message));
+            return Err(wrong(format!("ties[{}].preload", bolt.tie), message));
         }
         let ties = Ties { rows, of_tie, covered, matrix, values, shortenings, warnings };
         Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })

@@ -1,6 +1,7 @@
 //! The nodes of a surface of a deck, and their areas.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
 
 use super::content::Deck;
 use super::surfaces::Surface;
@@ -15,7 +16,8 @@ impl Deck {
     }
 
     /// The nodes of faces, each with the integrals of its shape function and of that times the outward normal: an area,
-    /// or a length in the plane. At a corner of a quadratic face it may be zero or negative.
+    /// a length in the plane, that of the full circle in an axisymmetric model. At a corner of a quadratic face it may
+    /// be zero or negative.
     pub fn areas(&self, faces: &[(usize, usize)]) -> BTreeMap<usize, (f64, [f64; 3])> {
         let mut areas: BTreeMap<usize, (f64, [f64; 3])> = BTreeMap::new();
         for &face in faces {
@@ -25,8 +27,12 @@ impl Deck {
             coordinates.iter_mut().zip(&nodes).for_each(|(at, &node)| *at = self.at[node]);
             let cell = Cell::new(reference, &coordinates);
             let unit = cell.unit().powi(reference.dimension as i32);
-            for point in &Tabulated::with_rule(reference, reference.quadrature.to_vec()).points {
-                let vector = cell.area_vector(&point.derivative).map(|part| part * point.weight * unit);
+            let revolved = self.is_axisymmetric();
+            let rule = if revolved { reference.quadrature_revolved } else { reference.quadrature };
+            for point in &Tabulated::with_rule(reference, rule.to_vec()).points {
+                let radius: f64 = nodes.iter().zip(point.shape).map(|(&node, share)| share * self.at[node][0]).sum();
+                let around = if revolved { TAU * radius } else { 1.0 };
+                let vector = cell.area_vector(&point.derivative).map(|part| around * part * point.weight * unit);
                 for (&node, share) in nodes.iter().zip(point.shape) {
                     let (area, outward) = areas.entry(node).or_default();
                     *area += share * length(vector);

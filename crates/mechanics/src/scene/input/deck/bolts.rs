@@ -1,4 +1,5 @@
-//! Preloads of bolts: the cards *PRE-TENSION SECTION, with the tension or the shortening at their reference nodes.
+//! Preloads of bolts: the cards *PRE-TENSION SECTION. Their reference nodes are points of the scene, which have the
+//! tension or the shortening.
 
 use serde_json::json;
 
@@ -14,8 +15,6 @@ struct Bolt {
     /// The names of the two faces in the scene.
     faces: [String; 2],
     direction: Option<[f64; 3]>,
-    force: f64,
-    shortening: Option<f64>,
     place: Place,
 }
 
@@ -42,14 +41,14 @@ impl Bolts {
             let fault = |message: String| deck.source.fault(card.place, message);
             let faces = [one.map_err(fault)?.1, other.map_err(fault)?.1];
             let direction = direction(deck, card)?;
-            bolts.all.push(Bolt { reference, faces, direction, force: 0.0, shortening: None, place: card.place });
+            bolts.all.push(Bolt { reference, faces, direction, place: card.place });
         }
         Ok(bolts)
     }
 
-    /// The nodes whose direction 1 is the shortening of a bolt, in the order of the bolts.
-    pub fn references(&self) -> impl Iterator<Item = usize> + '_ {
-        self.all.iter().map(|bolt| bolt.reference)
+    /// The nodes whose direction 1 is the shortening of a bolt, with the places of their cards.
+    pub fn references(&self) -> impl Iterator<Item = (usize, Place)> + '_ {
+        self.all.iter().map(|bolt| (bolt.reference, bolt.place))
     }
 
     /// Returns `true` for a node whose direction 1 is the shortening of a bolt.
@@ -57,47 +56,12 @@ impl Bolts {
         self.all.iter().any(|bolt| bolt.reference == node)
     }
 
-    /// Prescribes the shortening; `false` for a node that is no reference of a bolt. Its other directions may be
-    /// prescribed as 0.
-    ///
-    /// # Errors
-    /// A sentence for another direction.
-    pub fn prescribe(&mut self, node: usize, direction: usize, value: f64) -> Result<bool, String> {
-        let Some(bolt) = self.all.iter_mut().find(|bolt| bolt.reference == node) else { return Ok(false) };
-        match direction {
-            1 => bolt.shortening = Some(value),
-            _ if value == 0.0 => {}
-            _ => {
-                return Err(format!(
-                    "direction {direction} of this node is none of a bolt, which has direction 1 alone"
-                ));
-            }
-        }
-        Ok(true)
-    }
-
-    /// Adds a tension; `false` for a node that is no reference of a bolt.
-    ///
-    /// # Errors
-    /// A sentence for another direction than 1.
-    pub fn press(&mut self, node: usize, direction: usize, force: f64) -> Result<bool, String> {
-        let Some(bolt) = self.all.iter_mut().find(|bolt| bolt.reference == node) else { return Ok(false) };
-        if direction != 1 {
-            return Err(format!("direction {direction} of this node is none of a bolt, which has direction 1 alone"));
-        }
-        bolt.force += force;
-        Ok(true)
-    }
-
-    /// The preloads of the scene. A tension does nothing where the shortening is prescribed.
-    pub fn entries(&self) -> Vec<Entry> {
+    /// The preloads of the scene.
+    pub fn entries(&self, deck: &Deck) -> Vec<Entry> {
         let entry = |bolt: &Bolt| {
             let [boundary, to] = &bolt.faces;
-            let mut preload = json!({"boundary": boundary, "to": to});
-            match bolt.shortening {
-                Some(shortening) => preload["shortening"] = shortening.into(),
-                None => preload["force"] = bolt.force.into(),
-            }
+            let point = deck.nodes.numbers[bolt.reference].to_string();
+            let mut preload = json!({"boundary": boundary, "to": to, "point": point});
             if let Some(direction) = bolt.direction {
                 preload["direction"] = direction[..self.dimension].into();
             }

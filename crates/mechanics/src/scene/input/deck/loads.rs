@@ -27,6 +27,8 @@ struct OnVolume {
 /// The loads of a scene.
 pub(super) struct Loads<'a, 'd> {
     deck: &'a Deck,
+    /// Of a plane model; otherwise 1.
+    thickness: f64,
     references: &'a mut References<'d>,
     transforms: &'a Transforms,
     forces: LastForces,
@@ -40,6 +42,7 @@ impl<'a, 'd> Loads<'a, 'd> {
     /// An error with the line for a load that is not read.
     pub fn of(
         deck: &'a Deck,
+        thickness: f64,
         amplitudes: &Amplitudes,
         references: &'a mut References<'d>,
         transforms: &'a Transforms,
@@ -47,7 +50,7 @@ impl<'a, 'd> Loads<'a, 'd> {
     ) -> Result<Vec<Entry>, Error> {
         let forces = LastForces::of(deck);
         let (own, on_volume) = (Vec::new(), Vec::new());
-        let mut loads = Loads { deck, references, transforms, forces, loads: own, on_volume, noted };
+        let mut loads = Loads { deck, thickness, references, transforms, forces, loads: own, on_volume, noted };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
             let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
             // The step of the card before.
@@ -259,18 +262,12 @@ impl<'a, 'd> Loads<'a, 'd> {
         if inside.is_empty() {
             return Ok(());
         }
-        if self.deck.dimension() < 3 {
-            let (element, face) = (self.deck.elements.numbers[inside[0].0], inside[0].1 + 1);
-            let message = format!(
-                "face {face} of element {element} lies within the body: two elements share it; such a face is pressed in space only"
-            );
-            return Err(self.deck.source.fault(place, message));
-        }
         // The boundaries of a scene are on the outside: a face within the body is pressed at its nodes.
         let forces = self.deck.areas(&inside).into_iter().filter_map(|(node, (_, outward))| {
-            Some((name_of_node(self.deck, node)?, outward.map(|part| -value * part)))
+            let force = outward[..self.deck.dimension()].iter().map(|part| -value * self.thickness * part).collect();
+            Some((name_of_node(self.deck, node)?, force))
         });
-        let forces: BTreeMap<String, [f64; 3]> = forces.collect();
+        let forces: BTreeMap<String, Vec<f64>> = forces.collect();
         self.loads.push(Entry::new(object("nodal-forces", json!(forces)), place));
         Ok(())
     }

@@ -41,7 +41,6 @@ use references::References;
 use requests::Requests;
 use rigid::RigidBodies;
 use scene_text::SceneText;
-use signorini_qp as qp;
 use supports::supports;
 use temperatures::Temperatures;
 use ties::ties;
@@ -66,8 +65,8 @@ pub(crate) struct DeckScene {
     /// Its nodes that are no nodes of the mesh.
     pub references: Vec<ReferenceNode>,
     deck: Deck,
-    /// The lines of the deck for JSON paths; the first is that of the whole scene.
-    places: Vec<(String, (PathBuf, usize))>,
+    /// Of [`Scene::lines`].
+    lines: Vec<(String, (PathBuf, usize))>,
 }
 
 /// How a deck is read.
@@ -108,11 +107,12 @@ impl DeckScene {
         noted.extend(nearest_elements(&deck));
         noted.extend(sections.noted.iter().cloned());
         let supports = supports(&deck, &amplitudes, &mut references, &transforms, earlier)?;
-        let loads = Loads::of(&deck, &amplitudes, &mut references, &transforms, &mut noted)?;
+        let thickness = sections.thickness.map_or(1.0, |thickness| thickness.0);
+        let loads = Loads::of(&deck, thickness, &amplitudes, &mut references, &transforms, &mut noted)?;
         let mut contacts = contacts(&deck, permits.contains(&"friction"))?;
         contacts.ties.extend(ties(&deck)?);
-        let mut reference_nodes = references.rigid_bodies.reference_nodes(&deck, contacts.ties.len());
-        contacts.ties.extend(references.rigid_bodies.bolts.entries());
+        let mut reference_nodes = references.rigid_bodies.reference_nodes(&deck);
+        contacts.ties.extend(references.rigid_bodies.bolts.entries(&deck));
         let rigid_faces = references.rigid_bodies.entries();
         let entries = references.entries();
         reference_nodes.extend(entries.nodes);
@@ -146,33 +146,8 @@ impl DeckScene {
         let nonlinear =
             large_displacements(&deck).map(|place| Warning::Nonlinear { place: named_line(position(place)) });
         let warnings = nonlinear.into_iter().chain(noted.into_iter().map(warning)).collect();
-        let places = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
-        Ok(DeckScene { text, warnings, references: reference_nodes, deck, places })
-    }
-
-    /// An error of a value of the scene with the line of the deck that it comes from.
-    pub fn located(&self, error: Error) -> Error {
-        let of = |path: &str| {
-            let is_in = |known: &str| {
-                path.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-            };
-            let known = self.places.iter().filter(|(known, _)| known.is_empty() || is_in(known));
-            known.max_by_key(|(known, _)| known.len()).map(|(_, place)| place.clone())
-        };
-        match error {
-            Error::Scene { path, message } => match of(&path) {
-                Some((file, line)) => {
-                    let message = format!("at `{path}` of the scene of this deck: {message}");
-                    qp::Error::FileSyntax { file, line, message }.into()
-                }
-                None => Error::Scene { path, message },
-            },
-            Error::Refused { code, place, path, message } => {
-                let found = of(&path).map(|(file, line)| format!("{}:{line}: ", file.display()));
-                Error::Refused { code, place: found.unwrap_or(place), path, message }
-            }
-            other => other,
-        }
+        let lines = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
+        Ok(DeckScene { text, warnings, references: reference_nodes, deck, lines })
     }
 }
 
@@ -188,12 +163,13 @@ impl Scene {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let deck = DeckScene::read(path, &named, Reading { permits, step, earlier: &[] })?;
-        Scene::of_text(path, &named, &deck)
+        Ok(Scene::of_text(path, &named, deck)?.0)
     }
 
-    fn of_text(path: &Path, named: &str, deck: &DeckScene) -> Result<Scene, Error> {
-        let scene = Scene::from_json(&deck.text, named)?;
-        Ok(Scene { folder: path.parent().map(Path::to_path_buf), noted: deck.warnings.clone(), ..scene })
+    /// The scene of a deck, and what is left of it.
+    fn of_text(path: &Path, named: &str, deck: DeckScene) -> Result<(Scene, Deck, Vec<ReferenceNode>), Error> {
+        let (scene, folder) = (Scene::from_json(&deck.text, named)?, path.parent().map(Path::to_path_buf));
+        Ok((Scene { folder, noted: deck.warnings, lines: deck.lines, ..scene }, deck.deck, deck.references))
     }
 
     /// Reads one step of a deck, from 1, as [`Scene::read_deck`] does, and what it asks for. `earlier` are the
@@ -212,7 +188,8 @@ impl Scene {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let deck = DeckScene::read(path, &named, Reading { permits, step: Some(step), earlier })?;
-        Ok((Scene::of_text(path, &named, &deck)?, Requests::of(&deck.deck, deck.references)?))
+        let (scene, deck, references) = Scene::of_text(path, &named, deck)?;
+        Ok((scene, Requests::of(&deck, references)?))
     }
 
     /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is

@@ -18,8 +18,6 @@ pub(crate) enum Of {
     /// A rigid face about a centre. The directions of the node name its motions from this one: 0 for displacements, 3
     /// for rotations.
     Face { face: usize, first: usize, centre: [f64; 3] },
-    /// The tie of a bolt: direction 1 is its shortening.
-    Bolt { tie: usize },
     /// The rotations of the reference point of this number.
     Turns { point: usize },
 }

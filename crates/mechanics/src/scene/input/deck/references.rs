@@ -109,14 +109,24 @@ impl<'a> References<'a> {
             }
             joined.insert(component);
         }
+        joined.extend(rigid_bodies.bolts.references().map(|(node, _)| (node, 0)));
         Ok(references)
     }
 
-    /// The component that a direction of a node names, from 1; `None` for one that its rotations do not have.
-    fn component(&self, node: usize, direction: usize) -> Option<Component> {
+    /// The component that a direction of a node names, from 1.
+    ///
+    /// # Errors
+    /// A sentence for one that its rotations or its bolt do not have.
+    fn component(&self, node: usize, direction: usize) -> Result<Component, String> {
         match self.rotations.get(&node) {
-            None => Some((node, direction - 1)),
-            Some(&reference) => (direction <= 3).then_some((reference, direction + 2)),
+            None if direction > 1 && self.rigid_bodies.bolts.is_reference(node) => {
+                Err(format!("direction {direction} of this node is none of a bolt, which has direction 1 alone"))
+            }
+            None => Ok((node, direction - 1)),
+            Some(&reference) if direction <= 3 => Ok((reference, direction + 2)),
+            Some(_) => Err(format!(
+                "direction {direction} of a ROT NODE is none; its directions 1 to 3 are the rotations about x, y and z"
+            )),
         }
     }
 
@@ -128,8 +138,9 @@ impl<'a> References<'a> {
         if self.rigid_bodies.prescribe(node, direction, value)? {
             return Ok(true);
         }
-        let Some(component) = self.component(node, direction) else {
-            return if value == 0.0 { Ok(true) } else { Err(no_rotation(direction)) };
+        let component = match self.component(node, direction) {
+            Ok(component) => component,
+            Err(message) => return if value == 0.0 { Ok(true) } else { Err(message) },
         };
         if component.1 == 2 && self.deck.dimension() == 2 && self.deck.body_of_node[node].is_none() {
             return if value == 0.0 { Ok(true) } else { Err(NO_Z.into()) };
@@ -150,7 +161,7 @@ impl<'a> References<'a> {
         if self.rigid_bodies.press(node, direction, force)? {
             return Ok(true);
         }
-        let component = self.component(node, direction).ok_or_else(|| no_rotation(direction))?;
+        let component = self.component(node, direction)?;
         let is_joined = self.joined.contains(&component);
         if self.deck.body_of_node[node].is_some() && !is_joined {
             return Ok(false);
@@ -178,6 +189,7 @@ impl<'a> References<'a> {
         let mut places: BTreeMap<usize, Place> = self.prescribed.keys().map(|component| (component.0, whole)).collect();
         let named = terms(&self.equations, &self.springs).filter(|one| self.joined.contains(&one.0));
         places.extend(named.map(|(component, place)| (component.0, place)).collect::<Vec<_>>().into_iter().rev());
+        places.extend(self.rigid_bodies.bolts.references());
         places.extend(self.loads.iter().map(|(component, (place, _))| (component.0, *place)));
         let points = places.into_iter().map(|(node, place)| Entry::new(self.point(node), place)).collect();
         let tie = |Equation { sum, place }: &Equation| Entry::new(object("equation", self.tie(sum)), *place);
@@ -252,10 +264,6 @@ fn terms<'a>(equations: &'a [Equation], springs: &'a [Spring]) -> impl Iterator<
     let of_equations = equations.iter().map(|one| (&one.sum, one.place));
     let sums = of_equations.chain(springs.iter().map(|one| (&one.elongation, one.place)));
     sums.flat_map(|(sum, place)| sum.terms.keys().map(move |&component| (component, place)))
-}
-
-fn no_rotation(direction: usize) -> String {
-    format!("direction {direction} of a ROT NODE is none; its directions 1 to 3 are the rotations about x, y and z")
 }
 
 /// Returns `true` for a component that no element has.

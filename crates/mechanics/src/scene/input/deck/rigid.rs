@@ -79,15 +79,13 @@ impl RigidBodies {
         Ok(true)
     }
 
-    /// The reference nodes of rigid bodies and bolts, with what an answer says of them; `first_bolt` is the tie of the
-    /// first bolt.
-    pub fn reference_nodes(&self, deck: &Deck, first_bolt: usize) -> Vec<ReferenceNode> {
-        let of_node = |node: usize, of: Of| ReferenceNode { number: deck.nodes.numbers[node], of };
+    /// The reference nodes of rigid bodies, with what an answer says of them.
+    pub fn reference_nodes(&self, deck: &Deck) -> Vec<ReferenceNode> {
         let of_body = |(&node, &(face, first)): (&usize, &(usize, usize))| {
-            of_node(node, Of::Face { face, first, centre: self.all[face].centre })
+            let of = Of::Face { face, first, centre: self.all[face].centre };
+            ReferenceNode { number: deck.nodes.numbers[node], of }
         };
-        let of_bolt = |(bolt, node): (usize, usize)| of_node(node, Of::Bolt { tie: first_bolt + bolt });
-        self.by_node.iter().map(of_body).chain(self.bolts.references().enumerate().map(of_bolt)).collect()
+        self.by_node.iter().map(of_body).collect()
     }
 
     /// Returns `true` for a motion that the rigid bodies of this model have.
@@ -138,9 +136,6 @@ impl RigidBodies {
     /// Prescribes a direction of a node; `false` for a node that is no reference. What a plane model does not have may
     /// be prescribed as 0.
     pub fn prescribe(&mut self, node: usize, direction: usize, value: f64) -> Result<bool, String> {
-        if self.bolts.prescribe(node, direction, value)? {
-            return Ok(true);
-        }
         match self.motion(node, direction) {
             Ok(Some((body, kind))) => body.prescribed[kind] = Some(value),
             Ok(None) => return Ok(false),
@@ -152,9 +147,6 @@ impl RigidBodies {
 
     /// Adds a force or a moment at a direction of a node; `false` for a node that is no reference.
     pub fn press(&mut self, node: usize, direction: usize, force: f64) -> Result<bool, String> {
-        if self.bolts.press(node, direction, force)? {
-            return Ok(true);
-        }
         let Some((body, kind)) = self.motion(node, direction)? else { return Ok(false) };
         body.load[kind] += force;
         Ok(true)

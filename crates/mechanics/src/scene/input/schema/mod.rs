@@ -140,6 +140,9 @@ pub struct Scene {
     /// Warnings about the deck that the scene was read from. Not part of the text.
     #[serde(skip)]
     pub noted: Vec<Warning>,
+    /// The files and lines of that deck for JSON paths; the first is that of the whole scene. Not part of the text.
+    #[serde(skip)]
+    pub lines: Vec<(String, (PathBuf, usize))>,
 }
 
 /// Accepts the number of the one format of scenes.

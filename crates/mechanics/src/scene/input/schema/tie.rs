@@ -35,7 +35,7 @@ pub struct TiedSurfacesSpec {
 }
 
 /// The preload of a bolt that is cut across: the two faces of the cut move together along themselves, and towards each
-/// other by one shortening. Their meshes need not match. Give a force or a shortening.
+/// other by one shortening. Their meshes need not match. Give a force, a shortening or a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PreloadSpec {
@@ -49,6 +49,10 @@ pub struct PreloadSpec {
     /// The length by which the bolt is shortened.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortening: Option<f64>,
+    /// The name of a reference point that stands for the bolt: its displacement along x is the shortening, its force
+    /// along x the tension.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point: Option<String>,
     /// The direction from the first part to the other, of any length: it points out of the first part. If it is left
     /// out, it is the mean outward normal of the face.
     #[serde(skip_serializing_if = "Option::is_none")]
