@@ -69,6 +69,19 @@ fn a_body_with_a_load_in_balance_is_under_held_and_not_unbounded() {
 }
 
 #[test]
+fn a_body_whose_row_touches_with_the_force_of_rounding_is_under_held() {
+    // A spring to the ground, and three masses that springs join to each other alone; the row touches wherever a method
+    // puts them, but nothing presses it.
+    let ends = [(0, 0, 1.625), (1, 1, 0.1953125), (2, 1, -0.09375), (3, 1, -0.1015625)];
+    let stiffness = [&ends[..], &[(2, 2, 7.59375), (3, 2, -7.5), (3, 3, 7.6015625)]].concat();
+    let rows: [&[f64]; 2] = [&[-1.0, 1.0, 1.0, -1.0], &[0.0, 0.0, 0.0, -1.0]];
+    let problem = problem(&stiffness, &[0.0; 4], &rows, &[0.05152083095163107, 1e-3]);
+    for (method, ending) in endings(&problem) {
+        assert!(matches!(ending, Err(Error::UnderHeld { .. })), "{method}: {ending:?}");
+    }
+}
+
+#[test]
 fn a_body_that_slides_between_two_walls_it_does_not_touch_is_under_held() {
     // A floor carries the load of 3; two walls at a distance of 5 allow the body to slide.
     let rows: [&[f64]; 3] = [&[0.0, 1.0], &[1.0, 0.0], &[-1.0, 0.0]];

@@ -9,6 +9,7 @@ use signorini::{
     ContactProblem, Error, Method, Prepared, Settings, SparseMatrix, SymmetricMatrix, qp, solve, solve_qp,
 };
 use support::draws::Draws;
+use support::problems::of_entries;
 use support::program::{Desk, matrix, vector};
 
 /// Rounding of an answer of order one with at most a dozen unknowns, for the conditions of these problems.
@@ -398,4 +399,17 @@ fn equality_rows_that_do_not_fit_are_refused_in_one_sentence() {
         let sentence = Error::from(refusal.unwrap_err()).to_string();
         assert!(sentence.contains(name) && sentence.lines().count() == 1, "{sentence}");
     }
+}
+
+/// Two opposed rows give the first dof from the second, which moves so far that its rounding decides the force on the
+/// first.
+#[test]
+fn a_dof_that_an_elimination_leaves_out_of_balance_is_balanced_on_all_dofs() {
+    let springs = [(0, 0, 0.1), (1, 1, 0.34135404109002565), (2, 1, -0.39365787731135926), (3, 1, 0.3786695077194752)];
+    let others = [(2, 2, 0.5446726798475009), (3, 2, -0.3994573562711211), (3, 3, 0.43534963831812534)];
+    let (a, b, gap) = (0.7493838835507631, 0.9585916716605425, 973515309393.4059);
+    let load = vec![0.9811543170362711, 0.953706294298172, -0.957955826073885, -0.6146638002246618];
+    let rows = [(0, 0, -a), (0, 1, -b), (1, 0, a), (1, 1, b)];
+    let solution = solve_qp(&of_entries(&[&springs[..], &others].concat(), load, &rows, vec![gap, -gap])).unwrap();
+    assert!(solution.certificate.stationarity < ROUNDING, "{:?}", solution.certificate);
 }

@@ -43,9 +43,7 @@ impl ContactProblem {
         let lower = self.stiffness.lower().select(dofs.len(), |row| place[row], dofs.iter().copied());
         let contact = self.contact.select(self.rows(), Some, dofs.iter().copied());
         let stiffness = SymmetricMatrix::from_lower(lower)?;
-        let mut body = ContactProblem::new(stiffness, of_body(&self.load), contact, self.gap.clone())?;
-        // A row of a travel alone has no entry here: its gap is a place of the travel, and no rounding of other gaps.
-        body.gap.clone_from(&self.gap);
+        let body = ContactProblem::computed(stiffness, of_body(&self.load), contact, self.gap.clone())?;
         let Some(norm) = EnergyNorm::of(&body.stiffness, &body.contact)? else { return Ok(None) };
         let evidence = match answer.evidence {
             Some(evidence) => Some(evidence),

@@ -71,6 +71,17 @@ impl ContactProblem {
         let lower = self.stiffness.lower();
         let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();
         let stiffness = SymmetricMatrix::from_lower(lower.with_values(values))?;
-        Self::new(stiffness, units.force(&self.load), self.contact.clone(), units.displacement(&self.gap))
+        Self::computed(stiffness, units.force(&self.load), self.contact.clone(), units.displacement(&self.gap))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_that_is_1e20_in_other_units_stays_a_gap() {
+        let problem = ContactProblem::of_entries(&[(0, 0, 1.0)], &[1.0], &[(0, 0, 1.0)], &[ldexp(1e20, 900)]);
+        assert_eq!(problem.in_units(&Units { stiffness: 0, length: 900 }).unwrap().gap(), [1e20]);
     }
 }

@@ -314,7 +314,8 @@ impl Derivatives {
         let pick = |rows: &[usize]| rows.iter().map(|&row| distances[row]).collect::<Vec<f64>>();
         let held: Vec<usize> = closed.iter().collect();
         let contact = problem.contact().select_rows(weak);
-        let mut small = ContactProblem::new(problem.stiffness().clone(), change.load.clone(), contact, pick(weak))?;
+        let mut small =
+            ContactProblem::computed(problem.stiffness().clone(), change.load.clone(), contact, pick(weak))?;
         if let Some(near_null) = problem.near_null() {
             small = small.with_near_null(near_null.clone())?;
         }

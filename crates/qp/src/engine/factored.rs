@@ -381,7 +381,7 @@ impl Factored {
             None => (self.reduction.scaling.stiffness(), self.reduction.scaling.contact()),
         };
         let (load, gap) = (loading.scaled(unit), self.reduction.scaling.gap(&gap, unit));
-        Ok((ContactProblem::new(stiffness.clone(), load, contact.clone(), gap)?, unit))
+        Ok((ContactProblem::computed(stiffness.clone(), load, contact.clone(), gap)?, unit))
     }
 
     /// The displacement of the whole body, in its own unit.

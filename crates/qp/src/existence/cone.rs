@@ -106,7 +106,7 @@ impl Cone<'_> {
             .collect();
         let contact = SparseMatrix::from_triplets(rows.len(), dofs, &entries).ok()?;
         let load = c.iter().map(|value| value / size).collect();
-        let problem = ContactProblem::new(stiffness, load, contact, vec![0.0; rows.len()]).ok()?;
+        let problem = ContactProblem::computed(stiffness, load, contact, vec![0.0; rows.len()]).ok()?;
         let nearest = match (self.solve)(&problem, &Settings::default()) {
             Ok(solution) => solution.displacement,
             Err(Error::NotCertified { solution, .. }) => solution.displacement,

@@ -53,17 +53,18 @@ const SETTLED_TO: f64 = 1e-11;
 /// slender.
 const BENDS: f64 = 1e3;
 
-/// Refuses a factorisation of the stiffness if memory or time do not allow it.
+/// The analysis of the stiffness, if memory and time allow its factorisation.
 ///
 /// # Errors
 /// [`Error::TooLarge`], [`Error::OutOfTime`], and those of the analysis.
-fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, Error> {
     check_memory(problem, Kept::Nothing, settings.memory)?;
     check_time(&settings.watch, seconds::ordering(problem))?;
     let analysis = Analysis::of(problem.stiffness())?;
     let kept = Kept::Factors { values: analysis.factor_entries(), last: 0, by_interior_point: false };
     check_memory(problem, kept, settings.memory)?;
-    check_time(&settings.watch, seconds::factorisation(&analysis))
+    check_time(&settings.watch, seconds::factorisation(&analysis))?;
+    Ok(analysis)
 }
 
 /// Checks that some displacement meets all contact rows of `problem`.
@@ -82,7 +83,7 @@ pub(super) fn check_rows(problem: &ContactProblem, settings: &Settings, solve: S
 /// [`Error::NotFinite`] if its numbers leave the range of doubles.
 fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem, Error> {
     let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
-    ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap)
+    ContactProblem::computed(scaling.stiffness().clone(), load, scaling.contact().clone(), gap)
 }
 
 /// A scaled problem with a basis of the null space of its stiffness.
@@ -110,12 +111,12 @@ impl Existence {
     pub fn of(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<Option<Self>, Error> {
         let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
         let Ok(scaled) = scaled(problem, &scaling) else { return Ok(None) };
-        check_room(&scaled, settings)?;
-        let null = match scaled.stiffness().null_space() {
+        let shifts = scaled.stiffness().shifts(analysed(&scaled, settings)?)?;
+        let null = match scaled.stiffness().null_space(&shifts) {
             Ok(Some(null)) => null,
             Ok(None) => return Ok(None),
             Err(FactorError::NotPositiveDefinite) => {
-                let direction = scaled.stiffness().negative_direction()?;
+                let direction = scaled.stiffness().negative_direction(&shifts, &settings.watch)?;
                 return direction.and_then(|p| scaled.not_convex_along(&p)).map_or(Ok(None), Err);
             }
             Err(error) => return Err(error.into()),
@@ -338,7 +339,8 @@ mod tests {
     fn looked_at(problem: &ContactProblem) -> (Existence, Scaling) {
         let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
         let scaled = scaled(problem, &scaling).unwrap();
-        let null = scaled.stiffness().null_space().unwrap().unwrap();
+        let shifts = scaled.stiffness().shifts(Analysis::of(scaled.stiffness()).unwrap()).unwrap();
+        let null = scaled.stiffness().null_space(&shifts).unwrap().unwrap();
         (Existence::with(scaled, scaling.clone(), null, solve), scaling)
     }
 

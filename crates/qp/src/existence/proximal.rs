@@ -52,7 +52,8 @@ pub(super) fn answers(
     let (mut centre, mut before_last) = (vec![0.0; dofs], f64::INFINITY);
     for step in 1..=MOST_STEPS {
         let load = (problem.load().iter().zip(&added).zip(&centre)).map(|((f, e), u)| f + e * u).collect();
-        let of_step = ContactProblem::new(stiffness.clone(), load, problem.contact().clone(), problem.gap().to_vec())?;
+        let of_step =
+            ContactProblem::computed(stiffness.clone(), load, problem.contact().clone(), problem.gap().to_vec())?;
         let found = match solve(&of_step, &settings_of_step) {
             Ok(solution) => solution,
             Err(Error::NotCertified { solution, .. }) => *solution,
@@ -90,7 +91,8 @@ pub(super) fn check_rows(
     let diagonal: Vec<_> = added(scaling).into_iter().enumerate().map(|(dof, value)| (dof, dof, value)).collect();
     let dofs = problem.dofs();
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal)?)?;
-    let nearest = ContactProblem::new(stiffness, vec![0.0; dofs], problem.contact().clone(), problem.gap().to_vec())?;
+    let nearest =
+        ContactProblem::computed(stiffness, vec![0.0; dofs], problem.contact().clone(), problem.gap().to_vec())?;
     match solve(&nearest, &settings_of_step(settings)) {
         Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
         _ => Ok(()),

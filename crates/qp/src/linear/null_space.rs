@@ -2,8 +2,10 @@
 
 use super::definite::NULL_ROUNDING;
 use super::{
-    AugmentedMatrix, Cholesky, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot, largest, norm, take_out,
+    Analysis, AugmentedMatrix, Cholesky, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot, largest, norm,
+    take_out,
 };
+use crate::watch::Watch;
 
 /// Added to a diagonal of order one, so that a singular matrix has a factor: far below its other eigenvalues, far above
 /// rounding.
@@ -73,12 +75,12 @@ impl SymmetricMatrix {
     /// has more than 256 vectors.
     ///
     /// Inverse iteration with A + 1e-10 I, each vector orthogonal to those before, ends at the first vector with
-    /// energy.
+    /// energy; `shifts` are those of this matrix.
     ///
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] if an eigenvalue is clearly negative, and those of the factorisation.
-    pub(crate) fn null_space(&self) -> Result<Option<NullSpace>, FactorError> {
-        let factor = self.shifted_factor(SHIFT)?.ok_or(FactorError::NotPositiveDefinite)?;
+    pub(crate) fn null_space(&self, shifts: &AugmentedMatrix) -> Result<Option<NullSpace>, FactorError> {
+        let factor = shifts.shifted(SHIFT)?.ok_or(FactorError::NotPositiveDefinite)?;
         let (mut found, components): (Vec<Vec<f64>>, _) = (Vec::new(), self.components());
         while found.len() < self.dim() {
             let Some(vector) = self.null_vector(&factor, &found) else { break };
@@ -205,16 +207,21 @@ impl SymmetricMatrix {
         if pieces.is_empty() { vec![vector.to_vec()] } else { pieces }
     }
 
-    /// A direction of negative energy, if there is one beyond rounding: largest entry one.
+    /// A direction of negative energy, if there is one beyond rounding: largest entry one. `None` also if the `watch`
+    /// is over.
     ///
     /// # Errors
     /// Those of the factorisation.
-    pub(crate) fn negative_direction(&self) -> Result<Option<Vec<f64>>, FactorError> {
+    pub(crate) fn negative_direction(
+        &self,
+        shifts: &AugmentedMatrix,
+        watch: &Watch,
+    ) -> Result<Option<Vec<f64>>, FactorError> {
         // Gershgorin: with more than this on its diagonal, the matrix is definite.
         let most = 2.0 * largest(&self.mul_abs(&vec![1.0; self.dim()]));
         let mut shift = SHIFT;
-        while shift < 4.0 * most {
-            let Some(factor) = self.shifted_factor(shift)? else {
+        while shift < 4.0 * most && !watch.is_over() {
+            let Some(factor) = shifts.shifted(shift)? else {
                 shift *= 4.0;
                 continue;
             };
@@ -235,12 +242,22 @@ impl SymmetricMatrix {
     /// # Errors
     /// Those of the factorisation, except for [`FactorError::NotPositiveDefinite`].
     pub(super) fn shifted_factor(&self, shift: f64) -> Result<Option<Cholesky>, FactorError> {
+        self.shifts(Analysis::of(self)?)?.shifted(shift)
+    }
+
+    /// The matrix with many shifts, from its `analysis`.
+    pub(crate) fn shifts(&self, analysis: Analysis) -> Result<AugmentedMatrix, FactorError> {
         let no_rows = SparseMatrix::from_parts(0, vec![0; self.dim() + 1], Vec::new(), Vec::new());
-        let augmented = AugmentedMatrix::new(self, &no_rows)?;
-        match augmented.factor(augmented.matrix(|_| 0.0, shift)) {
-            Ok(factor) => Ok(Some(factor)),
+        AugmentedMatrix::with_analysis(self, &no_rows, analysis)
+    }
+}
+
+impl AugmentedMatrix {
+    /// The factor of `K + shift I`; `None` if that is not positive definite.
+    fn shifted(&self, shift: f64) -> Result<Option<Cholesky>, FactorError> {
+        match self.factor(self.matrix(|_| 0.0, shift)) {
             Err(FactorError::NotPositiveDefinite) => Ok(None),
-            Err(error) => Err(error),
+            factor => factor.map(Some),
         }
     }
 }
@@ -259,4 +276,20 @@ pub fn without_noise(mut vector: Vec<Twice>) -> Vec<Twice> {
 pub fn generic(length: usize, number: usize) -> Vec<f64> {
     let (golden, silver) = (0.618_033_988_749_895, 0.414_213_562_373_095);
     (0..length).map(|i| (i as f64 * golden + (number + 1) as f64 * silver).fract() - 0.5).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_direction_of_negative_energy_is_found_by_one_analysis_unless_the_watch_is_over() {
+        let entries = [(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)];
+        let matrix = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &entries).unwrap()).unwrap();
+        let shifts = matrix.shifts(Analysis::of(&matrix).unwrap()).unwrap();
+        let direction = |watch: &Watch| matrix.negative_direction(&shifts, watch).unwrap();
+        let found = direction(&Watch::default()).unwrap();
+        assert!((found[0] + found[1]).abs() < 1e-12 && found[0] != 0.0, "{found:?}");
+        assert_eq!(direction(&Watch::default().within(0.0)), None);
+    }
 }

@@ -104,7 +104,8 @@ impl Ladder {
         Some(ladder)
     }
 
-    /// The same for a problem that the question of existence gives rise to: it does not raise that question again.
+    /// The same for a problem that the question of existence gives rise to: only a motion that no row stops raises it
+    /// again, and the stiffness of such a problem is regular.
     pub fn without_existence(mut self) -> Self {
         self.attempts.retain(|attempt| attempt.steps[0].step != OF_EXISTENCE[0].step);
         self

@@ -98,7 +98,7 @@ impl Ladder {
         let last = history.records.last().map(|record| &record.ended);
         match attempt.when {
             When::Always => true,
-            When::Short => !certified,
+            When::Short => !certified || self.is_unbalanced(history),
             When::ShortOfMultigrid => {
                 let is_of_multigrid = |record: &Record| self.attempts[record.place.attempt].means == Means::Multigrid;
                 !certified && history.records.iter().any(is_of_multigrid)
@@ -123,6 +123,14 @@ impl Ladder {
             },
             _ => false,
         }
+    }
+
+    /// Returns `true` if the last step eliminated equalities and left forces out of balance at a dof: an elimination
+    /// has no refinement of its own.
+    fn is_unbalanced(&self, history: &History) -> bool {
+        let is_last = history.records.last().is_some_and(|record| record.step == Step::Elimination);
+        let required = history.goal.required();
+        is_last && history.best.as_ref().is_some_and(|best| best.solution.certificate.stationarity > required)
     }
 
     /// Returns `true` if a step of an attempt that is due holds.

@@ -80,7 +80,7 @@ impl ContactProblem {
     /// None for a problem.
     pub(crate) fn without_rows(&self) -> Result<Self, Error> {
         let none = SparseMatrix::from_triplets(0, self.dofs(), &[])?;
-        let problem = ContactProblem::new(self.stiffness.clone(), self.load.clone(), none, Vec::new())?;
+        let problem = ContactProblem::computed(self.stiffness.clone(), self.load.clone(), none, Vec::new())?;
         Ok(ContactProblem { near_null: self.near_null.clone(), ..problem })
     }
 

@@ -114,6 +114,21 @@ impl ContactProblem {
         contact: SparseMatrix,
         gap: Vec<f64>,
     ) -> Result<Self, Error> {
+        let mut problem = Self::computed(stiffness, load, contact, with_infinite(gap))?;
+        problem.rounded = empty_rows::settle(&problem.without_entries, &mut problem.gap);
+        Ok(problem)
+    }
+
+    /// The same for numbers that come from another problem: every finite gap is a length, and none is rounding.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub(crate) fn computed(
+        stiffness: SymmetricMatrix,
+        load: Vec<f64>,
+        contact: SparseMatrix,
+        gap: Vec<f64>,
+    ) -> Result<Self, Error> {
         let dofs = stiffness.dim();
         if contact.columns() != dofs {
             let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
@@ -124,9 +139,7 @@ impl ContactProblem {
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
-        let mut gap = with_infinite(gap);
         let without_entries: Arc<[usize]> = empty_rows::without_entries(&contact).into();
-        let rounded = empty_rows::settle(&without_entries, &mut gap);
         let (diagonal, parts, free_mode) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
         let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
         let semidefinite = FoundOnce::default();
@@ -146,7 +159,7 @@ impl ContactProblem {
             equality_rows: 0,
             following: Arc::new([]),
             without_entries,
-            rounded,
+            rounded: Vec::new(),
             two_sided,
         })
     }

@@ -176,7 +176,7 @@ impl Elimination {
             });
         }
         let contact = SparseMatrix::from_triplets(self.rows.len(), self.dofs.len(), &entries)?;
-        let reduced = ContactProblem::new(stiffness, load, contact, gap)?;
+        let reduced = ContactProblem::computed(stiffness, load, contact, gap)?;
         let Some(modes) = problem.near_null() else { return Ok(reduced) };
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
         match NearNullSpace::of_modes(modes.vectors().iter().map(|mode| self.staying(mode)).filter(moves).collect()) {

@@ -55,7 +55,7 @@ impl Pieces {
         let contact = columns(problem.contact(), &self.of_row, &self.place_of_row, rows.len());
         let load = dofs.iter().map(|&dof| problem.load()[dof]).collect();
         let gap = rows.iter().map(|&row| problem.gap()[row]).collect();
-        let own = ContactProblem::new(SymmetricMatrix::from_lower(lower)?, load, contact, gap)?;
+        let own = ContactProblem::computed(SymmetricMatrix::from_lower(lower)?, load, contact, gap)?;
         let Some(modes) = problem.near_null() else { return Ok(own) };
         let of_piece = |mode: &Vec<f64>| dofs.iter().map(|&dof| mode[dof]).collect::<Vec<f64>>();
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);

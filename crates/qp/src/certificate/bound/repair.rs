@@ -204,11 +204,13 @@ impl<'a> Repair<'a> {
         let Witness { error, left, multiplier, closed, rest, .. } = witness;
         let of_left = self.length(left);
         let springs = self.norm.springs.as_deref();
+        let cancelled = if springs.is_some() { self.cancelled(witness) } else { 0.0 };
         // A force that is the rounding of changes of the answer's force holds nothing.
         let terms = |row: usize| self.multiplier[row].abs() + error.terms[row] + left.terms[row];
         let force = |row: usize| if closed[row] { -multiplier[row] - CANCELLED * terms(row) } else { 0.0 };
         let force = self.expanded(&(0..rest.len()).map(force).collect::<Vec<_>>());
-        if springs.is_some_and(|springs| !springs.hold(closed, |row| force[row], |_| of_left)) {
+        // Neither does one that what is out of balance, springs included, is rounded by.
+        if springs.is_some_and(|springs| !springs.hold(closed, |row| force[row], |_| of_left + cancelled)) {
             return ErrorBound::none();
         }
         // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each

@@ -15,8 +15,8 @@ use crate::error::Error;
 /// rounding.
 const ACCURATE: f64 = 1e-6;
 
-/// Number of negative eigenvalues of `matrix`, whose pattern `analysis` has in block columns; `None` if rounding hides
-/// it.
+/// Number of negative eigenvalues of `matrix`, by the pattern in `analysis`; `None` if rounding hides it, or if the
+/// analysis has no block columns.
 ///
 /// By Sylvester's law of inertia a factorisation L D L' has as many negative eigenvalues in D. Nothing is exchanged, so
 /// that a small pivot may spoil it. The pivots are exactly those of a matrix A + E. A random load b excites the
@@ -30,7 +30,7 @@ pub fn negative_eigenvalues(
     matrix: &SymmetricMatrix,
     threads: usize,
 ) -> Result<Option<usize>, Error> {
-    let Some(nodes) = analysis.supernodes() else { return Ok(Some(0)) };
+    let Some(nodes) = analysis.supernodes() else { return Ok(None) };
     let (dim, par) = (matrix.dim(), par(threads));
     let permuted = analysis.permuted(matrix.lower(), |_, _, value| value);
     let lacking = || FactorError::Failed("out of memory".into());
@@ -71,4 +71,22 @@ pub fn negative_eigenvalues(
     analysis.order().iter().zip(&solution).for_each(|(&column, &value)| x[column] = value);
     let left: Vec<f64> = matrix.mul(&x).iter().zip(&load).map(|(product, load)| product - load).collect();
     Ok((largest(&left) <= ACCURATE * largest(&load)).then_some(negative))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::SparseMatrix;
+    use super::super::lanes::Lanes;
+    use super::*;
+
+    #[test]
+    fn a_factor_without_block_columns_counts_nothing_and_solves_nothing() {
+        let entry = |row: usize, column: usize| if row == column { 2.0 } else { 1.0 };
+        let entries: Vec<_> = (0..8).flat_map(|row| (0..=row).map(move |at| (row, at, entry(row, at)))).collect();
+        let matrix = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(8, 8, &entries).unwrap()).unwrap();
+        let analysis = Analysis::of(&matrix).unwrap();
+        assert_eq!(negative_eigenvalues(&analysis, &matrix, 1).unwrap(), None);
+        let swept = Lanes::of(&[1.0; 8], 8).forward(&analysis.factor(&matrix).unwrap()).into_columns();
+        assert!(swept.iter().all(|value| value.is_nan()), "{swept:?}");
+    }
 }

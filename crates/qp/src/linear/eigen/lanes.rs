@@ -55,8 +55,10 @@ impl Lanes {
     }
 
     fn swept(mut self, factor: &Cholesky, direction: Direction) -> Self {
-        if let Some((nodes, values)) = factor.block_columns() {
-            Arch::new().dispatch(Sweep { nodes, values, x: &mut self.rows, direction });
+        match factor.block_columns() {
+            Some((nodes, values)) => Arch::new().dispatch(Sweep { nodes, values, x: &mut self.rows, direction }),
+            // Nothing passes for a solution.
+            None => self.rows.fill([f64::NAN; LANES]),
         }
         self
     }

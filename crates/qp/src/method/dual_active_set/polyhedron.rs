@@ -81,7 +81,7 @@ impl Polyhedron {
         let load: Vec<f64> = load.map(|(&f, &d)| ldexp(f, d + equilibration.factor)).collect();
         let gap = of.gap().iter().zip(&scales).map(|(&g, &scale)| ldexp(g, scale)).collect();
         let reach = norm(&factor.forward(&load));
-        let problem = ContactProblem::new(stiffness, load, contact, gap)?;
+        let problem = ContactProblem::computed(stiffness, load, contact, gap)?;
         let work = Cell::new((of.rows() * factor.entries()) as f64);
         Ok(Some(Polyhedron { problem, by_row, factor, lengths, reach, equilibration, scales, work }))
     }
