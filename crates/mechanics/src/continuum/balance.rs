@@ -6,14 +6,14 @@
 
 use std::collections::BTreeMap;
 
-use super::johnson_mercier::{Element, tractions_of_body_force};
+use super::johnson_mercier::Element;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::normal::{Lower, add};
 use super::part_stress::PartStress;
 use super::simplex::Point;
 use super::stress::{Place, Stresses};
 use super::system::Unknowns;
-use crate::fem::geometry::{COORDINATES, dot as inner, minus};
+use crate::fem::geometry::{COORDINATES, minus};
 use signorini_qp::dot;
 
 /// Rounds of balancing: the later ones take the rounding of the first.
@@ -79,42 +79,44 @@ struct Levers<'a> {
     size: f64,
 }
 
+/// Force and moment: the components that the dimension has, then zeros.
+type Resultant = [f64; 6];
+
 impl Levers<'_> {
     /// The force and the moment of a force at a place.
-    fn at(&self, place: usize, force: Point) -> Vec<f64> {
-        let [x, y, z] = minus(self.places[place], self.centre).map(|part| part / self.size);
-        let moments = [[-y, x, 0.0], [0.0, -z, y], [z, 0.0, -x]].map(|turn| inner(turn, force));
-        let count = if self.dimension == 2 { 1 } else { 3 };
-        force.into_iter().take(self.dimension).chain(moments.into_iter().take(count)).collect()
+    fn at(&self, place: usize, force: Point) -> Resultant {
+        let ([x, y, z], [along_x, along_y, along_z]) =
+            (minus(self.places[place], self.centre).map(|part| part / self.size), force);
+        let about_z = x * along_y - y * along_x;
+        match self.dimension {
+            2 => [along_x, along_y, about_z, 0.0, 0.0, 0.0],
+            _ => [along_x, along_y, along_z, about_z, y * along_z - z * along_y, z * along_x - x * along_z],
+        }
     }
 
     /// The force and the moment of a force of one along an unknown.
-    fn of(&self, unknown: usize) -> Vec<f64> {
+    fn of(&self, unknown: usize) -> Resultant {
         self.at(unknown / self.dimension, COORDINATES[unknown % self.dimension])
     }
 
     /// The resultants of forces along unknowns.
-    fn resultants(&self, forces: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
-        let mut sum = vec![0.0; rigid_motions(self.dimension)];
+    fn resultants(&self, forces: impl Iterator<Item = (usize, f64)>) -> Resultant {
+        let mut sum = Resultant::default();
         forces.for_each(|(unknown, force)| add(&mut sum, force, &self.of(unknown)));
         sum
     }
 
     /// The smallest amounts of the forces with these levers that have these resultants; `None` if there are none.
-    fn amounts(&self, levers: &[Vec<f64>], resultants: &[f64]) -> Option<Vec<f64>> {
-        let mut motion = resultants.to_vec();
-        Lower::of_squares(motion.len(), levers)?.solve(&mut motion);
+    fn amounts(&self, levers: &[Resultant], resultants: &Resultant) -> Option<Vec<f64>> {
+        let mut motion = *resultants;
+        let count = if self.dimension == 2 { 3 } else { 6 };
+        Lower::of_squares(count, levers)?.solve(&mut motion);
         Some(levers.iter().map(|lever| dot(lever, &motion)).collect())
     }
 }
 
-/// Number of rigid motions.
-fn rigid_motions(dimension: usize) -> usize {
-    if dimension == 2 { 3 } else { 6 }
-}
-
 /// The levers of forces of one at places along axes.
-fn levers(about: &Levers, held: &[(usize, Point)]) -> Vec<Vec<f64>> {
+fn levers(about: &Levers, held: &[(usize, Point)]) -> Vec<Resultant> {
     held.iter().map(|&(place, axis)| about.at(place, axis)).collect()
 }
 
@@ -149,10 +151,9 @@ impl Balance {
             }
         }
         let balance = Balance { tree, held: held.into_iter().collect(), places: stresses.places() };
-        let none = vec![0.0; rigid_motions(mesh.dimension)];
         let carries = |(_, held): &(usize, Vec<_>)| {
             let of_body = balance.of_body(mesh);
-            of_body.amounts(&levers(&of_body, held), &none).is_some()
+            of_body.amounts(&levers(&of_body, held), &Resultant::default()).is_some()
         };
         balance.held.iter().all(carries).then_some(balance)
     }
@@ -178,12 +179,13 @@ impl Balance {
         places: &[Place],
         pulls: &[f64],
     ) -> Option<Vec<PartStress>> {
-        let (mesh, problem, tree) = (stresses.mesh, stresses.problem, &self.tree);
+        let (mesh, tree) = (stresses.mesh, &self.tree);
         let (dimension, of_facet) = (mesh.dimension, mesh.dimension * mesh.dimension);
         let sign = |cell: usize, unknown: usize| tree.sign(cell, unknown / of_facet);
+        let elements: Vec<(&[usize], &Element)> = stresses.with_elements().collect();
         // The forces at the unknowns are those on the first simplex of their facet.
         let mut forces = vec![0.0; displacement.len()];
-        for (cell, (numbers, element)) in stresses.with_elements().enumerate() {
+        for (cell, &(numbers, element)) in elements.iter().enumerate() {
             let own: Vec<f64> = numbers.iter().map(|&number| displacement[number]).collect();
             for (&number, work) in numbers.iter().zip(element.works(&own)) {
                 let share = if tree.is_inside(number / of_facet) { 0.5 } else { 1.0 };
@@ -202,19 +204,17 @@ impl Balance {
                 own.clone().zip(axis).for_each(|(unknown, part)| forces[unknown] += taken * part);
             }
         }
-        let of_body_force: Vec<Vec<f64>> = (0..mesh.count())
-            .map(|cell| tractions_of_body_force(problem, mesh.origins[cell], &mesh.simplex(cell)))
-            .collect();
         // What a simplex has too much.
         let too_much = |cell: usize, levers: &Levers, forces: &[f64]| {
             let of_unknown =
                 |(&unknown, other): (&usize, &f64)| (unknown, sign(cell, unknown) * forces[unknown] - other);
-            levers.resultants(stresses.numbers.of(cell).iter().zip(&of_body_force[cell]).map(of_unknown))
+            let (numbers, element) = elements[cell];
+            levers.resultants(numbers.iter().zip(&element.particular_tractions).map(of_unknown))
         };
         for _ in 0..ROUNDS {
             let of_body = self.of_body(mesh);
             for (root, held) in &self.held {
-                let mut sum = vec![0.0; rigid_motions(mesh.dimension)];
+                let mut sum = Resultant::default();
                 let of_root = (0..mesh.count()).filter(|&cell| tree.roots[cell] == *root);
                 of_root.for_each(|cell| add(&mut sum, 1.0, &too_much(cell, &of_body, &forces)));
                 for (&(place, axis), taken) in held.iter().zip(of_body.amounts(&levers(&of_body, held), &sum)?) {
@@ -225,15 +225,15 @@ impl Balance {
                 let Some(facet) = tree.towards_root[cell] else { continue };
                 let (levers, sign) = (self.of_cell(mesh, cell), tree.sign(cell, facet));
                 let of_side: Vec<usize> = (of_facet * facet..of_facet * (facet + 1)).collect();
-                let of_unknowns: Vec<Vec<f64>> = of_side.iter().map(|&unknown| levers.of(unknown)).collect();
+                let of_unknowns: Vec<Resultant> = of_side.iter().map(|&unknown| levers.of(unknown)).collect();
                 let taken = levers.amounts(&of_unknowns, &too_much(cell, &levers, &forces))?;
                 of_side.iter().zip(taken).for_each(|(&unknown, taken)| forces[unknown] -= sign * taken);
             }
         }
-        let stress = |(cell, (numbers, element)): (usize, (&[usize], &Element))| {
+        let stress = |(cell, &(numbers, element)): (usize, &(&[usize], &Element))| {
             element.stress_with(&numbers.iter().map(|&number| sign(cell, number) * forces[number]).collect::<Vec<_>>())
         };
-        stresses.with_elements().enumerate().map(stress).collect()
+        elements.iter().enumerate().map(stress).collect()
     }
 }
 

@@ -262,12 +262,30 @@ impl<'a> Bracket<'a> {
         }
     }
 
-    /// The sum over the points of integration of the parts of a simplex.
+    /// The points of integration on a part of a simplex, at which squares of linear functions are exact.
+    pub fn rule(&self, cell: usize) -> impl Fn(&Simplex) -> Vec<Sample> + '_ {
+        move |part| samples(self.problem, self.mesh.origins[cell], part)
+    }
+
+    /// The sums over points on the parts of a simplex.
+    pub fn sums<const N: usize>(
+        &self,
+        cell: usize,
+        rule: &impl Fn(&Simplex) -> Vec<Sample>,
+        values: impl Fn(usize, &Sample) -> [f64; N],
+    ) -> [f64; N] {
+        let (simplex, mut sums) = (self.mesh.simplex(cell), [0.0; N]);
+        for k in 0..=self.mesh.dimension {
+            for at in rule(&simplex.part(k)) {
+                sums.iter_mut().zip(values(k, &at)).for_each(|(sum, value)| *sum += value);
+            }
+        }
+        sums
+    }
+
+    /// One such sum.
     pub fn sum(&self, cell: usize, value: impl Fn(usize, &Sample) -> f64) -> f64 {
-        let simplex = self.mesh.simplex(cell);
-        let samples = |k: usize| samples(self.problem, self.mesh.origins[cell], &simplex.part(k));
-        let of_part = |k: usize| samples(k).iter().map(|at| value(k, at)).sum::<f64>();
-        (0..=self.mesh.dimension).map(of_part).sum()
+        self.sums(cell, &self.rule(cell), |k, at| [value(k, at)])[0]
     }
 
     /// The same of the difference of a strain and that of an elastic stress.
@@ -291,20 +309,14 @@ impl<'a> Bracket<'a> {
     /// Computes energy, shares and the share of contact.
     pub(super) fn measure(&mut self) {
         let values = &self.primal.values;
+        // Half the square of the misfit, the energy, and what a polynomial adds to it.
         let of_cell = |cell: usize| {
-            let misfit = |k: usize, at: &Sample| {
-                let stress = self.elastic_stress(cell, k, at.weights);
-                self.square_of_rest(cell, at, self.strain(values, cell, k, at.weights), stress) / 2.0
-            };
-            let energy = |k: usize, at: &Sample| {
-                at.weight * self.law(cell, at.place).square(self.strain(values, cell, k, at.weights))
-            };
-            let rounded_up = |k: usize, at: &Sample| {
-                self.by_polynomial(cell, at, self.strain(values, cell, k, at.weights), [0.0; 6])
-            };
-            let has_polynomial = self.problem.has_polynomial(self.mesh.origins[cell]);
-            let rounded_up = if has_polynomial { self.sum(cell, rounded_up) } else { 0.0 };
-            [self.sum(cell, misfit), self.sum(cell, energy), rounded_up]
+            self.sums(cell, &self.rule(cell), |k, at| {
+                let strain = self.strain(values, cell, k, at.weights);
+                let misfit = self.square_of_rest(cell, at, strain, self.elastic_stress(cell, k, at.weights));
+                let energy = at.weight * self.law(cell, at.place).square(strain);
+                [misfit / 2.0, energy, self.by_polynomial(cell, at, strain, [0.0; 6])]
+            })
         };
         let of_cells = each(self.mesh.count(), of_cell);
         let mut shares: Vec<f64> = of_cells.iter().map(|cell| cell[0]).collect();

@@ -7,7 +7,7 @@ use super::integration::{samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
 use super::sample::Sample;
-use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
 use super::stress::Place;
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
@@ -166,18 +166,24 @@ impl<'a> Displacements<'a> {
         let (simplex, count) = (self.mesh.simplex(cell), self.numbers.of(cell).len());
         let origin = self.mesh.origins[cell];
         let mut block = vec![0.0; count * count];
+        let mut strains: Vec<Tensor> = Vec::with_capacity(count);
         for sample in samples(self.problem, origin, &simplex) {
             let law = self.problem.law(origin, sample.place);
-            let strains: Vec<Tensor> = self.strains_of_functions(&simplex, sample.weights).collect();
-            for (line, strain) in block.chunks_exact_mut(count).zip(&strains) {
-                let stress = law.stress(*strain);
-                let entries = line.iter_mut().zip(&strains);
-                entries.for_each(|(entry, &other)| *entry += sample.weight * work(stress, other));
+            strains.clear();
+            strains.extend(self.strains_of_functions(&simplex, sample.weights));
+            for (first, &strain) in strains.iter().enumerate() {
+                let mut stress = law.stress(strain).map(|part| sample.weight * part);
                 if sample.extra != 0.0 {
-                    let entries = line.iter_mut().zip(&strains);
-                    entries.for_each(|(entry, &other)| *entry += sample.extra * law.over_radius(*strain, other));
+                    let extra = law.stress_over_radius(strain);
+                    stress.iter_mut().zip(extra).for_each(|(sum, part)| *sum += sample.extra * part);
                 }
+                let line = &mut block[count * first..count * (first + 1)];
+                let entries = line.iter_mut().zip(&strains).skip(first);
+                entries.for_each(|(entry, &other)| *entry += work(stress, other));
             }
+        }
+        for line in 1..count {
+            (0..line).for_each(|column| block[count * line + column] = block[count * column + line]);
         }
         block
     }
@@ -221,12 +227,32 @@ impl<'a> Displacements<'a> {
 
     /// The strain of a displacement at a point of a simplex, given in barycentric coordinates.
     pub fn strain(&self, coefficients: &[f64], cell: usize, at: Weights) -> Tensor {
-        let simplex = self.mesh.simplex(cell);
-        let mut strain = [0.0; 6];
-        for (&number, of_function) in self.numbers.of(cell).iter().zip(self.strains_of_functions(&simplex, at)) {
-            strain.iter_mut().zip(of_function).for_each(|(sum, part)| *sum += coefficients[number] * part);
+        let (simplex, dimension) = (self.mesh.simplex(cell), self.mesh.dimension);
+        // With the coefficients c_ij the displacement is the sum of l_j d_j / 2, and its gradient that of d_j times the
+        // slope of l_j, with d_j = 2 sum of l_i c_ij.
+        let mut along = [[0.0; 3]; MOST_CORNERS];
+        for (pair, numbers) in pairs(dimension + 1).zip(self.numbers.of(cell).chunks_exact(dimension)) {
+            let [i, j] = pair;
+            for (axis, &number) in numbers.iter().enumerate() {
+                let twice = 2.0 * coefficients[number];
+                along[j][axis] += at[i] * twice;
+                along[i][axis] += if i == j { 0.0 } else { at[j] * twice };
+            }
         }
-        strain
+        let mut gradient = [[0.0; 3]; 3];
+        for (along, slope) in along.iter().zip(simplex.slopes()).take(dimension + 1) {
+            for (line, part) in gradient.iter_mut().zip(along) {
+                line.iter_mut().zip(slope).for_each(|(entry, slope)| *entry += part * slope);
+            }
+        }
+        let shear = |i: usize, j: usize| (gradient[i][j] + gradient[j][i]) / 2.0;
+        let mut hoop = gradient[2][2];
+        if self.problem.is_axisymmetric {
+            // A radial displacement stretches the circle about the axis.
+            let radial: f64 = along.iter().zip(at).map(|(along, weight)| weight * along[0] / 2.0).sum();
+            hoop += radial / simplex.at(at)[0];
+        }
+        [gradient[0][0], gradient[1][1], hoop, shear(0, 1), shear(1, 2), shear(2, 0)]
     }
 
     /// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all

@@ -17,7 +17,6 @@ use std::collections::BTreeSet;
 
 use super::bound::{Bracket, Side};
 use super::part_stress::PartStress;
-use super::sample::Sample;
 use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
 use super::system::{Block, Numbers, Unknowns};
@@ -127,39 +126,24 @@ impl Bracket<'_> {
 
     /// The interval of a pair, and the beta at which its term would reach that of the ball.
     fn interval(&self, test: &Test) -> ([f64; 2], f64) {
+        // The square of the rest of the pair, its product with the mean stress, and by as much the polynomial for a
+        // power of a radius may change such products.
         let of_cell = |cell: usize| {
-            let pair = |k: usize, at: &Sample| {
+            self.sums(cell, &self.rule(cell), |k, at| {
                 let strain = self.strain(&test.displacement, cell, k, at.weights);
-                (strain, self.stress_of(&test.stress, cell, k, at.weights))
-            };
-            let square = |k: usize, at: &Sample| {
-                let (strain, stress) = pair(k, at);
-                self.square_of_rest(cell, at, strain, stress)
-            };
-            let base = |k: usize, at: &Sample| {
-                let (strain, stress) = pair(k, at);
+                let stress = self.stress_of(&test.stress, cell, k, at.weights);
                 let own = self.strain(&self.primal.values, cell, k, at.weights);
                 let elastic = self.elastic_stress(cell, k, at.weights);
                 let law = self.law(cell, at.place);
                 let rest = less(strain, law.compliance(stress));
-                let extra = law.over_radius(own, strain) - work(elastic, law.compliance(stress));
-                at.weight * work(middle(law.stress(own), elastic), rest) + at.extra * extra / 2.0
-            };
-            // By as much the polynomial for a power of a radius may change these products.
-            let changes = |k: usize, at: &Sample| {
-                let (strain, stress) = pair(k, at);
-                self.by_polynomial(cell, at, strain, stress)
-            };
-            let changes_of_bracket = |k: usize, at: &Sample| {
-                let own = self.strain(&self.primal.values, cell, k, at.weights);
-                self.by_polynomial(cell, at, own, self.elastic_stress(cell, k, at.weights))
-            };
-            let of_extra = if self.problem.has_polynomial(self.mesh.origins[cell]) {
-                [self.sum(cell, changes), self.sum(cell, changes_of_bracket)]
-            } else {
-                [0.0; 2]
-            };
-            [self.sum(cell, square), self.sum(cell, base), of_extra[0], of_extra[1]]
+                let mut base = at.weight * work(middle(law.stress(own), elastic), rest);
+                if at.extra != 0.0 {
+                    let extra = law.over_radius(own, strain) - work(elastic, law.compliance(stress));
+                    base += at.extra * extra / 2.0;
+                }
+                let changes = [(strain, stress), (own, elastic)].map(|(a, b)| self.by_polynomial(cell, at, a, b));
+                [self.square_of_rest(cell, at, strain, stress), base, changes[0], changes[1]]
+            })
         };
         let of_cells = each(self.mesh.count(), of_cell);
         let [mut square, mut base, mut of_test, mut of_bracket] =
@@ -298,6 +282,11 @@ impl Bracket<'_> {
                 let Some(unknowns) = with_contact_held(side, rows) else { return Ok(None) };
                 let load = vec![0.0; unknowns.count()];
                 let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], places)?;
+                // In space a hierarchy may be the only way.
+                let linear = (self.mesh.dimension == 2).then(|| posed.linear_displacement(&self.settings));
+                if let Some(Ok(free)) = linear {
+                    return Ok(Some(unknowns.expanded(&free)));
+                }
                 (Some(unknowns), solve(&posed, &self.settings))
             }
         };

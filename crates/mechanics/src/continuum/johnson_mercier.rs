@@ -73,8 +73,8 @@ pub struct Element {
     particular: PartStress,
     /// Works of the tractions of each stress with the unknowns of the sides.
     tractions: Vec<Vec<f64>>,
-    /// The same of the particular stress.
-    particular_tractions: Vec<f64>,
+    /// The same of the particular stress: of any stress in balance with the body force.
+    pub particular_tractions: Vec<f64>,
     /// The complementary energies of each stress with the particular one, less the stress without strain.
     particular_energies: Vec<f64>,
     /// The factor of the products of the works of the stresses, at its first use.
@@ -264,11 +264,6 @@ fn works(problem: &ContinuumProblem, simplex: &Simplex, stress: &PartStress) -> 
         }
     }
     works
-}
-
-/// The works of the tractions of a stress in balance with the body force.
-pub fn tractions_of_body_force(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Vec<f64> {
-    works(problem, simplex, &balancing(problem, problem.medium(origin), simplex))
 }
 
 /// A stress whose divergence is the opposite of a constant body force. About an axis the radial part of the force acts

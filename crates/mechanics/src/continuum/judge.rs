@@ -1,9 +1,8 @@
 //! Judges any other displacement by the ball that contains the exact stress.
 
 use super::bound::Bracket;
-use super::integration::samples;
 use super::sample::Sample;
-use super::simplex::{Point, Simplex, Tensor, less, middle};
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, less, middle};
 use crate::fem::element::{ElementKind, Tabulated};
 use crate::fem::threads::each;
 
@@ -22,40 +21,44 @@ pub struct Judged {
 pub enum Strain<S> {
     /// The same everywhere.
     Constant(Tensor),
+    /// A function of the place that is linear.
+    Linear(S),
     /// A function of the place.
     Varying(S),
 }
 
 impl Bracket<'_> {
     /// Judges a displacement by its strain in an element of the first mesh. The displacement needs no other property:
-    /// the bound follows from its distance to the centre of the ball and the radius. Integrals of a constant strain are
-    /// exact, except where axes turn; those of others are by five points in each direction on each part of a simplex.
+    /// the bound follows from its distance to the centre of the ball and the radius. Integrals of a constant or linear
+    /// strain are exact, except where axes turn; those of others are by five points in each direction on each part of a
+    /// simplex.
     pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> Strain<S> + Sync) -> Judged {
         let fine = self.fine_rule();
         let of_cell = |cell: usize| {
-            let (mut from_centre, mut from_displacement, mut norm) = (0.0, 0.0, 0.0);
             let (simplex, strain) = (self.mesh.simplex(cell), strain_in(self.mesh.origins[cell]));
-            for k in 0..=self.mesh.dimension {
-                let part = simplex.part(k);
-                let points = match strain {
-                    Strain::Constant(_) => samples(self.problem, self.mesh.origins[cell], &part),
-                    Strain::Varying(_) => fine(&part),
-                };
-                for Sample { weights, place, weight, .. } in points {
-                    let law = self.law(cell, place);
-                    let own = match &strain {
-                        Strain::Constant(strain) => *strain,
-                        Strain::Varying(strain) => strain(place),
-                    };
-                    let of_bracket = self.strain(&self.primal.values, cell, k, weights);
-                    let balanced = law.compliance(self.elastic_stress(cell, k, weights));
-                    let square = |strain: Tensor| weight * law.square(strain);
-                    from_centre += square(less(own, middle(of_bracket, balanced)));
-                    from_displacement += square(less(own, of_bracket));
-                    norm += square(own);
+            let mut at_corners = [[0.0; 6]; MOST_CORNERS];
+            match &strain {
+                Strain::Constant(strain) => at_corners.fill(*strain),
+                Strain::Linear(strain) => {
+                    at_corners.iter_mut().zip(simplex.corners()).for_each(|(own, &corner)| *own = strain(corner));
                 }
+                Strain::Varying(_) => {}
             }
-            [from_centre, from_displacement, norm]
+            let squares = |k: usize, at: &Sample| {
+                let own = match &strain {
+                    Strain::Varying(strain) => strain(at.place),
+                    _ => mean(&at_corners, simplex.in_whole(k, at.weights)),
+                };
+                let law = self.law(cell, at.place);
+                let of_bracket = self.strain(&self.primal.values, cell, k, at.weights);
+                let balanced = law.compliance(self.elastic_stress(cell, k, at.weights));
+                [less(own, middle(of_bracket, balanced)), less(own, of_bracket), own]
+                    .map(|strain| at.weight * law.square(strain))
+            };
+            match strain {
+                Strain::Varying(_) => self.sums(cell, &fine, squares),
+                _ => self.sums(cell, &self.rule(cell), squares),
+            }
         };
         let of_cells = each(self.mesh.count(), of_cell);
         let [from_centre, from_displacement, norm] =
@@ -81,4 +84,13 @@ impl Bracket<'_> {
             rule.iter().map(|point| sample(&point.shape, point.weight)).collect()
         }
     }
+}
+
+/// The mean of tensors at the corners of a simplex with these weights.
+fn mean(at_corners: &[Tensor], weights: Weights) -> Tensor {
+    let mut mean = [0.0; 6];
+    for (own, weight) in at_corners.iter().zip(weights) {
+        mean.iter_mut().zip(own).for_each(|(sum, part)| *sum += weight * part);
+    }
+    mean
 }

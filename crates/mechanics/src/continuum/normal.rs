@@ -32,9 +32,9 @@ impl Lower {
     }
 
     /// The factor of `A'A` for the rows of A, each of this length.
-    pub fn of_squares(length: usize, rows: &[Vec<f64>]) -> Option<Self> {
+    pub fn of_squares(length: usize, rows: &[impl AsRef<[f64]>]) -> Option<Self> {
         let mut matrix: Vec<Vec<f64>> = (0..length).map(|i| vec![0.0; i + 1]).collect();
-        for row in rows {
+        for row in rows.iter().map(AsRef::as_ref) {
             matrix.iter_mut().zip(row).for_each(|(line, &factor)| add(line, factor, row));
         }
         Self::of(matrix)
@@ -76,17 +76,23 @@ pub fn null_space(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         let largest = (0..count).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())).unwrap_or(0);
         (row[largest].abs(), largest)
     };
+    // Of the rows without a pivot.
+    let mut largest: Vec<Option<(f64, usize)>> = rows.iter().map(|row| Some(largest_in(row))).collect();
     loop {
-        let left = (0..rows.len()).filter(|row| pivots.iter().all(|pivot| pivot.0 != *row));
-        let next = left.map(|row| (largest_in(&rows[row]), row)).max_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        let left = largest.iter().enumerate().filter_map(|(row, largest)| Some(((*largest)?, row)));
+        let next = left.max_by(|a, b| a.0.0.total_cmp(&b.0.0));
         // What is left of a row that depends on others is rounding.
         let Some(((_, column), index)) = next.filter(|((size, _), _)| *size > DEPENDENT) else { break };
+        largest[index] = None;
         let scale = rows[index][column];
         rows[index].iter_mut().for_each(|value| *value /= scale);
         let row = rows[index].clone();
         for other in (0..rows.len()).filter(|&other| other != index) {
             let share = rows[other][column];
-            rows[other].iter_mut().zip(&row).for_each(|(value, part)| *value -= share * part);
+            if share != 0.0 {
+                add(&mut rows[other], -share, &row);
+                largest[other] = largest[other].map(|_| largest_in(&rows[other]));
+            }
         }
         pivots.push((index, column));
     }

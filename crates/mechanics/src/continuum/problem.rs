@@ -374,11 +374,6 @@ impl ContinuumProblem {
         &self.media[self.medium_of[origin]]
     }
 
-    /// Returns `true` if a polynomial stands for a power of a radius in the energies of an element of the first mesh.
-    pub fn has_polynomial(&self, origin: usize) -> bool {
-        self.is_axisymmetric || self.medium(origin).turns_around().is_some()
-    }
-
     /// The law of the medium of an element of the first mesh at a place.
     pub fn law(&self, origin: usize, place: Point) -> Law<'_> {
         let normals = if self.is_axisymmetric { 3 } else { self.dimension };
@@ -470,13 +465,18 @@ impl Law<'_> {
         std::array::from_fn(of_entry)
     }
 
-    /// The part of the product of two strains, per volume, that contains a power of a radius: of the strains around an
-    /// axis, or of all where the axes turn.
-    pub fn over_radius(&self, strain: Tensor, other: Tensor) -> f64 {
+    /// The stress of that part of a strain whose energy contains a power of a radius: of the strain around an axis, or
+    /// of all where the axes turn.
+    pub fn stress_over_radius(&self, strain: Tensor) -> Tensor {
         match self.axes {
-            Some(_) => work(self.stress(strain), other),
-            None => self.stress([0.0, 0.0, strain[2], 0.0, 0.0, 0.0])[2] * other[2],
+            Some(_) => self.stress(strain),
+            None => [0.0, 0.0, self.stress([0.0, 0.0, strain[2], 0.0, 0.0, 0.0])[2], 0.0, 0.0, 0.0],
         }
+    }
+
+    /// The product of two strains, per volume, of these parts.
+    pub fn over_radius(&self, strain: Tensor, other: Tensor) -> f64 {
+        work(self.stress_over_radius(strain), other)
     }
 
     /// The square of the energy norm of a strain, per volume.

@@ -6,6 +6,7 @@ mod elimination;
 mod ending;
 mod many;
 mod pieces;
+mod unconstrained;
 
 pub(super) use carried_out::solve_any;
 pub use carried_out::solved;

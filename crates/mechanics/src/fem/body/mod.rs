@@ -369,6 +369,16 @@ impl ElasticBody {
         }
     }
 
+    /// Returns `true` for a linear quadrilateral whose opposite sides are parallel, to the last bit: there strains are
+    /// linear in the place.
+    pub(crate) fn is_parallelogram(&self, element: usize) -> bool {
+        let nodes = self.mesh.element(element);
+        let at = self.coordinates(nodes);
+        let is_parallel = |axis: usize| at[0][axis] - at[1][axis] == at[3][axis] - at[2][axis];
+        let ReferenceElement { dimension, corners, mid_sides, .. } = self.mesh.kind_of(element).reference();
+        (*dimension, *corners) == (2, 4) && mid_sides.is_empty() && is_parallel(0) && is_parallel(1)
+    }
+
     /// The strain of a nodal displacement in an element, at points given in coordinates off an axis of revolution.
     pub(crate) fn strain_in(&self, displacement: &[f64], element: usize) -> impl Fn([f64; 3]) -> Symmetric {
         let (reference, nodes) = (self.mesh.kind_of(element).reference(), self.mesh.element(element));

@@ -276,6 +276,7 @@ pub(super) fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
             ElementKind::LINEAR_TRIANGLE | ElementKind::LINEAR_TETRAHEDRON if !is_axisymmetric => {
                 Strain::Constant(own([0.0; 3]))
             }
+            _ if in_plane && body.is_parallelogram(element) => Strain::Linear(own),
             _ => Strain::Varying(own),
         }
     })

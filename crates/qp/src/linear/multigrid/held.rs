@@ -22,6 +22,14 @@ impl Hold {
     pub fn of(unit: Direction) -> Self {
         Hold { way: unit.clone(), row: unit }
     }
+
+    /// The dof, if it is a single one.
+    fn unit(&self) -> Option<usize> {
+        match (&self.way[..], &self.row[..]) {
+            (&[(dof, way)], &[(held, row)]) if dof == held && way * row == 1.0 => Some(dof),
+            _ => None,
+        }
+    }
 }
 
 /// The projection N of a face.
@@ -33,34 +41,57 @@ pub struct Held<T> {
     pub transposed: BlockMatrix<T>,
     /// The nodes that have entries in N, and in N'.
     rows: [Vec<usize>; 2],
+    /// The places of what is held, if all of it are single dofs.
+    units: Option<Vec<usize>>,
 }
 
 impl<T: Real> Held<T> {
     /// The projection of `holds`.
     pub fn of(nodes: &Nodes, holds: &[Hold]) -> Self {
         let matrix = sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.row)));
-        Self::with(matrix, sum(nodes, holds.iter().map(|hold| (&hold.row, &hold.way))))
+        let units = holds.iter().map(|hold| hold.unit().map(|dof| nodes.place[dof] as usize)).collect::<Option<_>>();
+        match units {
+            Some(units) => Self::symmetric(matrix, Some(units)),
+            None => Self::with(matrix, sum(nodes, holds.iter().map(|hold| (&hold.row, &hold.way)))),
+        }
     }
 
     fn with(matrix: BlockMatrix<T>, transposed: BlockMatrix<T>) -> Self {
         let rows = [&matrix, &transposed].map(|matrix| matrix.filled_rows().collect());
-        Held { matrix, transposed, rows }
+        Held { matrix, transposed, rows, units: None }
+    }
+
+    fn symmetric(matrix: BlockMatrix<T>, units: Option<Vec<usize>>) -> Self {
+        let rows: Vec<usize> = matrix.filled_rows().collect();
+        Held { transposed: matrix.clone(), matrix, rows: [rows.clone(), rows], units }
+    }
+
+    /// Takes out what `matrix` N or N' holds.
+    fn subtract(&self, matrix: &BlockMatrix<T>, rows: &[usize], x: &mut [T]) {
+        match &self.units {
+            Some(units) => units.iter().for_each(|&place| x[place] = T::default()),
+            None => matrix.subtract_from(rows, x),
+        }
     }
 
     /// `x = E x` for displacements.
     pub fn project(&self, x: &mut [T]) {
-        self.matrix.subtract_from(&self.rows[0], x);
+        self.subtract(&self.matrix, &self.rows[0], x);
     }
 
     /// `f = E' f` for forces.
     pub fn project_force(&self, f: &mut [T]) {
-        self.transposed.subtract_from(&self.rows[1], f);
+        self.subtract(&self.transposed, &self.rows[1], f);
     }
 
     /// What is held beyond `last`.
     pub fn beyond(&self, last: &Self) -> Self {
         let minus = |own: &BlockMatrix<T>, last: &BlockMatrix<T>| own.plus(-1.0, last).without_zeros();
-        Self::with(minus(&self.matrix, &last.matrix), minus(&self.transposed, &last.transposed))
+        let matrix = minus(&self.matrix, &last.matrix);
+        match self.units.is_some() && last.units.is_some() {
+            true => Self::symmetric(matrix, None),
+            false => Self::with(matrix, minus(&self.transposed, &last.transposed)),
+        }
     }
 
     /// `N' A`.

@@ -107,7 +107,10 @@ impl Making<'_> {
         let (reflections, touching, bounds, left_out) = (Vec::new(), HashMap::new(), Vec::new(), Vec::new());
         let units = units.exponents.clone();
         let bound_of = vec![None; units.len()];
-        let all = Bounds { units, reflections, touching, bounds, travels, left_out, rows: rows.gap.len() };
+        let (is_plain, is_unscaled) = (false, units.iter().all(|&unit| unit == 0));
+        let rows_given = rows.gap.len();
+        let all =
+            Bounds { units, is_unscaled, reflections, touching, bounds, is_plain, travels, left_out, rows: rows_given };
         let mut making = Making { rows, all, bound_of, carried: HashSet::new() };
         let is_mean: HashSet<usize> = means.iter().copied().collect();
         for (place, &row) in order.rows.iter().enumerate().filter(|entry| rows.gap[*entry.1].is_finite()) {
@@ -121,6 +124,9 @@ impl Making<'_> {
                 without_pivot.insert(row);
             }
         }
+        let all = &mut making.all;
+        let is_own = |bound: &Bound| bound.shears().next().is_none();
+        all.is_plain = all.reflections.is_empty() && all.travels.is_empty() && all.bounds.iter().all(is_own);
         Ok((making.all, without_pivot))
     }
 

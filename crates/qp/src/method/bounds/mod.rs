@@ -76,12 +76,16 @@ fn reflect(w: &Direction, v: &mut [f64]) {
 pub struct Bounds {
     /// The exponent of the unit of each dof.
     units: Vec<i32>,
+    /// `true` if all units are 1.
+    is_unscaled: bool,
     /// The unit vector of each reflection.
     reflections: Vec<Direction>,
     /// The reflections that touch each place.
     touching: HashMap<usize, Vec<usize>>,
     /// The bounds.
     pub bounds: Vec<Bound>,
+    /// `true` if all rows are bounds on single dofs, and nothing travels.
+    pub is_plain: bool,
     /// The travels, the dofs without stiffness.
     pub travels: Vec<usize>,
     /// The rows that are no bounds.
@@ -122,24 +126,23 @@ impl Bounds {
         })
     }
 
-    /// Returns `true` if all rows are bounds on single dofs, and nothing travels.
-    pub fn is_plain(&self) -> bool {
-        let is_own = |bound: &Bound| bound.shears().next().is_none();
-        self.reflections.is_empty() && self.travels.is_empty() && self.bounds.iter().all(is_own)
+    /// The bounds in their order whose unknowns are no dofs; none if all rows are bounds on single dofs.
+    fn joined(&self) -> impl DoubleEndedIterator<Item = &Bound> {
+        (if self.is_plain { &[] } else { &self.bounds[..] }).iter()
     }
 
     /// The unknowns w = S H U^-1 u of a displacement u, in place.
     pub fn turn(&self, v: &mut [f64]) {
         self.scale(v, -1);
         self.reflections.iter().for_each(|reflection| reflect(reflection, v));
-        for bound in self.bounds.iter().rev() {
+        for bound in self.joined().rev() {
             bound.shears().for_each(|(place, share)| v[bound.unknown] += share * v[place]);
         }
     }
 
     /// The displacement U H' S^-1 w of unknowns w, in place.
     pub fn turn_back(&self, v: &mut [f64]) {
-        for bound in &self.bounds {
+        for bound in self.joined() {
             bound.shears().for_each(|(place, share)| v[bound.unknown] -= share * v[place]);
         }
         self.reflections.iter().rev().for_each(|reflection| reflect(reflection, v));
@@ -150,14 +153,14 @@ impl Bounds {
     pub fn turn_forces(&self, f: &mut [f64]) {
         self.scale(f, 1);
         self.reflections.iter().for_each(|reflection| reflect(reflection, f));
-        for bound in self.bounds.iter().rev() {
+        for bound in self.joined().rev() {
             bound.shears().for_each(|(place, share)| f[place] -= share * f[bound.unknown]);
         }
     }
 
     /// The forces U^-1 H' S' h along the dofs of forces h along the unknowns, in place; none along travels.
     pub fn turn_forces_back(&self, h: &mut [f64]) {
-        for bound in &self.bounds {
+        for bound in self.joined() {
             bound.shears().for_each(|(place, share)| h[place] += share * h[bound.unknown]);
         }
         self.travels.iter().for_each(|&travel| h[travel] = 0.0);
@@ -167,6 +170,9 @@ impl Bounds {
 
     /// Multiplies values of the dofs by their units to a power, 1 or -1.
     pub fn scale(&self, values: &mut [f64], power: i32) {
+        if self.is_unscaled {
+            return;
+        }
         values.iter_mut().zip(&self.units).for_each(|(value, &unit)| *value = ldexp(*value, power * unit));
     }
 
@@ -189,6 +195,9 @@ impl Bounds {
     /// vectors H' q that span the rows; of a mean its pivot, which gives way, and the row without what the holds before
     /// it hold.
     pub fn holds<'a>(&self, of_bounds: impl Iterator<Item = &'a Bound>) -> Vec<Hold> {
+        if self.is_plain {
+            return of_bounds.map(|bound| Hold::of(vec![(bound.unknown, 1.0)])).collect();
+        }
         let (mut holds, mut touching) = (Vec::<Hold>::new(), HashMap::<usize, Vec<usize>>::new());
         for bound in of_bounds {
             let mut rest: HashMap<usize, f64> = bound.shears.iter().copied().chain([(bound.unknown, 1.0)]).collect();

@@ -28,7 +28,7 @@ pub fn nested_start(
     multigrid: &Multigrid,
     solve: impl Fn(&ContactProblem, &Multigrid, f64, usize) -> Result<Outcome, Error>,
 ) -> Option<Vec<f64>> {
-    if !bounds.is_plain() || bounds.bounds.is_empty() {
+    if !bounds.is_plain || bounds.bounds.is_empty() {
         return None;
     }
     let coarser = multigrid.coarser()?;
@@ -38,7 +38,7 @@ pub fn nested_start(
     let (contact, gap) = rows_of(&coarse)?;
     let mut load = problem.load().to_vec();
     bounds.turn_forces(&mut load);
-    let below = ContactProblem::new(coarser.matrix.clone(), coarser.load(&load), contact, gap).ok()?;
+    let below = ContactProblem::computed(coarser.matrix.clone(), coarser.load(&load), contact, gap).ok()?;
     let found = solve(&below, &coarser.multigrid, TOLERANCE, MOST_CYCLES).ok()?;
     let mut displacement = coarser.interpolated(&found.displacement, &coarse, &intervals);
     bounds.turn_back(&mut displacement);
