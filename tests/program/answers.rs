@@ -45,6 +45,23 @@ fn each_answer_names_its_method() {
 }
 
 #[test]
+fn text_reports_show_shortening_and_tension_of_a_bolt() {
+    let block = |y: [f64; 2]| json!({"rectangle": {"x": {"points": [0, 1], "divisions": [2]}, "y": {"points": y, "divisions": [2]}}});
+    let steel = json!({"young": 200, "poisson": 0});
+    let scene = json!({
+        "model": "plane-stress", "body": block([0.0, 2.0]), "material": steel,
+        "further-bodies": [{"name": "far", "body": block([2.0, 5.0]), "material": steel}],
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}, {"on": {"boundary": "far.top"}, "x": 0, "y": 0}],
+        "ties": [{"preload": {"boundary": "top", "to": "far.bottom", "force": 3}}], "loads": [],
+    });
+    let desk = Desk::new();
+    desk.write("bolt.json", scene.to_string());
+    let text = desk.run(&["solve", "bolt.json"]).ends_with(0).stdout;
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("shortening 7.500000e-2 m, tension 3.000000e0 N"), "{text}");
+}
+
+#[test]
 fn condensed_and_full_problems_give_the_same_force_and_report_their_sizes() {
     let (desk, scene) = (Desk::new(), example("indentation"));
     let solve = |more: &[&str]| {

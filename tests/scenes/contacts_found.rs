@@ -309,6 +309,8 @@ fn a_body_deep_inside_another_is_named() {
         warnings.contains("bodies-overlap") && warnings.contains("go through each other, by 2.500e-1"),
         "{warnings}"
     );
+    // The scene has `auto` already.
+    assert!(warnings.contains("finds none; name both boundaries") && !warnings.contains("or set"), "{warnings}");
 }
 
 /// No node of one bar lies inside the other.

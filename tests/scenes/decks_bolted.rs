@@ -175,6 +175,12 @@ fn bolts_that_cannot_be_read_are_refused_with_their_line() {
             2,
             "does not cut through its body",
         ),
+        (
+            "*PRE-TENSION SECTION, SURFACE=CUT, NODE=5000\n*SURFACE, NAME=LONG\n1, S1\n12, S2\n*TIE, NAME=T\nLONG, OUTSIDE\n",
+            load,
+            5,
+            "because *PRE-TENSION SECTION cuts their body at `CUT`; name a surface of each body",
+        ),
         (PRELOAD, "*CLOAD\nBOLT, 2, 1.\n", 4, "direction 2 of this node is none of a bolt"),
         (PRELOAD, "*BOUNDARY\nBOLT, 3, 3, 1.\n", 4, "direction 3 of this node is none of a bolt"),
     ] {

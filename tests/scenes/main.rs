@@ -5,6 +5,7 @@ mod concave_obstacles;
 mod contact_area;
 mod contact_scenes;
 mod contacts_found;
+mod corners;
 mod decks;
 mod decks_as_written;
 mod decks_bolted;

@@ -208,6 +208,78 @@ fn springs_and_levers_at_points_move_a_bar_as_in_closed_form() {
         near(&motion(&turned, 0)[..2], &[-0.1, 0.0], 0.1);
         // The bar pulls the end with 20; the lever of 2 needs the moment 40.
         near(&[*resultant(&turned, "points[1]").moment.last().unwrap()], &[40.0], 40.0);
+        for tie in ["ties[0]", "ties[1]"] {
+            near(&resultant(&turned, tie).force[..2], &[-20.0, 0.0], 20.0);
+        }
+    }
+}
+
+/// GOAL: springs, couplings and equations at points each report their own force, where they act.
+/// CONDITIONS: a bar of stiffness 200 with a guided point beside its end: pulled by a spring of 50 whose other end
+/// moves by 1; pulled by 30 against such a spring to the ground; pulled by 30 on another point that follows by an
+/// equation, or that follows a node.
+/// REFERENCE: statics; loads, supports, points and springs balance.
+#[test]
+fn forces_at_points_act_where_the_scene_has_them() {
+    for element in ["q4", "hex8"] {
+        let in_space = element.len() > 2;
+        // A force along x at (5.5, 1, 2), and its moment about the origin.
+        let force = |x: f64| if in_space { vec![x, 0.0, 0.0] } else { vec![x, 0.0] };
+        let moment = |x: f64| if in_space { vec![0.0, 2.0 * x, -x] } else { vec![-x] };
+        let guide = |name: &str, keys: Value| {
+            let rotation = if in_space { json!({"x": 0, "y": 0, "z": 0}) } else { json!({"z": 0}) };
+            let mut all = if in_space { json!({"y": 0, "z": 0}) } else { json!({"y": 0}) };
+            all["rotation"] = rotation;
+            keys.as_object().unwrap().iter().for_each(|(key, value)| all[key] = value.clone());
+            point(name, element, all)
+        };
+        let check = |answer: &Answer, of: &str, along: f64, moment: &[f64]| {
+            near(&resultant(answer, of).force, &force(along), 40.0);
+            near(&resultant(answer, of).moment, moment, 100.0);
+        };
+        let in_balance = |answer: &Answer| {
+            let counted = ["supports[0]", "springs[0]", "points[0]", "points[1]"];
+            let all = || answer.resultants().unwrap().iter().filter(|one| counted.contains(&&*one.of));
+            let sum = |of: fn(&Resultant) -> &Vec<f64>, axis: usize| all().map(|one| of(one)[axis]).sum::<f64>();
+            let forces: Vec<f64> = (0..force(0.0).len()).map(|axis| sum(|one| &one.force, axis)).collect();
+            let moments: Vec<f64> = (0..moment(0.0).len()).map(|axis| sum(|one| &one.moment, axis)).collect();
+            near(&[forces, moments].concat(), &vec![0.0; force(0.0).len() + moment(0.0).len()], 100.0);
+        };
+        let mut scene = bar(element, 0.0);
+        scene["ties"] = json!([{"coupling": {"point": "end", "boundary": "right"}}]);
+        let (none, terms) = (moment(0.0), |other: Value| json!([{"terms": other, "along": 50}]));
+        scene["points"] = json!([guide("end", json!({})), guide("other", json!({"x": 1}))]);
+        scene["springs"] =
+            terms(json!([{"on": {"reference": "end"}, "x": 1}, {"on": {"reference": "other"}, "x": -1}]));
+        let pulled = answer(&scene);
+        check(&pulled, "springs[0]", 40.0, &moment(40.0));
+        check(&pulled, "ties[0]", 40.0, &none);
+        check(&pulled, "points[0]", 0.0, &moment(-40.0));
+        check(&pulled, "supports[0]", -40.0, &none);
+        scene["points"] = json!([guide("end", json!({"force": force(30.0)}))]);
+        scene["springs"] = terms(json!([{"on": {"reference": "end"}, "x": 1}]));
+        let against = answer(&scene);
+        check(&against, "springs[0]", -6.0, &moment(-6.0));
+        check(&against, "ties[0]", 24.0, &none);
+        in_balance(&against);
+        scene["springs"] = json!([]);
+        scene["points"] = json!([guide("end", json!({})), guide("other", json!({"force": force(30.0)}))]);
+        let equal = |first: Value| json!({"equation": {"terms": [{"on": first, "x": 1}, {"on": {"reference": "other"}, "x": -1}]}});
+        scene["ties"].as_array_mut().unwrap().push(equal(json!({"reference": "end"})));
+        let followed = answer(&scene);
+        check(&followed, "ties[0]", 30.0, &none);
+        check(&followed, "ties[1]", 30.0, &moment(30.0));
+        assert_eq!(resultant(&followed, "ties[1]").on.as_deref(), Some("`end`"));
+        in_balance(&followed);
+        let corner = if in_space { json!([5, 0.5, 0.5]) } else { json!([5, 0.5]) };
+        // A force on a corner bends the bar.
+        scene["material"]["young"] = 1e5.into();
+        scene["ties"] = json!([equal(json!({"point": corner}))]);
+        scene["points"] = json!([guide("other", json!({"force": force(30.0)}))]);
+        let of_node = answer(&scene);
+        let about = if in_space { vec![0.0, 15.0, -15.0] } else { vec![-15.0] };
+        check(&of_node, "ties[0]", 30.0, &about);
+        check(&of_node, "supports[0]", -30.0, &about.iter().map(|part| -part).collect::<Vec<_>>());
     }
 }
 

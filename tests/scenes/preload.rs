@@ -1,8 +1,11 @@
 //! Preloads of bolts, compared with bars and springs in closed form.
 
+use std::sync::Arc;
+
 use serde_json::{Value, json};
-use signorini::Error;
 use signorini::scene::{Answer, Resultant};
+use signorini::study::Summary;
+use signorini::{Error, solve_qp};
 use support::draws::Draws;
 use support::scenes::{answer, build};
 use support::{cases, seed};
@@ -215,6 +218,26 @@ fn a_bolt_that_lengthens_has_a_negative_shortening() {
         let exact = sense * 3.0 * 5.0 / YOUNG;
         assert!((tie.shortening.unwrap() - exact).abs() < INTEGRATED, "{force} {direction}: {tie:?}");
         assert!((tie.tension.unwrap() - sense * 3.0).abs() < INTEGRATED, "{force} {direction}: {tie:?}");
+    }
+}
+
+/// Halves of a bolt go through each other by the shortening, as is meant; without the bolt they are named.
+#[test]
+fn the_cut_of_a_bolt_is_no_overlap() {
+    let warnings = |scene: &Value| {
+        let model = build(scene).unwrap();
+        let solution = solve_qp(model.problem()).unwrap();
+        let answer = Answer::of(Arc::new(model), &solution).unwrap();
+        Summary::of_answer(&answer, solution, 1e-9, 0.0).unwrap().warnings
+    };
+    for element in ["q4", "q8", "hex8"] {
+        let mut scene = bar(element, [2, 3], 0.0, &preload("force", 3.0));
+        let drawn = warnings(&scene);
+        assert!(drawn.iter().all(|one| one.code != "bodies-overlap"), "{element}: {drawn:?}");
+        scene["ties"] = json!([]);
+        scene["supports"][1][if element.len() > 2 { "z" } else { "y" }] = json!(-0.1);
+        let pushed = warnings(&scene);
+        assert!(pushed.iter().any(|one| one.code == "bodies-overlap"), "{element}: {pushed:?}");
     }
 }
 

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, dot};
 use crate::scene::models::overlap::Overlap;
+use crate::scene::models::parts::Origin;
 use crate::scene::models::rigid_body_modes::soft::SoftMotion;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
 use signorini_qp::{Certificate, ContactProblem, Solution, largest};
@@ -139,8 +140,8 @@ fn unbalanced_moment(answer: &Answer) -> Option<AnswerWarning> {
     (defect > TURNING).then_some(AnswerWarning { code: "moment-defect", message })
 }
 
-/// Warns of rigid motions of bodies that contact without friction hardly resists and no load drives: they follow the
-/// rounding of the mesh.
+/// Warns of rigid motions of bodies that contact without friction hardly resists and no force drives: they follow the
+/// rounding of the mesh, or the moment of loads.
 fn softly_held(answer: &Answer) -> Vec<AnswerWarning> {
     let (model, displacement) = (answer.model(), answer.displacement());
     let closed: Vec<(&ContactRow, f64)> = answer
@@ -154,11 +155,15 @@ fn softly_held(answer: &Answer) -> Vec<AnswerWarning> {
         .unwrap_or_default()
         .into_iter()
         .filter(|soft| soft.moved > VISIBLE * largest);
-    let warning = |SoftMotion { name, moved, advice }| {
+    let warning = |SoftMotion { name, moved, advice, is_driven }| {
+        let (drive, follows) = match is_driven {
+            true => ("under the loads", "so that its size depends on the rounding of the mesh"),
+            false => ("and no force drives it", "so that it follows the rounding of the mesh"),
+        };
         let amount = format!("{moved:.3e} {}", model.units().length);
         let message = format!(
-            "softly held: the {name} moves nodes by {}, {:.0} % of the largest displacement, and no force drives it; {advice}. The \
-             contact rows hardly resist it, so that it follows the rounding of the mesh",
+            "softly held: the {name} moves nodes by {}, {:.0} % of the largest displacement, {drive}; {advice}. The \
+             contact rows hardly resist it, {follows}",
             amount.trim_end(),
             100.0 * moved / largest
         );
@@ -170,15 +175,20 @@ fn softly_held(answer: &Answer) -> Vec<AnswerWarning> {
 /// Warns that two displaced bodies go through each other, with what helps.
 fn overlap(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
-    let Overlap { node, depth, bodies, has_rows } = model.overlap(answer.displacement())?;
+    let Overlap { node, depth, bodies, has_rows } = model.overlap(answer.displacement(), answer.unknowns())?;
     let name = |body: usize| match model.body().regions()[body].name() {
         "" => "body",
         name => name,
     };
-    let help = if has_rows {
-        "between contact rows, which do not keep every point apart: make the elements smaller there"
-    } else {
-        "where no contact row keeps them apart; name both boundaries in an obstacle, or set `\"contact\": \"auto\"`"
+    let help = match model.origin() {
+        _ if has_rows => "between contact rows, which do not keep every point apart: make the elements smaller there",
+        Origin::Deck => "where no contact row keeps them apart; name both surfaces in a `*CONTACT PAIR`",
+        Origin::WithAuto => {
+            "where no contact row keeps them apart, and `\"contact\": \"auto\"` finds none; name both boundaries in an obstacle"
+        }
+        Origin::Scene => {
+            "where no contact row keeps them apart; name both boundaries in an obstacle, or set `\"contact\": \"auto\"`"
+        }
     };
     let message = format!(
         "`{}` and `{}` go through each other, by {depth:.3e} {} at {}, {help}",

@@ -258,6 +258,7 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
         for (name, value) in [("travel", resultant.travel), ("shortening", resultant.shortening)] {
             text += &value.map_or_else(String::new, |value| format!(", {name} {value:.6e}{of_length}"));
         }
+        text += &resultant.tension.map_or_else(String::new, |value| format!(", tension {value:.6e}{of_force}"));
         text
     };
     let segment = |segment: &Segment| {

@@ -21,6 +21,7 @@
 //! 4 (1999) 1-6 (weights of normals); A. Popp, A. Seitz, M. W. Gee, W. A. Wall, Comput. Methods Appl. Mech. Engrg. 264
 //! (2013) 67-80 (nodes that are dropped).
 
+mod corners;
 mod coverage;
 mod face;
 mod facet;
@@ -34,6 +35,7 @@ mod tests;
 
 use std::collections::BTreeSet;
 
+use corners::{Sided, named};
 use coverage::{Covered, Part, kept, parts};
 use facet::Facet;
 use search::{Distances, Sides, Sight};
@@ -107,7 +109,7 @@ pub struct MortarRows {
 /// One row: `normal . (sum slave - sum master) <= gap`.
 #[derive(Clone, Debug)]
 pub(crate) struct MortarRow {
-    /// The slave node that carries it.
+    /// The slave node that carries it; at a corner it carries a row for each side.
     pub node: usize,
     /// The coefficients of slave nodes with their shares, which add up to 1, and displacements of master nodes with
     /// theirs.
@@ -116,6 +118,8 @@ pub(crate) struct MortarRow {
     pub normal: [f64; 3],
     /// Half way between the normals of both surfaces, from the slave body into the other.
     pub mean: [f64; 3],
+    /// The outward unit normal of the slave surface at the node, of the side that carries the row.
+    pub outward: [f64; 3],
     pub gap: f64,
     pub area: f64,
     /// The share of the whole area of the node that is covered.
@@ -165,6 +169,12 @@ impl std::fmt::Debug for Mortar<'_> {
         let (slave, master) = (self.slave.facets.len(), self.master.facets.len());
         write!(out, "Mortar({slave} and {master} nodes of facets, {:?})", self.formulation)
     }
+}
+
+/// Returns `true` if facets of a surface, seen from outside, turn away from each other at a node.
+pub(crate) fn has_corners(nodes: &[[f64; 3]], boundary: &Boundary) -> bool {
+    let surface = SurfaceMesh { nodes, kind: boundary.kind, facets: &boundary.connectivity };
+    surface.kind.reference().dimension > 0 && Sided::of(&surface).has_corners()
 }
 
 impl<'a> Mortar<'a> {
@@ -267,6 +277,10 @@ impl<'a> Mortar<'a> {
                 [(self.slave, &slave), (self.master, &master)].map(|(of, facets)| SurfaceMesh { facets, ..of });
             return Mortar { slave, master, ..*self }.found();
         }
+        let sided = [self.slave, self.master].map(|surface| Sided::of(&surface));
+        if self.between.is_some() && sided.iter().any(Sided::has_corners) {
+            return self.found_by_sides(&sided);
+        }
         if let Some((index, one)) = covered.iter().enumerate().find(|(_, one)| one.has_layers()) {
             return Err(Error::Mesh {
                 message: format!(
@@ -280,7 +294,7 @@ impl<'a> Mortar<'a> {
         let kept = kept(&covered, self.slave.nodes.len(), &carries);
         let ends = self.ends_of_middles();
         let parts = parts(&covered, &kept);
-        let distances = sides.has_curves().then(|| Distances::of(self, &sides));
+        let distances = sides.has_curves().then(|| Distances::of(self, &sides, &met));
         let of_node = |(node, part): (usize, Option<Part>)| {
             let row = self.row(node, part?, &sides.normals, &ends)?;
             let gap = distances.as_ref().and_then(|distances| distances.of_row(&row, &ends)).unwrap_or(row.gap);
@@ -302,6 +316,20 @@ impl<'a> Mortar<'a> {
             sag: sides.sag(),
             rows,
         })
+    }
+
+    /// The same with a row for each side of a node at a corner.
+    fn found_by_sides(&self, [slave, master]: &[Sided; 2]) -> Result<Found, Error> {
+        let may_carry = |own: usize| self.may_carry.is_none_or(|may_carry| may_carry(slave.node[own]));
+        let has_coefficient = |own: usize| self.has_coefficient.is_none_or(|has| has(slave.node[own]));
+        let by_sides = Mortar {
+            slave: slave.surface(self.slave.kind),
+            master: master.surface(self.master.kind),
+            may_carry: Some(&may_carry),
+            has_coefficient: Some(&has_coefficient),
+            ..*self
+        };
+        Ok(named(by_sides.found()?, [&slave.node, &master.node]))
     }
 
     /// What the search finds, without rows; surfaces may lie in several layers before each other.
@@ -402,6 +430,7 @@ impl<'a> Mortar<'a> {
         let of_master =
             master.iter().map(|&(at, share)| share * dot(normal, minus(self.master.nodes[at], origin))).sum::<f64>();
         let covered = area / part.full;
-        Some(MortarRow { node, slave, master, normal, mean, gap: of_master - of_slave, area, covered })
+        let (gap, outward) = (of_master - of_slave, own[node]);
+        Some(MortarRow { node, slave, master, normal, mean, outward, gap, area, covered })
     }
 }

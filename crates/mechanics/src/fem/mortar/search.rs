@@ -128,19 +128,21 @@ impl<'f> Site<'f> {
     }
 }
 
-/// The distances of slave nodes from the curve for which the master facets stand.
+/// The distances of slave nodes from the curve for which the master facets stand that cover the slave surface.
 pub(super) struct Distances<'a> {
     slave: &'a [[f64; 3]],
     sides: &'a Sides<'a>,
+    /// The numbers of these facets.
+    met: &'a BTreeSet<u32>,
     tree: Tree,
     curve: Curve<'a>,
     reach: f64,
 }
 
 impl<'a> Distances<'a> {
-    pub fn of(mortar: &Mortar<'a>, sides: &'a Sides<'a>) -> Self {
+    pub fn of(mortar: &Mortar<'a>, sides: &'a Sides<'a>, met: &'a BTreeSet<u32>) -> Self {
         let curve = Curve::of(&mortar.master, &sides.master, &sides.normals[1]);
-        Distances { slave: mortar.slave.nodes, sides, tree: sides.tree(), curve, reach: mortar.reach }
+        Distances { slave: mortar.slave.nodes, sides, met, tree: sides.tree(), curve, reach: mortar.reach }
     }
 
     /// The gap of a row by the distances of its slave nodes, which lie on their curve; `None` if the curve ends before
@@ -164,6 +166,7 @@ impl<'a> Distances<'a> {
         let back = way.map(|part| 0.0 - part);
         let mut near = Vec::new();
         self.tree.around_line(from, way, [0.0, 0.0, self.reach], |number| near.push(number));
+        near.retain(|number| self.met.contains(number));
         near.sort_unstable();
         let distance = |number: u32| {
             let facet = &self.sides.master[number as usize];

@@ -178,6 +178,11 @@ impl TwoSkins<'_> {
     pub fn is_clear(&self, from: [f64; 3], to: [f64; 3], outward: [f64; 3]) -> bool {
         let way = minus(to, from);
         let far = length(way);
+        // Between places that differ by rounding alone there is nothing, and no way.
+        let sizes = [self.own, self.other].into_iter().filter_map(|body| self.skins.get(body)).map(|skin| skin.size);
+        if far <= AT_END * sizes.fold(f64::INFINITY, f64::min) {
+            return true;
+        }
         let (way, back) = (unit(way), unit(minus(from, to)));
         if dot(way, outward) > 0.0 {
             let between = [AT_END * far, (1.0 - AT_END) * far];

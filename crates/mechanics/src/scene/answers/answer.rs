@@ -333,7 +333,7 @@ impl Answer {
             all.extend(self.model.support_resultants(|node| self.model.at_node(reactions, node)));
             all.extend(self.model.spring_resultants(&self.displacement));
             all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
-            let ties = self.model.tie_resultants(&self.of_ties, &self.unknowns);
+            let ties = self.model.tie_resultants(&self.displacement, &self.of_ties, &self.unknowns);
             let points = self.model.point_resultants(&self.values_of_points(), &ties);
             all.extend(ties.into_iter().chain(points));
             all.extend(self.model.load_resultant());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::elastic::{locking, stiffness_jumps, unit_of_young};
 use super::model::Model;
-use super::parts::Parts;
+use super::parts::{Origin, Parts};
 use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::{DofMap, ElasticBody};
@@ -124,6 +124,11 @@ impl Scene {
                 moves,
                 vibrates,
                 is_linear: self.is_linear,
+                origin: match self.contact {
+                    _ if !self.lines.is_empty() => Origin::Deck,
+                    Some(ContactSpec::Auto) => Origin::WithAuto,
+                    None => Origin::Scene,
+                },
             },
             self.gap,
         )

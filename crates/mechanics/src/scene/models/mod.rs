@@ -14,7 +14,7 @@ mod materials;
 pub(crate) mod model;
 pub(crate) mod overlap;
 mod part;
-mod parts;
+pub(crate) mod parts;
 pub(crate) mod points;
 mod preload;
 pub(crate) mod resultants;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::parts::Parts;
+use super::parts::{Origin, Parts};
 use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
 use super::suspect::suspect_rows;
@@ -151,7 +151,12 @@ impl Model {
         self.rows.iter().map(of_row).collect()
     }
 
-    /// Returns `true` if a force presses the obstacle.
+    /// Where the model comes from.
+    pub(crate) fn origin(&self) -> Origin {
+        self.parts.origin
+    }
+
+    /// Returns `true` if answers that small displacements do not describe are wanted all the same.
     pub(crate) fn is_linear(&self) -> bool {
         self.parts.is_linear
     }

@@ -106,8 +106,9 @@ impl Solid {
 
 impl Model {
     /// The deepest overlap of two displaced bodies at a node or in the middle of a facet, beyond what contact rows
-    /// between the two leave; `None` without one. `displacement` has `dim` entries a node.
-    pub(crate) fn overlap(&self, displacement: &[f64]) -> Option<Overlap> {
+    /// between the two leave, and beyond the shortening of a bolt between them; `None` without one. `displacement` has
+    /// `dim` entries a node.
+    pub(crate) fn overlap(&self, displacement: &[f64], unknowns: &[f64]) -> Option<Overlap> {
         let (mesh, regions, dimension) = (self.mesh(), self.body().regions(), self.body().dimension());
         if regions.len() < 2 || dimension < 2 {
             return None;
@@ -118,7 +119,7 @@ impl Model {
             at
         };
         let nodes: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(moved).collect();
-        let allowed = self.depths_that_rows_leave();
+        let (allowed, drawn) = (self.depths_that_rows_leave(), self.drawn_together(unknowns));
         let solids: Vec<OnceCell<Solid>> = (0..regions.len()).map(|_| OnceCell::new()).collect();
         let solid = |region: usize| solids[region].get_or_init(|| Solid::of(self, region, &nodes));
         let mut deepest: Option<Overlap> = None;
@@ -132,12 +133,13 @@ impl Model {
                 continue;
             }
             let (body, of_nodes) = (solid(own), solid(other));
+            let drawn = drawn.get(&[own.min(other), own.max(other)]).copied().unwrap_or(0.0);
             let rounding = ROUNDING * mesh.size();
             let points = of_nodes.points(&nodes, of_node).into_iter().filter(|point| is_near(&point.at));
             for point in points.filter(|point| body.contains(mesh, &nodes, point.at)) {
                 let (depth, facet) = body.skin.nearest(point.at);
                 let length = facet_length(&nodes, body.skin.surface.facet(facet));
-                let left = rounding + point.sag + body.sags[facet] + point.allowed * length;
+                let left = rounding + drawn + point.sag + body.sags[facet] + point.allowed * length;
                 if depth > left && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
                     let has_rows = point.allowed == KEPT_APART;
                     deepest = Some(Overlap { node: point.node, depth, bodies: [other, own], has_rows });
@@ -145,6 +147,21 @@ impl Model {
             }
         }
         deepest
+    }
+
+    /// How far bolts draw two bodies into each other, by the numbers of the bodies in increasing order: the meshes
+    /// have the length of a bolt before it is shortened.
+    fn drawn_together(&self, unknowns: &[f64]) -> HashMap<[usize; 2], f64> {
+        let (mut drawn, places) = (HashMap::new(), (self.dofs(), &self.parts.unknowns));
+        for one in &self.parts.ties.shortenings {
+            let ends = [one.terms.first(), one.terms.last()].map(|term| self.body().region_at(term?.0));
+            if let [Some(own), Some(other)] = ends {
+                let shortening = one.sense * one.value(places, self.body().dimension(), unknowns);
+                let known = drawn.entry([own.min(other), own.max(other)]).or_insert(0.0_f64);
+                *known = known.max((1.0 + KEPT_APART) * shortening);
+            }
+        }
+        drawn
     }
 
     /// How deep nodes may lie in a body, in lengths of a facet, because contact rows keep the two apart: nodes that

@@ -44,6 +44,16 @@ pub(crate) struct Parts {
     pub vibrates: bool,
     /// `true` if answers that small displacements do not describe are wanted all the same.
     pub is_linear: bool,
+    pub origin: Origin,
+}
+
+/// Where a model comes from: what sentences may advise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    Deck,
+    /// A scene with `"contact": "auto"`.
+    WithAuto,
+    Scene,
 }
 
 impl Parts {
@@ -97,15 +107,6 @@ impl Parts {
         self.nodal(
             all.map(|(terms, own, size)| (&terms[if one.is_some() { own.clone() } else { 0..terms.len() }], size)),
         )
-    }
-
-    /// The forces of the reference points on the nodes, as [`tie_forces`](Self::tie_forces): those of the equations at
-    /// points, and those that do the work of the forces on points.
-    pub fn forces_of_points(&self, of_ties: &[f64]) -> Vec<f64> {
-        let rows = self.points.ties.keys().flat_map(|&tie| self.ties.of_tie[tie].clone());
-        let mut forces = self.nodal(rows.map(|row| (&self.ties.rows[row].terms[..], of_ties[row])));
-        self.points.add_load(&mut forces, self.body.dimension());
-        forces
     }
 
     /// The forces on the nodes along vectors, each with a size.

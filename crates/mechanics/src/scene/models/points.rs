@@ -14,6 +14,10 @@ use crate::scene::input::entry::{boundary, finite, nodes_named_once, positive, v
 use crate::scene::input::schema::{CouplingSpec, Scene, TermPlace, TermSpec, TieSpec};
 use crate::scene::input::sum::{Component, Sum, following, mean};
 
+/// In the replaced components of a sum, an equation at points by its number: how much of it the sum has taken up. With
+/// the multipliers of what is left, these shares give the multiplier of every equation as it was.
+const EQUATION: usize = 6;
+
 /// What is left of a value below this share of its parts is rounding.
 const CONTRADICTION: f64 = 1e-9;
 
@@ -28,10 +32,20 @@ pub(crate) struct ReferencePoints {
     pub ties: BTreeMap<usize, Vec<Sum>>,
     /// The elongations of springs at points, with their stiffnesses in force per length.
     springs: BTreeMap<usize, (Sum, f64)>,
-    /// The nodes of each coupling, by its tie.
-    pub coupled: BTreeMap<usize, BTreeSet<usize>>,
+    whole: Whole,
     /// The work of the forces and moments on points.
     load: Sum,
+}
+
+/// What ties and springs at points are in the scene, before the elimination.
+#[derive(Clone, Debug, Default)]
+struct Whole {
+    /// Each equation with its tie.
+    equations: Vec<(usize, Sum)>,
+    /// The elongation of each spring, without points that no tie joins to a body: they are the ground.
+    springs: BTreeMap<usize, Sum>,
+    /// The first side of each tie: the nodes of a coupling, or the place of the first term of an equation.
+    sides: BTreeMap<usize, BTreeSet<usize>>,
 }
 
 /// A point, with what moves it.
@@ -75,20 +89,21 @@ impl Scene {
         }
     }
 
-    /// A sum of terms with their places in the list; points come after the nodes.
+    /// A sum of terms, and the place of the first one in the list; points come after the nodes.
     ///
     /// # Errors
     /// As [`terms_of`]; [`Error::Scene`] for a point that does not exist or stands for a bolt, and a rotation of a
     /// node.
-    fn sum_of(&self, terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<Sum, Error> {
+    fn sum_of(&self, terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<(Sum, usize), Error> {
         let (mut sum, nodes) = (Sum::default(), body.mesh().nodes().len());
         let point = |name: &str, path: String| self.joining(name, &path).map(|point| nodes + point);
-        for (term, (place, vector)) in terms.iter().zip(terms_of(terms, path, body, &point)?) {
+        let placed = terms_of(terms, path, body, &point)?;
+        for (term, &(place, vector)) in terms.iter().zip(&placed) {
             sum.add_along(place, vector);
             let turns = [term.rotation.x, term.rotation.y, term.rotation.z].into_iter().enumerate();
             turns.filter(|turn| turn.1 != 0.0).for_each(|(axis, part)| sum.add((place, 3 + axis), part));
         }
-        Ok(sum)
+        Ok((sum, placed.first().map_or(0, |first| first.0)))
     }
 
     /// The reference points, eliminated from all ties, springs and loads.
@@ -181,24 +196,29 @@ struct Elimination {
     equations: Vec<(usize, Sum)>,
     springs: BTreeMap<usize, (Sum, f64)>,
     load: Sum,
+    whole: Whole,
     /// The eliminated components, each with a sum that has it and is zero.
     solved: Vec<(Component, Sum)>,
 }
 
 impl Elimination {
     fn of(scene: &Scene, body: &ElasticBody, load: Sum) -> Result<Self, Error> {
-        let (mut equations, mut springs) = (Vec::new(), BTreeMap::new());
+        let (mut equations, mut springs, nodes) = (Vec::new(), BTreeMap::new(), body.mesh().nodes().len());
+        let mut sides = BTreeMap::<usize, BTreeSet<usize>>::new();
         for (index, tie) in scene.ties.iter().enumerate() {
             match tie {
                 TieSpec::Equation(spec) if names_point(&spec.terms) => {
                     let path = format!("ties[{index}].equation");
                     finite(format!("{path}.value"), spec.value)?;
-                    let mut sum = scene.sum_of(&spec.terms, &path, body)?;
+                    let (mut sum, first) = scene.sum_of(&spec.terms, &path, body)?;
                     (sum.constant, sum.scale) = (-spec.value, spec.value.abs());
+                    sides.insert(index, [first].into());
                     equations.push((index, sum));
                 }
                 TieSpec::Coupling(spec) => {
                     let sums = spec.sums(scene, &format!("ties[{index}].coupling"), body)?;
+                    let places = sums.iter().flat_map(|sum| sum.terms.keys().map(|component| component.0));
+                    sides.insert(index, places.filter(|&place| place < nodes).collect());
                     equations.extend(sums.into_iter().map(|sum| (index, sum)));
                 }
                 _ => {}
@@ -207,9 +227,20 @@ impl Elimination {
         for (index, spec) in scene.springs.iter().enumerate().filter(|(_, spec)| names_point(&spec.terms)) {
             let path = format!("springs[{index}]");
             let along = positive(&format!("{path}.along"), spec.along_alone(&path)?)?;
-            springs.insert(index, (scene.sum_of(&spec.terms, &path, body)?, along));
+            springs.insert(index, (scene.sum_of(&spec.terms, &path, body)?.0, along));
         }
-        Ok(Elimination { nodes: body.mesh().nodes().len(), equations, springs, load, solved: Vec::new() })
+        let tied = equations.iter().flat_map(|(_, sum): &(usize, Sum)| sum.terms.keys());
+        let tied: BTreeSet<usize> = tied.map(|component| component.0).collect();
+        let of_body = |(&index, (sum, _)): (&usize, &(Sum, f64))| {
+            let mut sum = sum.clone();
+            sum.terms.retain(|component, _| component.0 < nodes || tied.contains(&component.0));
+            (index, sum)
+        };
+        let whole = Whole { springs: springs.iter().map(of_body).collect(), equations: equations.clone(), sides };
+        for (number, (_, sum)) in equations.iter_mut().enumerate() {
+            sum.replaced.insert((number, EQUATION), 1.0);
+        }
+        Ok(Elimination { nodes, equations, springs, load, whole, solved: Vec::new() })
     }
 
     /// All sums.
@@ -243,13 +274,6 @@ impl Elimination {
         mut all: Vec<ReferencePoint>,
     ) -> Result<ReferencePoints, Error> {
         let nodes = self.nodes;
-        let mut coupled: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-        for (index, sum) in &self.equations {
-            if matches!(scene.ties[*index], TieSpec::Coupling(_)) {
-                let own = sum.terms.keys().map(|component| component.0).filter(|&node| node < nodes);
-                coupled.entry(*index).or_default().extend(own);
-            }
-        }
         // A tie of which nothing is left keeps its place.
         let mut ties: BTreeMap<usize, Vec<Sum>> = self.equations.iter().map(|one| (one.0, Vec::new())).collect();
         let (equations, springs) = (self.equations.iter().map(|one| &one.1), self.springs.values().map(|one| &one.0));
@@ -296,7 +320,7 @@ impl Elimination {
             value.terms.retain(|component, _| component.0 < nodes);
             all[point - nodes].moved[kind] = Some(value);
         }
-        Ok(ReferencePoints { all, nodes, ties, springs: self.springs, coupled, load: self.load })
+        Ok(ReferencePoints { all, nodes, ties, springs: self.springs, whole: self.whole, load: self.load })
     }
 }
 
@@ -315,6 +339,30 @@ impl ReferencePoints {
         }
     }
 
+    /// The value of a sum in the displacement of each node.
+    fn value(sum: &Sum, displacement: &impl Fn(usize) -> [f64; 3]) -> f64 {
+        sum.terms.iter().fold(sum.constant, |all, (&(node, axis), part)| all + part * displacement(node)[axis])
+    }
+
+    /// The forces of loads, ties and springs on what is eliminated: on prescribed components of points, and the
+    /// multiplier of each equation as it was before the elimination.
+    fn eliminated(
+        &self,
+        displacement: &impl Fn(usize) -> [f64; 3],
+        rows: &[TieRow],
+        of_ties: &[f64],
+    ) -> BTreeMap<Component, f64> {
+        let mut all = self.load.replaced.clone();
+        let mut add = |factor: f64, replaced: &BTreeMap<Component, f64>| {
+            replaced.iter().for_each(|(component, part)| *all.entry(*component).or_default() += factor * part);
+        };
+        rows.iter().zip(of_ties).for_each(|(row, multiplier)| add(*multiplier, &row.on_points));
+        for (elongation, along) in self.springs.values() {
+            add(-along * Self::value(elongation, displacement), &elongation.replaced);
+        }
+        all
+    }
+
     /// Of each point the displacements and rotations, and the forces and moments from outside: those of the scene, and
     /// those that hold prescribed motions; from the displacement of each node and the multipliers of all equations.
     pub fn values(
@@ -323,17 +371,50 @@ impl ReferencePoints {
         rows: &[TieRow],
         of_ties: &[f64],
     ) -> Vec<[[f64; 6]; 2]> {
-        let value = |sum: &Sum| {
-            sum.terms.iter().fold(sum.constant, |all, (&(node, axis), part)| all + part * displacement(node)[axis])
-        };
+        let value = |sum: &Sum| Self::value(sum, &displacement);
         let moved = |point: &ReferencePoint| point.moved.each_ref().map(|sum| sum.as_ref().map_or(0.0, value));
         let mut all: Vec<[[f64; 6]; 2]> = self.all.iter().map(|point| [moved(point), point.applied]).collect();
-        let mut hold = |factor: f64, replaced: &BTreeMap<Component, f64>| {
-            replaced.iter().for_each(|(&(point, kind), part)| all[point - self.nodes][1][kind] += factor * part);
-        };
-        hold(-1.0, &self.load.replaced);
-        rows.iter().zip(of_ties).for_each(|(row, multiplier)| hold(-multiplier, &row.on_points));
-        self.springs.values().for_each(|(elongation, along)| hold(along * value(elongation), &elongation.replaced));
+        let eliminated = self.eliminated(&displacement, rows, of_ties).into_iter();
+        eliminated.filter(|one| one.0.1 != EQUATION).for_each(|((point, kind), force)| {
+            all[point - self.nodes][1][kind] -= force;
+        });
         all
     }
+
+    /// The forces and moments of each tie at points on its first side.
+    pub fn forces_of_ties(
+        &self,
+        displacement: impl Fn(usize) -> [f64; 3],
+        rows: &[TieRow],
+        of_ties: &[f64],
+    ) -> BTreeMap<usize, ForcesAt> {
+        let eliminated = self.eliminated(&displacement, rows, of_ties);
+        let mut ties: BTreeMap<usize, ForcesAt> = BTreeMap::new();
+        for (number, (tie, sum)) in self.whole.equations.iter().enumerate() {
+            let (of_tie, side) = (ties.entry(*tie).or_default(), &self.whole.sides[tie]);
+            let multiplier = eliminated.get(&(number, EQUATION)).copied().unwrap_or(0.0);
+            let own = sum.terms.iter().filter(|term| side.contains(&term.0.0));
+            own.for_each(|(&(place, kind), part)| of_tie.entry(place).or_default()[kind] += multiplier * part);
+        }
+        ties
+    }
+
+    /// The forces and moments of each spring at points on the bodies, at all places of its terms.
+    pub fn forces_of_springs(&self, displacement: impl Fn(usize) -> [f64; 3]) -> BTreeMap<usize, ForcesAt> {
+        let of_spring = |(index, (elongation, along)): (&usize, &(Sum, f64))| {
+            let (force, mut forces) = (-along * Self::value(elongation, &displacement), ForcesAt::new());
+            let terms = self.whole.springs[index].terms.iter();
+            terms.for_each(|(&(place, kind), part)| forces.entry(place).or_default()[kind] += force * part);
+            (*index, forces)
+        };
+        self.springs.iter().map(of_spring).collect()
+    }
+
+    /// A place in sums, if it is a point.
+    pub fn at(&self, place: usize) -> Option<&ReferencePoint> {
+        self.all.get(place.checked_sub(self.nodes)?)
+    }
 }
+
+/// Forces, then moments, by the places in sums on which they act: nodes, and after them points.
+pub(crate) type ForcesAt = BTreeMap<usize, [f64; 6]>;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde::Serialize;
 
 use super::held::Holder;
-use super::points::ReferencePoint;
+use super::points::{ForcesAt, ReferencePoint};
 use super::rigid_face::Motion;
 use crate::error::Error;
 use crate::fem::assembly::Springs;
@@ -272,11 +272,32 @@ impl Model {
 
     /// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
     pub(crate) fn spring_resultants(&self, displacement: &[f64]) -> Vec<Resultant> {
-        let of_springs = |(springs, name): (&Springs, String)| {
-            let forces = springs.forces(displacement, self.body().dimension());
-            self.sum_of(&forces).resultant(self, name)
+        let at_points = self.parts.points.forces_of_springs(|node| self.at_node(displacement, node));
+        let of_springs = |((index, springs), name): ((usize, &Springs), String)| match at_points.get(&index) {
+            Some(forces) => self.resultant_at(forces, name),
+            None => self.sum_of(&springs.forces(displacement, self.body().dimension())).resultant(self, name),
         };
-        self.parts.springs.iter().zip(self.spring_names()).map(of_springs).collect()
+        self.parts.springs.iter().enumerate().zip(self.spring_names()).map(of_springs).collect()
+    }
+
+    /// The resultant of forces and moments on nodes and reference points.
+    fn resultant_at(&self, forces: &ForcesAt, of: String) -> Resultant {
+        let (mut sum, mut nodes, size) = (Sum::default(), 0, self.mesh().size());
+        for (&place, force) in forces {
+            let at = self.parts.points.at(place).map_or_else(|| self.mesh().nodes()[place], |point| point.at);
+            let before = sum.forces.len();
+            self.add_images(&mut sum, at, [force[0], force[1], force[2]], |_| true);
+            nodes += sum.forces.len() - before;
+            // A moment is a pair of forces.
+            for axis in (0..3).filter(|&axis| force[3 + axis] != 0.0) {
+                let [arm, across] = [COORDINATES[(axis + 1) % 3], COORDINATES[(axis + 2) % 3]];
+                let pair = across.map(|part| force[3 + axis] / size * part);
+                let beside = [0, 1, 2].map(|i| at[i] + size * arm[i]);
+                self.add_images(&mut sum, beside, pair, |_| true);
+                self.add_images(&mut sum, at, pair.map(|part| 0.0 - part), |_| true);
+            }
+        }
+        Resultant { nodes, ..sum.resultant(self, of) }
     }
 
     /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the
@@ -316,28 +337,26 @@ impl Model {
         Ok(all)
     }
 
-    /// The resultants of the ties on their first sides, in the order of the scene, from the multipliers of all
-    /// equations and the values of the unknowns.
-    pub(crate) fn tie_resultants(&self, of_ties: &[f64], unknowns: &[f64]) -> Vec<Resultant> {
-        let (ties, at_points) = (&self.parts.ties, self.parts.forces_of_points(of_ties));
+    /// The resultants of the ties on their first sides, in the order of the scene, from the nodal displacement, the
+    /// multipliers of all equations, and the values of the unknowns.
+    pub(crate) fn tie_resultants(&self, displacement: &[f64], of_ties: &[f64], unknowns: &[f64]) -> Vec<Resultant> {
+        let (ties, points) = (&self.parts.ties, &self.parts.points);
+        let at_points = points.forces_of_ties(|node| self.at_node(displacement, node), &ties.rows, of_ties);
         let of_tie = |(index, rows): (usize, &Range<usize>)| {
+            let of = format!("ties[{index}]");
+            if let Some(forces) = at_points.get(&index) {
+                let first = forces.keys().next().copied();
+                let point = first.and_then(|place| points.at(place)).map(|point| format!("`{}`", point.name));
+                return Resultant { on: point.or_else(|| self.name_of_body(first)), ..self.resultant_at(forces, of) };
+            }
             let first = ties.rows[rows.clone()].first().and_then(|row| Some(row.terms.first()?.0));
-            let first = self.parts.points.coupled.get(&index).and_then(|nodes| nodes.first().copied()).or(first);
-            let sum = match self.parts.points.coupled.get(&index) {
-                Some(nodes) => {
-                    let dimension = self.body().dimension();
-                    let own = at_points.iter().enumerate();
-                    let own = own.map(|(dof, force)| if nodes.contains(&(dof / dimension)) { *force } else { 0.0 });
-                    self.sum_of(&own.collect::<Vec<f64>>())
-                }
-                None => self.sum_of(&self.parts.tie_forces(of_ties, Some(index))),
-            };
+            let sum = self.sum_of(&self.parts.tie_forces(of_ties, Some(index)));
             let on = self.name_of_body(first);
             let shortening = ties.shortenings.iter().find(|one| one.tie == index);
             let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
             let places = (self.dofs(), &self.parts.unknowns);
             let shortening = shortening.map(|one| one.sense * one.value(places, self.body().dimension(), unknowns));
-            Resultant { on, shortening, tension, ..sum.resultant(self, format!("ties[{index}]")) }
+            Resultant { on, shortening, tension, ..sum.resultant(self, of) }
         };
         ties.of_tie.iter().enumerate().map(of_tie).collect()
     }
@@ -355,22 +374,14 @@ impl Model {
     /// The forces from outside on the reference points, with their motions, in the order of the scene; of a point that
     /// stands for a bolt the tension of its tie among `ties`, without a moment.
     pub(crate) fn point_resultants(&self, values: &[[[f64; 6]; 2]], ties: &[Resultant]) -> Vec<Resultant> {
-        let (size, dimension, turns) = (self.mesh().size(), self.body().dimension(), self.body().turns());
+        let (first, dimension, turns) = (self.mesh().nodes().len(), self.body().dimension(), self.body().turns());
         let of_point = |(index, (point, [moved, force])): (usize, (&ReferencePoint, &[[f64; 6]; 2]))| {
-            let mut sum = Sum::default();
-            self.add_images(&mut sum, point.at, [force[0], force[1], force[2]], |_| true);
-            // A moment is a pair of forces.
-            for axis in (0..3).filter(|&axis| force[3 + axis] != 0.0) {
-                let [arm, across] = [COORDINATES[(axis + 1) % 3], COORDINATES[(axis + 2) % 3]];
-                let pair = across.map(|part| force[3 + axis] / size * part);
-                let beside = [0, 1, 2].map(|i| point.at[i] + size * arm[i]);
-                self.add_images(&mut sum, beside, pair, |_| true);
-                self.add_images(&mut sum, point.at, pair.map(|part| 0.0 - part), |_| true);
-            }
+            let forces = ForcesAt::from([(first + index, *force)]);
             let rotation = turns.iter().map(|&axis| moved[3 + axis]).collect();
             let motion = Some(FaceMotion { displacement: moved[..dimension].to_vec(), rotation });
             let on = Some(format!("`{}`", point.name));
-            let mut found = Resultant { on, nodes: 1, motion, ..sum.resultant(self, format!("points[{index}]")) };
+            let of = format!("points[{index}]");
+            let mut found = Resultant { on, nodes: 1, motion, ..self.resultant_at(&forces, of) };
             if let Some(tension) = point.bolt.and_then(|tie| ties[tie].tension) {
                 found.force[0] = tension.abs().copysign(force[0]);
                 found.moment.fill(0.0);

@@ -159,11 +159,18 @@ fn of_obstacle(
             wrong(format!("obstacles[{index}]"), message)
         })?;
         let Some(ObstacleRow { normal, gap }) = found else { continue };
-        let (facing, outward) = (obstacle.facing(candidate), obstacle.outward(candidate));
+        let facing = obstacle.facing(candidate);
+        let outward = facing.and_then(|facing| facing.outward).unwrap_or_else(|| obstacle.outward(candidate));
         let outward = parts.symmetry.of_whole(&at, outward);
         let ends = facing.map_or_else(|| vec![(node, 1.0)], |facing| facing.ends.clone());
         let mean = facing.and_then(|facing| facing.area);
         let (tributary_area, is_mean) = (mean.unwrap_or(tributary_area), mean.is_some());
+        rows.push(ContactRow { node, ends, obstacle: index, normal, gap, tributary_area, is_mean, outward });
+    }
+    for (candidate, facing, ObstacleRow { normal, gap }) in obstacle.further_rows(obstacle.shift(scene_gap)) {
+        let (node, ends) = (obstacle.candidates()[candidate].0, facing.ends.clone());
+        let outward = parts.symmetry.of_whole(&nodes[node], facing.outward.unwrap_or(normal));
+        let (tributary_area, is_mean) = (facing.area.unwrap_or(0.0), true);
         rows.push(ContactRow { node, ends, obstacle: index, normal, gap, tributary_area, is_mean, outward });
     }
     Ok(rows)

@@ -32,7 +32,8 @@ pub(crate) struct TieRow {
     /// The place at which two surfaces are tied; `None` for an equation between nodes.
     pub at: Option<[f64; 3]>,
     pub value: f64,
-    /// The coefficients of the prescribed components of reference points, which are in the value.
+    /// The coefficients of the prescribed components of reference points, which are in the value, and the shares of
+    /// equations at points that the row has taken up.
     pub on_points: BTreeMap<Component, f64>,
 }
 

@@ -170,10 +170,14 @@ fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMa
     let path = format!("{path}.equation");
     finite(format!("{path}.value"), spec.value)?;
     let (mut terms, mut own) = (Vec::new(), 0);
-    for (index, (node, vector)) in terms_of(&spec.terms, &path, body, &no_point)?.into_iter().enumerate() {
+    let mut placed = terms_of(&spec.terms, &path, body, &no_point)?;
+    let first = placed[0].0;
+    // All terms of the first node are its side.
+    placed.sort_by_key(|(node, _)| *node != first);
+    for (node, vector) in placed {
         // The displacement of a node with a coefficient is a sum of coefficients.
         terms.extend(dofs.basis.values(node).map(|(of, part)| (of, vector.map(|along| part * along))));
-        if index == 0 {
+        if node == first {
             own = terms.len();
         }
     }

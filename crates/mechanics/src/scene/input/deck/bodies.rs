@@ -58,7 +58,15 @@ pub(super) fn side(deck: &Deck, name: &str) -> Result<(usize, String), String> {
     match &names_of_surface(deck, surface)[..] {
         [(body, name)] => Ok((*body, name.clone())),
         several => {
-            let message = "has faces of several bodies; name a surface of each body";
+            let has = |face: &String| {
+                let of_face = deck.surface_or(face).map_or_else(|_| Vec::new(), |face| names_of_surface(deck, face));
+                of_face.iter().all(|(body, _)| several.iter().any(|one| one.0 == *body))
+            };
+            let why = match deck.cuts.iter().find(|cut| cut.iter().all(has)) {
+                Some([cut, _]) => format!(", because *PRE-TENSION SECTION cuts their body at `{cut}`"),
+                None => String::new(),
+            };
+            let message = format!("has faces of several bodies{why}; name a surface of each body");
             Err(format!("the surface `{}` {message}, of which there are {}", surface.name, several.len()))
         }
     }

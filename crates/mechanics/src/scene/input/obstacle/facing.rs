@@ -10,10 +10,10 @@ use super::mortar;
 use super::pairs::{Between, Facing};
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
-use crate::fem::assembly::node_normals;
+use crate::fem::assembly::{node_normals, outward};
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
 use crate::fem::mesh::extent;
-use crate::fem::mortar::TwoSkins;
+use crate::fem::mortar::{TwoSkins, has_corners};
 use crate::fem::surface::Tree;
 use crate::fem::{Boundary, FacetKind};
 use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, number, point, refused, wrong};
@@ -147,16 +147,18 @@ impl ObstacleShape for FacingSpec {
             },
         };
         let Some(pairs) = pairs else {
-            return Ok(Geometry::Body(mortar::between(site, [own, other], self.side.is_other(), reach, fit)?));
+            let between = mortar::between(site, [own, other], self.side.is_other(), reach, fit)?;
+            return Ok(Geometry::Body(Box::new(between)));
         };
         let row = |(&(node, _), pair): (&(usize, f64), Pair)| {
             let distance = fit.unwrap_or(pair.distance);
             let ends = vec![(node, 1.0), (pair.partner, -1.0)];
-            Some(Facing { ends, normal: pair.normal, mean: pair.mean, distance, area: None })
+            Some(Facing { ends, normal: pair.normal, mean: pair.mean, outward: None, distance, area: None })
         };
         let rows = site.candidates.iter().zip(pairs).map(row).collect();
-        Ok(Geometry::Body(Between {
+        Ok(Geometry::Body(Box::new(Between {
             rows,
+            further: Vec::new(),
             across: Vec::new(),
             other: other.name.clone(),
             covered: None,
@@ -165,7 +167,7 @@ impl ObstacleShape for FacingSpec {
             fit,
             is_swapped: false,
             warnings: Vec::new(),
-        }))
+        })))
     }
 
     fn other_boundary(&self) -> Option<&str> {
@@ -192,6 +194,11 @@ impl FitSpec {
 /// # Errors
 /// [`Error::Refused`] with [`UNPAIRED`] if a node has no node opposite to it.
 fn pairs(site: &Site, own: &Boundary, other: &Boundary) -> Result<Vec<Pair>, Error> {
+    if [own, other].iter().any(|side| has_corners(site.body.mesh().nodes(), &outward(site.body, side))) {
+        let message =
+            format!("`{}` or `{}` has a corner, at which a pair has no normal; {PAIR_UP}", own.name, other.name);
+        return Err(unpaired(site, message));
+    }
     let (normals, partners) = (node_normals(site.body, own), node_normals(site.body, other));
     let edges = shortest_edges(own, site.body.mesh().nodes());
     let nodes = site.body.mesh().nodes();

@@ -47,16 +47,23 @@ pub(super) fn between(
     let may_carry = |node: usize| (0..dimension).any(|axis| site.dofs.number(dimension * node + axis).is_some());
     let found = means((site.body, site.dofs), [slave, master], (reach, along), &may_carry, &site.path)?;
     let warnings = warnings(site, [slave, master], &found, fit);
-    let mut of_node: HashMap<usize, Facing> = HashMap::with_capacity(found.rows.len());
+    // In the order of the candidates of the boundary that carries the rows.
+    let candidates: HashMap<usize, usize> = slave.nodes().into_iter().zip(0..).collect();
+    let (mut rows, mut further) = (vec![None; candidates.len()], Vec::new());
     for row in found.rows {
         let (ends, distance) = (ends(&row, &site.dofs.basis), fit.unwrap_or(row.gap));
-        of_node.insert(row.node, Facing { ends, normal: row.normal, mean: row.mean, distance, area: Some(row.area) });
+        let (area, outward) = (Some(row.area), Some(row.outward));
+        let own = Facing { ends, normal: row.normal, mean: row.mean, outward, distance, area };
+        let Some(&candidate) = candidates.get(&row.node) else { continue };
+        match &rows[candidate] {
+            None => rows[candidate] = Some(own),
+            Some(_) => further.push((candidate, own)),
+        }
     }
-    // In the order of the candidates of the boundary that carries the rows.
-    let rows = slave.nodes().into_iter().map(|node| of_node.remove(&node)).collect();
     let across = found.opposite.into_iter().map(|seen| (seen.node, facing(seen))).collect();
     Ok(Between {
         rows,
+        further,
         across,
         other: master.name.clone(),
         covered: Some(found.covered),
@@ -120,7 +127,7 @@ fn facing(seen: Opposite) -> Facing {
     let normal = seen.normal.map(|part| 0.0 - part);
     let slave = seen.slave.into_iter().filter(|end| end.1 != 0.0).map(|(node, share)| (node, 0.0 - share));
     let ends = std::iter::once((seen.node, 1.0)).chain(slave).collect();
-    Facing { ends, normal, mean: normal, distance: seen.gap, area: None }
+    Facing { ends, normal, mean: normal, outward: None, distance: seen.gap, area: None }
 }
 
 /// The share of a fit that its drawing may miss it by.

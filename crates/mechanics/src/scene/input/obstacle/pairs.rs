@@ -16,6 +16,8 @@ pub(crate) struct Facing {
     /// The direction half way between the normals of both surfaces at the row, from the candidate's body into the
     /// other.
     pub mean: [f64; 3],
+    /// The outward normal of the candidate's body at the row; `None` for the mean of all facets around the candidate.
+    pub outward: Option<[f64; 3]>,
     /// Distance along the normal to the other body, in length.
     pub distance: f64,
     /// The area over which the row is a mean, in area; `None` for a pair of nodes.
@@ -34,6 +36,8 @@ impl Facing {
 pub(crate) struct Between {
     /// The row of each candidate of the boundary that carries the rows; `None` where nothing faces it.
     pub rows: Vec<Option<Facing>>,
+    /// Further rows of candidates, by their numbers: a node at a corner has one for each side.
+    pub further: Vec<(usize, Facing)>,
     /// For nodes of the other body the place that they face, as a row against their own normal: not a row of the
     /// problem, but the same contact seen from there.
     pub across: Vec<(usize, Facing)>,

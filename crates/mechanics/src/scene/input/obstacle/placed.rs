@@ -249,9 +249,21 @@ impl PlacedObstacle {
         }
     }
 
+    /// Further rows of candidates at corners, by the indices of the candidates.
+    fn further(&self) -> &[(usize, Facing)] {
+        self.between().map_or(&[], |between| &between.further)
+    }
+
+    /// The same with their rows, if the surface is shifted by `gap`.
+    pub(crate) fn further_rows(&self, gap: f64) -> impl Iterator<Item = (usize, &Facing, ObstacleRow)> {
+        let row = move |facing: &Facing| without_rounding(facing.row(gap, self.approach));
+        self.further().iter().map(move |(candidate, facing)| (*candidate, facing, row(facing)))
+    }
+
     /// The rows of all candidates against another body; none if the obstacle is rigid.
     pub(crate) fn all_facing(&self) -> impl Iterator<Item = &Facing> {
-        (0..self.candidates.len()).filter_map(|candidate| self.facing(candidate))
+        let first = (0..self.candidates.len()).filter_map(|candidate| self.facing(candidate));
+        first.chain(self.further().iter().map(|one| &one.1))
     }
 
     /// The contact seen from nodes of the other body, if rows are means.
@@ -312,8 +324,12 @@ impl PlacedObstacle {
             return Ok(None);
         }
         check_direction(row.normal, self.dimension).map_err(|reason| format!("has a row whose normal {reason}"))?;
-        Ok(Some(ObstacleRow { normal: row.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c }), ..row }))
+        Ok(Some(without_rounding(row)))
     }
+}
+
+fn without_rounding(row: ObstacleRow) -> ObstacleRow {
+    ObstacleRow { normal: row.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c }), ..row }
 }
 
 /// The mean of outward normals; the x axis if they cancel, as around a shaft.

@@ -54,7 +54,7 @@ pub(crate) enum Geometry {
     /// A rigid surface.
     Rigid(Arc<dyn Obstacle>),
     /// Another body.
-    Body(Between),
+    Body(Box<Between>),
 }
 
 impl Geometry {

@@ -6,7 +6,7 @@ use super::unit::{AXES, NAMED};
 use super::{RigidBodyModes, component};
 use crate::fem::geometry::COORDINATES;
 use crate::scene::input::entry::number;
-use crate::scene::models::parts::Parts;
+use crate::scene::models::parts::{Origin, Parts};
 use crate::scene::models::rows::ContactRow;
 use signorini_qp::dot;
 
@@ -22,14 +22,14 @@ impl RigidBodyModes {
             (false, _) => "contact without friction does not hold it, add a guide",
         };
         let supports = self.supports_against(parts, rows, free);
-        let advice = match supports.is_empty() {
-            true => advice.to_string(),
-            false => format!("{advice}, such as {} in `supports`", supports.join(", ")),
+        let (advice, of) = match parts.origin {
+            Origin::Deck => (format!("{advice} by `*BOUNDARY`"), "deck has no `*BOUNDARY`"),
+            _ if supports.is_empty() => (advice.to_string(), "scene has no supports"),
+            _ => (format!("{advice}, such as {} in `supports`", supports.join(", ")), "scene has no supports"),
         };
         let is_free = parts.supports == 0 && parts.springs.is_empty();
-        let first =
-            if is_free { ". The scene has no supports: first hold the side where the body is fixed" } else { "" };
-        advice + first
+        let first = format!(". The {of}: first hold the side where the body is fixed");
+        if is_free { advice + &first } else { advice }
     }
 
     /// Supports against free motions, as a scene writes them. A motion of several bodies is held at the first.

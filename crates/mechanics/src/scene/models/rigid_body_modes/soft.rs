@@ -18,6 +18,9 @@ const SOFT: f64 = 0.1;
 /// A force drives a motion if its work on it is above this share of the contact forces on the bodies.
 const DRIVEN: f64 = 1e-3;
 
+/// Works of loads that cancel to this share of their magnitudes drive nothing: files have places with some digits.
+const CANCELS: f64 = 1e-6;
+
 /// A component of a motion below this share of the largest is left out of its name.
 const NAMED_SOFT: f64 = 0.1;
 
@@ -33,11 +36,13 @@ pub(crate) struct SoftMotion {
     pub moved: f64,
     /// The support to add.
     pub advice: String,
+    /// `true` if the loads work on it.
+    pub is_driven: bool,
 }
 
 impl RigidBodyModes {
     /// The motions of an answer with this nodal displacement that closed rows, given with their forces, hold softly and
-    /// no load drives.
+    /// no force drives; a moment may.
     ///
     /// # Errors
     /// None for the dofs of the body.
@@ -79,6 +84,12 @@ impl RigidBodyModes {
                 let of_body = [0, 1, 2, 3, 4, 5].map(|mode| motion[6 * body + mode]);
                 self.bodies[body].nodal(places, &of_body).map(length).fold(0.0, f64::max)
             };
+            let works =
+                loads.iter().filter(|(node, ..)| members.contains(&body_of(*node))).map(|&(node, at, force)| {
+                    let body = body_of(node);
+                    dot(&self.bodies[body].along(at, force), &motion[6 * body..6 * (body + 1)])
+                });
+            let (work, size) = works.fold((0.0, 0.0), |(sum, size): (f64, f64), part| (sum + part, size + part.abs()));
             let largest = motion.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
             let named: Vec<f64> =
                 motion.iter().map(|&part| if part.abs() < NAMED_SOFT * largest { 0.0 } else { part }).collect();
@@ -87,6 +98,7 @@ impl RigidBodyModes {
                 name: self.describe(&named, Sense::Either),
                 moved: members.iter().map(|&body| in_body(body)).fold(0.0, f64::max),
                 advice: self.advice(parts, &rows, &[named]),
+                is_driven: work.abs() > CANCELS * size,
             })
         };
         Ok(of_group.iter().enumerate().filter_map(soft_motion).collect())
