@@ -157,8 +157,9 @@ impl Scene {
     /// friction is left out with a warning if it has `friction`.
     ///
     /// # Errors
-    /// [`qp::Error::File`] for a file that cannot be read; [`qp::Error::FileSyntax`] with the line for what is wrong,
-    /// and for what changes the answer and is not modelled.
+    /// [`File`](signorini_qp::Error::File) for a file that cannot be read;
+    /// [`FileSyntax`](signorini_qp::Error::FileSyntax) with the line for what is wrong, and for what changes the answer
+    /// and is not modelled.
     pub fn read_deck(path: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Scene, Error> {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -178,7 +179,8 @@ impl Scene {
     /// ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
     ///
     /// # Errors
-    /// As [`Scene::read_deck`]; [`qp::Error::FileSyntax`] with the line for results of a set that does not exist.
+    /// As [`Scene::read_deck`]; [`FileSyntax`](signorini_qp::Error::FileSyntax) with the line for results of a set that
+    /// does not exist.
     pub fn read_step(
         path: impl AsRef<Path>,
         permits: &[&str],
