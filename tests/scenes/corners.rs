@@ -8,7 +8,7 @@ use serde_json::json;
 use signorini::Model;
 use signorini::scene::Answer;
 
-use crate::decks::{answer, read};
+use crate::decks::{answer, compare, read};
 use support::scenes;
 
 /// Rounding of a solve with some hundred unknowns, relative to the pressure.
@@ -83,8 +83,11 @@ impl Boxes {
     }
 }
 
-/// A body with a notch and a block in it, of which each touches the other on all inner faces.
-fn notched(is_flat: bool, cells: [usize; 2]) -> String {
+const CONTACT: &str = "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n\
+                       *CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\nSKINB, SKINA\n";
+
+/// A body with a notch and a block in it, which meet on all inner faces, `joined` by these cards.
+fn notched(is_flat: bool, cells: [usize; 2], joined: &str) -> String {
     let high = if is_flat { 0.0 } else { 2.0 };
     let parts = if is_flat { 4 } else { 8 };
     let (mut notched, mut block) = (Boxes::default(), Boxes::default());
@@ -97,9 +100,9 @@ fn notched(is_flat: bool, cells: [usize; 2]) -> String {
         }
     }
     let mut deck = notched.cards("A", 1) + &block.cards("B", 5001);
-    deck += "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.3\n*SOLID SECTION, ELSET=A, MATERIAL=M\n*SOLID SECTION, ELSET=B, MATERIAL=M\n\
-             *SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n\
-             *CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\nSKINB, SKINA\n*BOUNDARY\n";
+    deck += "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.3\n*SOLID SECTION, ELSET=A, MATERIAL=M\n*SOLID SECTION, ELSET=B, MATERIAL=M\n";
+    deck += joined;
+    deck += "*BOUNDARY\n";
     // Three planes through a corner, so that the body shrinks without a force.
     for (at, number) in &notched.nodes {
         let axes = (0..if is_flat { 2 } else { 3 }).filter(|&axis| at[axis] == 0);
@@ -139,13 +142,18 @@ fn is_uniform(answer: &Answer, pressure: f64, area: f64) {
 }
 
 /// GOAL: a block in a notch, whole skins named.
-/// CONDITIONS: a uniform pressure on all outer faces, meshes that match and do not.
+/// CONDITIONS: a uniform pressure on all outer faces, meshes that match and do not; contact, and a tie.
 /// REFERENCE: the pressure of the outside everywhere, on a width of 2 or an area of 3.
 #[test]
 fn a_uniform_pressure_passes_round_a_corner() {
     for (is_flat, cells, area) in [(true, [2, 3], 2.0), (true, [2, 2], 2.0), (false, [1, 2], 3.0), (false, [2, 1], 3.0)]
     {
-        is_uniform(&answer(&notched(is_flat, cells)), PRESSURE, area);
+        let shrinks = PRESSURE * if is_flat { 1.3 * 0.4 } else { 0.4 } / 200.0;
+        let exact = |[x, y, z]: [f64; 3]| [x, y, z].map(|at| -shrinks * at);
+        let touching = answer(&notched(is_flat, cells, CONTACT));
+        is_uniform(&touching, PRESSURE, area);
+        compare(&touching, exact);
+        compare(&answer(&notched(is_flat, cells, "*TIE, NAME=T\nSKINB, SKINA\n")), exact);
     }
 }
 

@@ -88,6 +88,7 @@ pub struct Mortar<'a> {
     may_carry: Option<&'a dyn Fn(usize) -> bool>,
     has_coefficient: Option<&'a dyn Fn(usize) -> bool>,
     between: Option<TwoSkins<'a>>,
+    has_sides: bool,
 }
 
 /// The rows of a [`Mortar`] in the nodal displacements: `contact * [u_slave, u_master] <= gap`.
@@ -195,8 +196,9 @@ impl<'a> Mortar<'a> {
             facets: &boundary.connectivity,
         };
         let (slave, master, reach) = (surface(slave), surface(master), f64::INFINITY);
-        let (direction, between) = (None, None);
-        Mortar { slave, master, formulation, direction, reach, may_carry: None, has_coefficient: None, between }
+        let (direction, between, may_carry, has_coefficient) = (None, None, None, None);
+        let has_sides = false;
+        Mortar { slave, master, formulation, direction, reach, may_carry, has_coefficient, between, has_sides }
     }
 
     /// The same with all rows along `direction`, a unit vector [x, y, z] from the slave body into the other, instead of
@@ -225,6 +227,11 @@ impl<'a> Mortar<'a> {
     /// `other`, of those with these skins.
     pub(crate) fn between(self, skins: &'a [Skin], [own, other]: [usize; 2]) -> Self {
         Mortar { between: Some(TwoSkins { skins, own, other }), ..self }
+    }
+
+    /// The same with a row for each side of a node at a corner, as contact needs it: what sticks together does not.
+    pub(crate) fn by_sides(self) -> Self {
+        Mortar { has_sides: true, ..self }
     }
 
     /// The rows in nodal displacements.
@@ -278,7 +285,7 @@ impl<'a> Mortar<'a> {
             return Mortar { slave, master, ..*self }.found();
         }
         let sided = [self.slave, self.master].map(|surface| Sided::of(&surface));
-        if self.between.is_some() && sided.iter().any(Sided::has_corners) {
+        if self.has_sides && sided.iter().any(Sided::has_corners) {
             return self.found_by_sides(&sided);
         }
         if let Some((index, one)) = covered.iter().enumerate().find(|(_, one)| one.has_layers()) {

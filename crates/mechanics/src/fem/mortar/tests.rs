@@ -27,7 +27,8 @@ impl<'a> Sheet<'a> {
 fn between<'a>(slave: Sheet<'a>, master: Sheet<'a>, formulation: Formulation) -> Mortar<'a> {
     let (slave, master, reach) = (slave.mesh(), master.mesh(), f64::INFINITY);
     let (direction, between) = (None, None);
-    Mortar { slave, master, formulation, direction, reach, may_carry: None, has_coefficient: None, between }
+    let (may_carry, has_coefficient, has_sides) = (None, None, false);
+    Mortar { slave, master, formulation, direction, reach, may_carry, has_coefficient, between, has_sides }
 }
 
 /// The shares of the row of a node: of all slave nodes, and of all master nodes.

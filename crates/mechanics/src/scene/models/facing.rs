@@ -54,7 +54,7 @@ impl<'a> Facing<'a> {
             Some(reach) => positive(&format!("{path}.reach"), reach)?,
             None => facet,
         };
-        let found = means((body, dofs), sides, (reach, None), &|_| true, &path)?;
+        let found = means((body, dofs), sides, (reach, None, false), &|_| true, &path)?;
         if found.rows.is_empty() {
             let [boundary, to] = names;
             let message = format!(
@@ -92,7 +92,7 @@ impl<'a> Facing<'a> {
             return Ok(self.rows_along(&self.found, along));
         }
         let carries = |node: usize| !held.contains(&node);
-        let handed_over = means((self.body, self.dofs), self.sides, (self.reach, None), &carries, &self.path)?;
+        let handed_over = means((self.body, self.dofs), self.sides, (self.reach, None, false), &carries, &self.path)?;
         Ok(self.rows_along(&handed_over, along))
     }
 

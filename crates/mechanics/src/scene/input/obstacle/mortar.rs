@@ -45,7 +45,7 @@ pub(super) fn between(
     let dimension = site.body.dimension();
     // A node that supports hold in all directions cannot make a row a bound: its function goes to its neighbours.
     let may_carry = |node: usize| (0..dimension).any(|axis| site.dofs.number(dimension * node + axis).is_some());
-    let found = means((site.body, site.dofs), [slave, master], (reach, along), &may_carry, &site.path)?;
+    let found = means((site.body, site.dofs), [slave, master], (reach, along, true), &may_carry, &site.path)?;
     let warnings = warnings(site, [slave, master], &found, fit);
     // In the order of the candidates of the boundary that carries the rows.
     let candidates: HashMap<usize, usize> = slave.nodes().into_iter().zip(0..).collect();
@@ -76,14 +76,14 @@ pub(super) fn between(
 }
 
 /// The means of the first boundary over the second within reach, along a direction or half way between the normals of
-/// both, at the nodes that may carry one.
+/// both, at the nodes that may carry one; with `has_sides` for each side of a corner.
 ///
 /// # Errors
 /// [`Error::Scene`] at `path` if a surface lies in several layers before the other within reach.
 pub(crate) fn means(
     (body, dofs): (&ElasticBody, &DofMap),
     [slave, master]: [&Boundary; 2],
-    (reach, along): (f64, Option<[f64; 3]>),
+    (reach, along, has_sides): (f64, Option<[f64; 3]>, bool),
     may_carry: &dyn Fn(usize) -> bool,
     path: &str,
 ) -> Result<Found, Error> {
@@ -95,6 +95,7 @@ pub(crate) fn means(
         .carried_by(may_carry)
         .with_coefficients(&has_coefficient);
     let mortar = along.map_or(mortar, |direction| mortar.along(direction));
+    let mortar = if has_sides { mortar.by_sides() } else { mortar };
     let mortar = match [slave, master].map(|boundary| body.region_of(boundary)) {
         [Some(own), Some(other)] if own != other => mortar.between(body.skins(), [own, other]),
         _ => mortar,
