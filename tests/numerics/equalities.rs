@@ -4,7 +4,10 @@
 //! definite; equalities that follow from others; equalities given as they are and as pairs of rows. The oracle is the
 //! answer from which a problem was built.
 
-use signorini::qp::ContactSet;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use signorini::qp::{ContactSet, Watch};
 use signorini::{
     ContactProblem, Error, Method, Prepared, Settings, SparseMatrix, SymmetricMatrix, qp, solve, solve_qp,
 };
@@ -300,6 +303,41 @@ fn a_path_has_the_answers_of_each_gap_with_equalities_too() {
 }
 
 /// An empty row beside gaps of order one: -7e-18 is rounding, -7e-3 is not.
+/// A chain of `count` dofs and springs of stiffness one, the first to the ground; that in the middle is replaced by an
+/// equality of both ends. The last dof is pushed with 1 towards a wall.
+fn tied_chain(count: usize) -> ContactProblem {
+    let springs = (1..count).filter(|&dof| dof != count / 2);
+    let spring = |dof: usize| [(dof, dof, 1.0), (dof - 1, dof - 1, 1.0), (dof, dof - 1, -1.0)];
+    let entries: Vec<_> = std::iter::once((0, 0, 1.0)).chain(springs.flat_map(spring)).collect();
+    let load = (0..count).map(|dof| if dof + 1 == count { 1.0 } else { 0.0 }).collect();
+    let tie = SparseMatrix::from_triplets(1, count, &[(0, count / 2, 1.0), (0, count / 2 - 1, -1.0)]).unwrap();
+    of_entries(&entries, load, &[(0, count - 1, 1.0)], vec![1.0]).with_equalities(&tie, vec![0.0]).unwrap()
+}
+
+#[test]
+fn many_gaps_of_a_problem_with_equalities_share_a_factor() {
+    let factors = Arc::new(AtomicUsize::new(0));
+    let counted = Arc::clone(&factors);
+    let watch = Watch::observed(move |watch| {
+        counted.fetch_add(usize::from(watch.activity().step == "factorisation"), Ordering::SeqCst);
+    });
+    let mut settings = Settings::default();
+    settings.watch = watch;
+    let prepared = Prepared::new(&tied_chain(40), &settings).unwrap();
+    let twice = prepared.with_load(tied_chain(40).load().iter().map(|f| 2.0 * f).collect()).unwrap();
+    for gap in (1..=20).map(|step| 2.0 * f64::from(step)) {
+        for (prepared, load) in [(&prepared, 1.0), (&twice, 2.0)] {
+            // 39 springs carry the end to 39 times the load; the wall takes what they do not.
+            let (solution, force) = (prepared.solve(&[gap]).unwrap(), (load - gap / 39.0_f64).max(0.0));
+            assert!(is_near(&solution.multiplier, &[-force]), "{gap}: {:?}", solution.multiplier);
+            assert!(is_near(&solution.equality_multiplier, &[force - load]), "{gap}");
+            assert!(solution.certificate.meets(ROUNDING), "{gap}: {:?}", solution.certificate);
+        }
+    }
+    // That of the whole, and that of the rest.
+    assert!(factors.load(Ordering::SeqCst) <= 2, "{factors:?}");
+}
+
 #[test]
 fn the_gap_of_an_empty_row_counts_as_zero_if_it_is_rounding() {
     let problem = |gap: f64| {

@@ -354,3 +354,48 @@ fn points_that_cannot_be_read_are_refused_with_their_place() {
         assert!(at.starts_with(path) && message.contains(phrase), "{at}: {message}, not {path}: {phrase}");
     }
 }
+
+/// GOAL: a body that a coupling moves as a whole is certified though it has no energy; one that it leaves a rotation is
+/// refused with that.
+/// CONDITIONS: an elastic column behind a point at its foot: the point turns by 0.05; or springs hold all its motions
+/// but the rotation about y, without a load and with an obstacle far away.
+/// REFERENCE: the motion of a rigid body; the rotation.
+#[test]
+fn a_column_without_strain_follows_its_point_or_is_free_to_turn_with_it() {
+    let column = |element: &str, cells: [usize; 2]| {
+        let (across, along) =
+            (json!({"points": [0, 10], "divisions": [cells[0]]}), json!({"points": [0, 100], "divisions": [cells[1]]}));
+        json!({"model": "space", "body": {"box": {"x": across, "y": across, "z": along, "element": element}},
+               "material": {"young": 2e5, "poisson": 0.3}, "ties": [{"coupling": {"point": "foot", "boundary": "bottom"}}]})
+    };
+    for (element, cells) in [("hex8", [2, 4]), ("hex20", [1, 2]), ("hex20", [2, 10])] {
+        let mut scene = column(element, cells);
+        let turn = json!({"x": 0, "y": 0.05, "z": 0});
+        scene["points"] = json!([{"name": "foot", "at": [5, 5, 0], "x": 0, "y": 0, "z": 0, "rotation": turn}]);
+        let turned = answer(&scene);
+        let nodes = turned.model().mesh().nodes();
+        for ([x, _, z], moved) in nodes.iter().zip(turned.displacement().chunks(3)) {
+            near(moved, &[0.05 * z, 0.0, -0.05 * (x - 5.0)], 5.0);
+        }
+    }
+    let mut scene = column("hex8", [2, 2]);
+    let spring = |term: Value, along: f64| {
+        let mut terms = json!([{"on": {"reference": "foot"}}]);
+        term.as_object().unwrap().iter().for_each(|(key, value)| terms[0][key] = value.clone());
+        json!({"terms": terms, "along": along})
+    };
+    scene["points"] = json!([{"name": "foot", "at": [5, 5, 0]}]);
+    scene["springs"] = json!([
+        spring(json!({"x": 1}), 100.0),
+        spring(json!({"y": 1}), 100.0),
+        spring(json!({"z": 1}), 100.0),
+        spring(json!({"rotation": {"x": 1}}), 1e5),
+        spring(json!({"rotation": {"z": 1}}), 1e5)
+    ]);
+    scene["obstacles"] = json!([{"boundary": "right", "approach": "+x",
+        "shape": {"plane": {"point": [600, 0, 0], "normal": [1, 0, 0]}}}]);
+    let model = build(&scene).unwrap();
+    let error = model.explain(signorini::solve_qp(model.problem()).unwrap_err());
+    let Error::Qp(qp::Error::UnderHeld { mode, .. }) = &error else { panic!("{error}") };
+    assert!(mode.contains("rotation"), "{mode}");
+}

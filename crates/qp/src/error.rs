@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use crate::memory::in_words as memory;
 use crate::solution::{Cancellation, Solution};
 
+/// The step that fails at a dof without stiffness.
+const HIERARCHY: &str = "multigrid hierarchy";
+
 /// All errors between a file and a certified answer: faulty input, problems without an answer, and answers that were
 /// not certified. Each has a [`code`](Self::code), and one sentence for a reader.
 #[derive(Debug, thiserror::Error)]
@@ -267,6 +270,24 @@ impl Error {
     /// The `status` of a report that ends with the error, such as `under_held`.
     pub fn status(&self) -> &'static str {
         self.class().1
+    }
+
+    /// The error of a method that needs a hierarchy for a `dof` without stiffness, which is no travel.
+    pub(crate) fn without_hierarchy(dof: usize) -> Self {
+        Error::Numerical { step: HIERARCHY, reason: format!("dof {dof} (indices from 0) has no stiffness") }
+    }
+
+    /// Returns `true` if a method met a stiffness that is not definite, so that it is open whether an answer exists.
+    pub(crate) fn leaves_existence_open(&self) -> bool {
+        matches!(self, Error::NotConvex { .. } | Error::Numerical { step: HIERARCHY, .. })
+    }
+
+    /// The direction of a motion that nothing holds.
+    pub(crate) fn direction(&self) -> Option<&[f64]> {
+        match self {
+            Error::Unbounded { direction, .. } | Error::UnderHeld { direction, .. } => Some(direction),
+            _ => None,
+        }
     }
 
     /// The statement of the error about the problem.

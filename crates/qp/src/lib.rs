@@ -238,7 +238,7 @@ impl ContactProblem {
             match engine::Hierarchical::new(self, settings) {
                 Ok(hierarchical) => examine(&hierarchical.bounding(&settings.watch, 0.0)),
                 // A dof without stiffness, or a direction of negative energy, has no hierarchy.
-                Err(Error::NotConvex { .. }) => examine(&Bounding::Nothing),
+                Err(error) if error.leaves_existence_open() => examine(&Bounding::Nothing),
                 Err(error) => Err(error),
             }
         }?;

@@ -223,6 +223,13 @@ impl Settings {
         Settings { tolerance: None, ..self }
     }
 
+    /// The same for a regular problem that a question about another one gives rise to: by sets of rows, without a
+    /// proof.
+    pub(crate) fn of_question(&self) -> Self {
+        let (method, precision) = (Method::ActiveSet, Precision::Double);
+        Settings { method, precision, accuracy: None, prove: false, ..self.clone() }
+    }
+
     /// The same with a tolerance of the certificate, relative.
     pub fn with_tolerance(self, tolerance: f64) -> Self {
         Settings { tolerance: Some(tolerance), ..self }

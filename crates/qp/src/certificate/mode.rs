@@ -112,6 +112,18 @@ impl ContactProblem {
         Some(NullMode { direction, approach, work, resistance: rounding.vanishes })
     }
 
+    /// The error to report for a direction along which the problem without its equalities has no answer or several, if
+    /// it is a null mode up to the rounding of entries, and the equalities let it be.
+    pub(crate) fn motion_along(&self, direction: &[Twice]) -> Option<Error> {
+        // The small entries of a motion that meets the equalities are part of it.
+        let found = self.mode_along(direction, Rounding { entry: 0.0, ..Rounding::OF_ROUNDED })?;
+        if self.equalities().iter().any(|pair| found.approach[pair.row] != 0.0 || found.approach[pair.opposed] != 0.0) {
+            return None;
+        }
+        let (is_driven, mode, direction) = (found.work > DRIVES, found.in_words(), found.direction);
+        Some(if is_driven { Error::Unbounded { mode, direction } } else { Error::UnderHeld { mode, direction } })
+    }
+
     /// The error to report for a direction p of negative energy, if `p'K p` is negative beyond rounding.
     pub(crate) fn not_convex_along(&self, p: &[f64]) -> Option<Error> {
         let size = largest(p);

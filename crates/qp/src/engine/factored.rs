@@ -375,7 +375,7 @@ impl Factored {
     /// The problem that the methods work on, and the exponent of its reference displacement.
     fn scaled(&self, loading: &Loading, gap: &[f64]) -> Result<(ContactProblem, i32), Error> {
         let gap = self.reduction.selection.gap(gap);
-        let unit = loading.unit_with(&gap);
+        let unit = loading.unit_with(&self.reduction, &gap);
         let (stiffness, contact) = match &self.reduction.condensation {
             Some(condensed) => (condensed.stiffness(), condensed.contact()),
             None => (self.reduction.scaling.stiffness(), self.reduction.scaling.contact()),

@@ -36,8 +36,8 @@ pub(super) struct Loading {
     pub sweep: Vec<f64>,
     /// The scaled load on the dofs that the methods work on.
     scaled: Vec<f64>,
-    /// The largest displacement that the load alone causes, if the stiffness is definite.
-    free: Option<f64>,
+    /// The largest displacement that the load alone causes, once it has been asked for.
+    free: OnceLock<Option<f64>>,
     /// The load over the stiffness.
     statics: f64,
 }
@@ -49,19 +49,29 @@ impl Loading {
         let statics = if stiffness > 0.0 { largest(&load) / stiffness } else { 0.0 };
         let unit = exponent(largest(gap).max(statics));
         let scaled = reduction.scaling.load(&load, unit);
-        let (sweep, scaled, free) = match &reduction.condensation {
+        let (sweep, scaled) = match &reduction.condensation {
             Some(condensed) => {
                 let sweep = condensed.sweep(&scaled);
-                let free = reduction.is_definite().then(|| largest(&condensed.free_displacement(&sweep)));
                 let condensed = condensed.load(&sweep);
-                (sweep, condensed, free)
+                (sweep, condensed)
             }
-            None => {
-                let free = reduction.norm().map(|norm| largest(&norm.scaled_displacement(&scaled)));
-                (Vec::new(), scaled, free)
-            }
+            None => (Vec::new(), scaled),
         };
-        Loading { load, unit, sweep, scaled, free: free.map(|free| ldexp(free, unit)), statics }
+        Loading { load, unit, sweep, scaled, free: OnceLock::new(), statics }
+    }
+
+    /// The largest displacement that the load alone causes, if the stiffness is definite and its factor is at hand.
+    fn free(&self, reduction: &Reduction) -> Option<f64> {
+        *self.free.get_or_init(|| {
+            let moved = match &reduction.condensation {
+                Some(condensed) => reduction.is_definite().then(|| condensed.free_displacement(&self.sweep)),
+                None if reduction.is_norm_at_hand() => {
+                    reduction.norm().map(|norm| norm.scaled_displacement(&self.scaled))
+                }
+                None => None,
+            };
+            moved.map(|moved| ldexp(largest(&moved), self.unit))
+        })
     }
 
     /// The load together with a force (length n) on contact dofs alone, which needs no sweep.
@@ -82,11 +92,13 @@ impl Loading {
     ///
     /// If the stiffness is definite, the reference displacement is the larger of what the load alone causes and what
     /// the obstacle enforces. It is at most the larger of the gaps and the load over the stiffness, because on a soft
-    /// support the free body would move far.
-    pub fn unit_with(&self, gap: &[f64]) -> i32 {
+    /// support the free body would move far. The load over the stiffness moves the body about as far at least, so that
+    /// smaller gaps need no solve.
+    pub fn unit_with(&self, reduction: &Reduction, gap: &[f64]) -> i32 {
         let local = largest(gap).max(self.statics);
         let enforced = gap.iter().fold(0.0, |enforced: f64, gap| enforced.max(-gap));
-        match self.free.map(|free| free.max(enforced)) {
+        let free = if local > self.statics { self.free(reduction) } else { None };
+        match free.map(|free| free.max(enforced)) {
             Some(reach) if reach > 0.0 && reach < local => exponent(reach),
             _ => exponent(local),
         }

@@ -43,7 +43,7 @@ impl Hierarchical {
     /// Builds the hierarchy from the near-null space of `problem`, or from constants if it has none.
     ///
     /// # Errors
-    /// Those of [`Multigrid::new`], also for a dof without stiffness that is no travel; before that
+    /// Those of [`Multigrid::new`]; before that [`Error::Numerical`] for a dof without stiffness that is no travel,
     /// [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { watch, threads, .. } = settings;
@@ -52,7 +52,7 @@ impl Hierarchical {
         }
         if !takes_travels(problem) {
             let dof = problem.without_stiffness().first().copied().unwrap_or_default();
-            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is 0e0, indices from 0") });
+            return Err(Error::without_hierarchy(dof));
         }
         check_memory(problem, Kept::Multigrid, settings.memory)?;
         seconds::learn(watch);

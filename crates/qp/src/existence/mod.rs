@@ -11,11 +11,9 @@
 //!
 //! The point of a cone that is nearest to some c is itself the answer to a contact problem, with K = I. It is zero
 //! exactly if no direction of the cone has a positive product with c. N and the signs of all these sums have twice the
-//! working precision: what is found holds for the given doubles of the problem. If a method left no answer, steps with
-//! `K + rho E` instead of K find one.
+//! working precision: what is found holds for the given doubles of the problem.
 
 mod cone;
-mod proximal;
 mod rigid;
 
 use cone::{Cone, Face, Row, Solve};
@@ -25,7 +23,7 @@ use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
 use crate::certificate::{NullMode, Rounding};
 use crate::error::Error;
-use crate::linear::{Analysis, FactorError, NullSpace, Twice, generic, largest, twice};
+use crate::linear::{Analysis, FactorError, NullSpace, SparseMatrix, SymmetricMatrix, Twice, generic, largest, twice};
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
 use crate::transform::Scaling;
@@ -74,7 +72,28 @@ fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, E
 pub(super) fn check_rows(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<(), Error> {
     problem.check_rows()?;
     let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
-    proximal::check_rows(&scaling, problem, settings, solve)
+    nearest_to_rest(&scaling, problem, settings, solve)
+}
+
+/// Checks that some displacement meets the rows: the nearest to rest, in the units of `scaling`.
+///
+/// # Errors
+/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
+fn nearest_to_rest(
+    scaling: &Scaling,
+    problem: &ContactProblem,
+    settings: &Settings,
+    solve: Solve,
+) -> Result<(), Error> {
+    let diagonal: Vec<_> = scaling.identity(0).into_iter().enumerate().map(|(dof, value)| (dof, dof, value)).collect();
+    let dofs = problem.dofs();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal)?)?;
+    let nearest =
+        ContactProblem::computed(stiffness, vec![0.0; dofs], problem.contact().clone(), problem.gap().to_vec())?;
+    match solve(&nearest, &settings.of_question()) {
+        Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
+        _ => Ok(()),
+    }
 }
 
 /// The problem in the units of `scaling`.
@@ -89,7 +108,7 @@ fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem,
 /// A scaled problem with a basis of the null space of its stiffness.
 pub(super) struct Existence {
     scaled: ContactProblem,
-    scaling: Scaling,
+    pub scaling: Scaling,
     null: NullSpace,
     rounding: Rounding,
     /// `B N` of each row with a bound, and the place of the row among all.
@@ -148,7 +167,7 @@ impl Existence {
     /// [`Error::Unbounded`], or [`Error::Infeasible`] if the rows cannot be met together.
     pub fn check_bounded(&self, problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
         let Some(mode) = self.escape() else { return Ok(()) };
-        proximal::check_rows(&self.scaling, problem, settings, self.solve)?;
+        nearest_to_rest(&self.scaling, problem, settings, self.solve)?;
         Err(Error::Unbounded { mode: mode.in_words(), direction: self.expanded(&mode) })
     }
 
@@ -176,14 +195,6 @@ impl Existence {
             Some(mode) => Err(Error::UnderHeld { mode: mode.in_words(), direction: self.expanded(&mode) }),
             None => Ok(()),
         }
-    }
-
-    /// Answers by steps with a regular stiffness in place of the singular one; see `proximal`.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for contact rows that contradict each other.
-    pub fn proximal_steps(&self, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>, Error> {
-        proximal::answers(&self.scaling, problem, settings, self.solve)
     }
 
     /// The direction in the displacements of the problem itself, largest entry one.

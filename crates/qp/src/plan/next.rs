@@ -190,7 +190,7 @@ impl Ladder {
     /// leaves it open if its conditions hold, or if the stiffness is known to be singular; the bound itself does not
     /// see dofs without stiffness.
     fn is_doubtful(&self, history: &History) -> bool {
-        let failed = |record: &Record| matches!(record.ended, Ended::Failed(Error::NotConvex { .. }));
+        let failed = |record: &Record| matches!(&record.ended, Ended::Failed(error) if error.leaves_existence_open());
         let is_unheld = history.last_answer().is_some_and(|answer| answer.is_unheld);
         let Some(best) = &history.best else { return history.records.iter().any(failed) };
         let certificate = &best.solution.certificate;

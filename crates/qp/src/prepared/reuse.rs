@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
+use crate::certificate::{Bounding, EnergyNorm};
 use crate::engine::{Engine, Load, Task};
 use crate::error::Error;
 use crate::linear::multigrid::Multigrid;
 use crate::method::Start;
 use crate::plan::{Attempt, Ended, History, Known, Ladder, Record, Step, Tried};
 use crate::problem::ContactProblem;
-use crate::run::{Run, Workbench, engine_by, solved};
+use crate::run::{KeptRest, Run, Workbench, engine_by, solved};
 use crate::settings::Settings;
 use crate::solution::{Seconds, Solution};
+use crate::transform::Elimination;
 
 /// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid
 /// hierarchy is built for it, depending on the method.
@@ -42,7 +44,18 @@ pub struct Prepared {
     ladder: Arc<Ladder>,
     /// The data of the first attempt that memory and time allow; `None` if the stiffness cannot be prepared.
     pub(crate) bench: Option<Workbench>,
+    /// The problem without its equalities; `None` also if it has none.
+    without: Option<Arc<Without>>,
     pub(super) start: Start,
+}
+
+/// A problem without its equalities, prepared.
+#[derive(Debug)]
+struct Without {
+    elimination: Elimination,
+    rest: Prepared,
+    /// The energy norm of the whole, by which each answer is judged.
+    norm: Option<EnergyNorm>,
 }
 
 /// Number of gaps that a problem is prepared for if it is not known.
@@ -77,7 +90,7 @@ impl Prepared {
         let mut history = History { first: ladder.first_with_data(), ..History::new(settings.goal()) };
         let with = |ladder: Ladder, bench: Option<Workbench>| {
             let (problem, settings, ladder) = (problem.clone(), given.clone(), Arc::new(ladder));
-            Prepared { problem, settings, ladder, bench, start: Start::default() }
+            Prepared { problem, settings, ladder, bench, without: None, start: Start::default() }
         };
         let mut has_failed = false;
         while let Some(next) = ladder.next(&history, &settings.watch) {
@@ -86,7 +99,8 @@ impl Prepared {
                 Ok(None) => break,
                 Ok(Some(engine)) => {
                     let load = Arc::new(Load::new(problem.load().to_vec()));
-                    return Ok(with(ladder.after_refusals(&history), Some(Workbench { attempt, engine, load })));
+                    let whole = with(ladder.after_refusals(&history), Some(Workbench { attempt, engine, load }));
+                    return Ok(Prepared { without: whole.eliminated(gaps, settings), ..whole });
                 }
                 Err(error) => match Ended::by(error) {
                     Ended::Decided(error) => return Err(error),
@@ -100,6 +114,22 @@ impl Prepared {
             return Ok(with(ladder, None));
         }
         Err(ladder.no_room(&history).or_else(|| history.into_refusal()).unwrap_or(Error::Interrupted))
+    }
+
+    /// The problem without its equalities, prepared within the memory that this leaves.
+    fn eliminated(&self, gaps: usize, settings: &Settings) -> Option<Arc<Without>> {
+        let bench = self.bench.as_ref().filter(|_| !self.problem.equalities().is_empty())?;
+        let memory = settings.memory.map(|most| (most - bench.engine.bytes()).max(1.0));
+        let elimination = Elimination::of(&self.problem).ok()??;
+        let rest = elimination.problem(&self.problem).ok()?;
+        let rest = Self::for_gaps(&rest, gaps, &Settings { memory, ..settings.clone() }).ok()?;
+        let by = if self.is_single() { Bounding::OwnFactor } else { bench.engine.bounding(&settings.watch, 0.0) };
+        let norm = match by {
+            Bounding::Factor(norm) => Some(norm),
+            Bounding::OwnFactor if !elimination.is_cut() => self.problem.norm_on_equalities().ok()?,
+            _ => None,
+        };
+        Some(Arc::new(Without { elimination, rest, norm }))
     }
 
     /// The same problem under other settings. The prepared data are kept if their method works on them, with its
@@ -156,15 +186,35 @@ impl Prepared {
     /// with a factor, gaps that are infinite in other rows than those of the problem that was prepared.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let (problem, settings) = (self.problem_at(gap)?, self.settings.started()?);
-        // Equalities are eliminated for each set of gaps anew.
         if !problem.equalities().is_empty() {
-            return solved(&problem, &self.start, &settings);
+            return self.without_equalities(&problem, &settings);
         }
         let run = Run::new(&problem, &self.ladder, &self.start, &settings);
         match &self.bench {
             Some(bench) => run.with(bench).solved(),
             None => run.solved(),
         }
+    }
+
+    /// Solves a problem with equalities, which are eliminated already if they are those of the one that was prepared.
+    fn without_equalities(&self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+        let kept = self.without.as_ref().filter(|without| without.elimination.serves(problem, &self.problem));
+        let Some(Without { elimination, rest, norm }) = kept.map(Arc::as_ref) else {
+            return solved(problem, &self.start, settings);
+        };
+        let solve = |start: &Start, settings: &Settings| {
+            let settings = Settings { memory: rest.settings.memory, ..settings.clone() };
+            let (load, rest) = (elimination.load(problem), rest.with_settings(&settings)?);
+            // The same load is swept already.
+            let rest = if load == rest.problem.load() { rest } else { rest.with_load(load)? };
+            rest.starting_from(start.clone()).solve(&elimination.gap(problem, rest.problem.contact()))
+        };
+        let norm = &norm.as_ref().map(|norm| norm.watched(&settings.watch.finishing()));
+        let kept = KeptRest { elimination, norm, solve: &solve };
+        let start = self.start.of_all_rows(problem);
+        let mut run = Run::new(problem, &self.ladder, &start, settings);
+        (run.rest, run.kept) = (Some(&kept), self.bench.as_ref());
+        run.solved()
     }
 
     /// Solves with another load, length n, in N, along the positive axes, and the gaps of the problem that was

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::elimination::{self, Rest};
+use super::elimination::{self, KeptRest, Rest};
 use super::pieces;
 use crate::certificate::{Bounding, Examined};
 use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
@@ -71,12 +71,16 @@ pub(crate) struct Run<'a> {
     pub(super) settings: &'a Settings,
     pub(super) history: History,
     /// The data that the caller keeps prepared.
-    pub(super) kept: Option<&'a Workbench>,
+    pub kept: Option<&'a Workbench>,
+    /// What the caller keeps of the problem without its equalities.
+    pub rest: Option<&'a KeptRest<'a>>,
     /// The data that were prepared last.
     pub(super) made: Option<Workbench>,
     /// The sets of the last method, and their number, with its attempt.
     last: Option<(usize, Outcome)>,
     pub(super) existence: Option<Existence>,
+    /// The motion that nothing holds in the problem without its equalities, as an error.
+    pub(super) moves: Option<Error>,
     /// `true` if a long equality was cut, so that no factor of the whole is made.
     pub(super) is_cut: bool,
     pub(super) clock: Instant,
@@ -86,8 +90,8 @@ impl<'a> Run<'a> {
     /// A run on `problem` from `start`, under settings with a running clock.
     pub fn new(problem: &'a ContactProblem, ladder: &'a Ladder, start: &'a Start, settings: &'a Settings) -> Self {
         let (history, is_cut, clock) = (History::new(settings.goal()), false, Instant::now());
-        let (kept, made, last, existence) = (None, None, None, None);
-        Run { problem, ladder, start, settings, history, kept, made, last, existence, is_cut, clock }
+        let (kept, rest, made, last, existence, moves) = (None, None, None, None, None, None);
+        Run { problem, ladder, start, settings, history, kept, rest, made, last, existence, moves, is_cut, clock }
     }
 
     /// The same with data that are prepared already: the first attempt is that of these data.
@@ -105,7 +109,7 @@ impl<'a> Run<'a> {
     }
 
     /// Makes one step after the other, until the plan names none.
-    fn carry_out(&mut self) {
+    pub(super) fn carry_out(&mut self) {
         while let Some(next) = self.ladder.next(&self.history, &self.settings.watch) {
             let clock = Instant::now();
             let attempt = &self.ladder.attempts[next.place.attempt];
@@ -222,7 +226,7 @@ impl<'a> Run<'a> {
 
     /// Judges an answer, and the same with those parts at rest that may rest; the better one is kept if it is the best
     /// so far.
-    fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
+    pub(super) fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
         let clock = Instant::now();
         let Solution { displacement, multiplier, .. } = &answer.solution;
         let Examined { certificate, evidence, may_rest } = self.problem.examine(by, displacement, multiplier)?;
@@ -261,15 +265,34 @@ impl<'a> Run<'a> {
 
     /// The answer without the equalities, and these put back.
     fn by_elimination(&mut self, record: &mut Record) -> Result<Ended, Error> {
-        let found = elimination::solved(self.problem, self.start, self.settings, solved)?;
-        let Some(Rest { answer, of_rest }) = found else { return Ok(Ended::Empty) };
-        let Seconds { factor, certificate, .. } = answer.seconds;
-        record.stages = Seconds { factor, certificate, ..Seconds::default() };
-        // An error has the same energy in the rest, but for the rounding of the displacement.
-        let of_rest = of_rest.map(|rest| [self.problem.with_rounding(rest, &answer.displacement)]);
-        self.is_cut = of_rest.is_some();
-        let by = of_rest.as_ref().map_or(Bounding::OwnFactor, |rest| Bounding::Pieces(rest));
-        self.judged(Best::of(answer, record.place.attempt), &by, record).map(Ended::Answered)
+        // What is exact enough for the rest may be far from that for a whole that moves almost without energy.
+        let exact = Settings { tolerance: Some(f64::MIN_POSITIVE), accuracy: None, ..self.settings.clone() };
+        let mut all: Option<Answered> = None;
+        for settings in [self.settings, &exact] {
+            let (answer, of_rest) = match elimination::solved(self.problem, self.start, settings, self.rest, solved)? {
+                Rest::Answer(answer, of_rest) => (*answer, of_rest),
+                Rest::Moves(error) => {
+                    self.moves = Some(error);
+                    break;
+                }
+                Rest::Open => break,
+            };
+            let Seconds { factor, certificate, .. } = answer.seconds;
+            record.stages.factor += factor;
+            record.stages.certificate += certificate;
+            // An error has the same energy in the rest, but for the rounding of the displacement.
+            let of_rest = of_rest.map(|rest| [self.problem.with_rounding(rest, &answer.displacement)]);
+            self.is_cut = of_rest.is_some();
+            let norm = self.rest.and_then(|kept| kept.norm.clone());
+            let by_norm = || norm.map_or(Bounding::OwnFactor, Bounding::Factor);
+            let by = of_rest.as_ref().map_or_else(by_norm, |rest| Bounding::Pieces(rest));
+            let answered = self.judged(Best::of(answer, record.place.attempt), &by, record)?;
+            all = Some(all.map_or(answered, |all| all.or(answered)));
+            if self.history.is_certified() || !settings.method.wants_best() {
+                break;
+            }
+        }
+        Ok(all.map_or(Ended::Empty, Ended::Answered))
     }
 
     /// Whether an answer exists.
@@ -285,24 +308,6 @@ impl<'a> Run<'a> {
         let (Some(existence), Some(best)) = (&self.existence, &self.history.best) else { return Ok(Ended::Empty) };
         existence.check_unique(self.problem, &best.solution, self.ladder.sure_tolerance())?;
         Ok(Ended::MayExist)
-    }
-
-    /// The answer by steps with a regular stiffness.
-    fn by_proximal_steps(&mut self, record: &mut Record) -> Result<Ended, Error> {
-        let Some(existence) = &self.existence else { return Ok(Ended::Empty) };
-        let before = self.history.records.iter().rev().find(|record| record.answer.is_some());
-        let because = before.map_or_else(String::new, |record| record.shortfall(self.settings.goal()));
-        let lost_pivot = self.history.best.as_ref().and_then(|best| best.solution.lost_pivot);
-        let found = existence.proximal_steps(self.problem, self.settings)?;
-        let mut all: Option<Answered> = None;
-        for solution in found {
-            let reason = format!("{}: {because}", solution.reason);
-            let solution = Solution { reason, lost_pivot, ..solution };
-            let answer = Best::of(solution, record.place.attempt);
-            let answered = self.judged(answer, &Bounding::OwnFactor, record)?;
-            all = Some(all.map_or(answered, |all| all.or(answered)));
-        }
-        Ok(all.map_or(Ended::Empty, Ended::Answered))
     }
 }
 

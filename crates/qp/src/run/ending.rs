@@ -36,7 +36,7 @@ impl Run<'_> {
         if let Some(error) = self.ladder.no_room(&self.history).filter(|_| !certified) {
             return Err(error);
         }
-        if !certified && let Some(error) = self.doubt() {
+        if !certified && let Some(error) = self.moves.take().or_else(|| self.doubt()) {
             return Err(error);
         }
         let (why, reason) = (self.ladder.why(&self.history), self.ladder.reason(&self.history));
@@ -97,7 +97,7 @@ impl Run<'_> {
     fn doubt(&mut self) -> Option<Error> {
         let is_unheld = |record: &Record| match &record.ended {
             Ended::Answered(answered) => answered.is_unheld,
-            Ended::Failed(Error::NotConvex { .. }) => true,
+            Ended::Failed(error) => error.leaves_existence_open(),
             _ => false,
         };
         let tolerance = self.settings.goal().tolerance;

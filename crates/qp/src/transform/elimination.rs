@@ -151,31 +151,16 @@ impl Elimination {
     pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
         let (stiffness, load) = (self.stiffness(problem)?, self.load(problem));
         let (by_row, mut sums) = (problem.contact().transposed(), Sums::default());
-        let (mut entries, mut gap) = (Vec::with_capacity(by_row.entries()), Vec::with_capacity(self.rows.len()));
+        let mut entries = Vec::with_capacity(by_row.entries());
         for (number, &row) in self.rows.iter().enumerate() {
-            let mut distance = Sum::default();
-            distance.add(problem.gap()[row].into());
             for (dof, b) in by_row.column(row) {
-                let b = Twice::from(b);
-                self.staying_for(dof).for_each(|(place, a)| sums.at(place).add(b * a));
-                if let Err(pivot) = self.place[dof] {
-                    distance.add(-(b * self.pivots[pivot].constant));
-                }
+                self.staying_for(dof).for_each(|(place, a)| sums.at(place).add(Twice::from(b) * a));
             }
             // What is left within the rounding of the entries of a row is no row of its own.
-            let mut is_empty = true;
-            for (place, sum) in sums.taken() {
-                let value = sum.beyond(FOLLOWS).rounded();
-                is_empty &= value == 0.0;
-                entries.push((number, place, value));
-            }
-            gap.push(match (distance.terms.is_finite(), is_empty) {
-                (false, _) => f64::INFINITY,
-                (true, true) => distance.beyond(FOLLOWS).rounded(),
-                (true, false) => distance.settled().rounded(),
-            });
+            entries.extend(sums.taken().map(|(place, sum)| (number, place, sum.beyond(FOLLOWS).rounded())));
         }
         let contact = SparseMatrix::from_triplets(self.rows.len(), self.dofs.len(), &entries)?;
+        let gap = self.gap(problem, &contact);
         let reduced = ContactProblem::computed(stiffness, load, contact, gap)?;
         let Some(modes) = problem.near_null() else { return Ok(reduced) };
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
@@ -183,6 +168,33 @@ impl Elimination {
             Some(modes) => reduced.with_near_null(modes),
             None => Ok(reduced),
         }
+    }
+
+    /// `g - B u_0` of the rows that stay; `contact` is the matrix of their rest.
+    pub fn gap(&self, problem: &ContactProblem, contact: &SparseMatrix) -> Vec<f64> {
+        let mut distances: Vec<Sum> = vec![Sum::default(); problem.rows()];
+        distances.iter_mut().zip(problem.gap()).for_each(|(distance, &gap)| distance.add(gap.into()));
+        for pivot in self.pivots.iter().filter(|pivot| pivot.dof < problem.dofs()) {
+            let along = problem.contact().column(pivot.dof);
+            along.for_each(|(row, b)| distances[row].add(-(Twice::from(b) * pivot.constant)));
+        }
+        let mut is_empty = vec![true; self.rows.len()];
+        contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, ..)| is_empty[row] = false);
+        let settled = |(&row, is_empty): (&usize, bool)| match (distances[row], is_empty) {
+            (distance, _) if !distance.terms.is_finite() => f64::INFINITY,
+            (distance, true) => distance.beyond(FOLLOWS).rounded(),
+            (distance, false) => distance.settled().rounded(),
+        };
+        self.rows.iter().zip(is_empty).map(settled).collect()
+    }
+
+    /// Returns `true` if a problem has the same equalities as the one `before`, and the same rows without obstacle.
+    pub fn serves(&self, problem: &ContactProblem, before: &ContactProblem) -> bool {
+        let is_same = |row: usize| problem.gap()[row] == before.gap()[row];
+        let is_alike = |row: usize| problem.gap()[row].is_finite() == before.gap()[row].is_finite();
+        problem.equalities() == self.equalities
+            && self.equalities.iter().all(|pair| is_same(pair.row) && is_same(pair.opposed))
+            && (0..problem.rows()).all(is_alike)
     }
 
     /// The dofs that stay on which a dof depends, itself if it stays: their places and coefficients, a row of Z.
@@ -221,7 +233,7 @@ impl Elimination {
     }
 
     /// `Z'(f - K u_0)`.
-    fn load(&self, problem: &ContactProblem) -> Vec<f64> {
+    pub fn load(&self, problem: &ContactProblem) -> Vec<f64> {
         let constant = |dof: usize| self.place[dof].err().map_or(Twice::ZERO, |pivot| self.pivots[pivot].constant);
         let mut forces: Vec<Sum> = vec![Sum::default(); self.place.len()];
         forces.iter_mut().zip(problem.load()).for_each(|(force, &f)| force.add(f.into()));
@@ -255,17 +267,27 @@ impl Elimination {
         self.rows.iter().map(|&row| set.contains(row)).collect()
     }
 
-    /// The displacement of all dofs, length n, from that of those that stay.
-    fn displacement(&self, y: &[f64]) -> Vec<f64> {
-        let given = |pivot: &Pivot| {
+    /// `Z y` of all dofs, length n, and `u_0` this many times.
+    fn of_all(&self, y: &[f64], times: f64) -> impl Iterator<Item = Twice> {
+        let given = move |pivot: &Pivot| {
             let of = |&(dof, a): &(usize, Twice)| a * y[self.place[dof].unwrap_or(0)].into();
-            pivot.others.iter().map(of).fold(pivot.constant, |sum, term| sum + term).rounded()
+            pivot.others.iter().map(of).fold(pivot.constant * times.into(), |sum, term| sum + term)
         };
-        let value = |place: &Result<usize, usize>| match *place {
-            Ok(place) => y[place],
+        let value = move |place: &Result<usize, usize>| match *place {
+            Ok(place) => y[place].into(),
             Err(pivot) => given(&self.pivots[pivot]),
         };
-        self.place[..self.place.len() - self.sums.len()].iter().map(value).collect()
+        self.place[..self.place.len() - self.sums.len()].iter().map(value)
+    }
+
+    /// The displacement of all dofs, length n, from that of those that stay.
+    fn displacement(&self, y: &[f64]) -> Vec<f64> {
+        self.of_all(y, 1.0).map(Twice::rounded).collect()
+    }
+
+    /// The motion of all dofs, length n, along a direction of those that stay.
+    pub fn motion(&self, direction: &[f64]) -> Vec<Twice> {
+        self.of_all(direction, 0.0).collect()
     }
 
     /// The multipliers of the equalities, one for each, that balance these forces on the pivots.

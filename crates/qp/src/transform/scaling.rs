@@ -73,6 +73,12 @@ impl Scaling {
         &self.rows
     }
 
+    /// The diagonal matrix, length n, that the scaling makes `2^exponent` times the identity.
+    pub fn identity(&self, exponent: i32) -> Vec<f64> {
+        let Equilibration { factor, diagonal } = &self.equilibration;
+        diagonal.iter().map(|d| ldexp(1.0, exponent - factor - 2 * d)).collect()
+    }
+
     /// The scaled load for u0 = `2^unit`.
     pub fn load(&self, load: &[f64], unit: i32) -> Vec<f64> {
         let exponent = self.equilibration.factor - unit;

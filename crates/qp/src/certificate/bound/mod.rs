@@ -227,6 +227,17 @@ impl ContactProblem {
         Ok(self.is_semidefinite()?.then_some(EnergyNorm { springs, loose, ..norm }))
     }
 
+    /// The energy norm of a stiffness that is definite by itself, or with springs on equalities alone: it serves every
+    /// answer. `None` if there is none.
+    ///
+    /// # Errors
+    /// As [`EnergyNorm::of`].
+    pub(crate) fn norm_on_equalities(&self) -> Result<Option<EnergyNorm>, Error> {
+        let (at_rest, forces) = (vec![0.0; self.dofs()], vec![0.0; self.rows()]);
+        let norm = self.two_sided(&forces).0.energy_norm(&at_rest, &forces)?;
+        Ok(norm.filter(|norm| norm.loose_dofs() == 0))
+    }
+
     /// The dofs without stiffness on which neither a load nor a row acts, if there are some.
     fn loose_dofs(&self, multiplier: &[f64]) -> Option<Loose> {
         let mut is_loose: Vec<bool> = self

@@ -1,10 +1,16 @@
 //! An answer for a singular stiffness, by steps with a regular one.
 
-use super::cone::Solve;
+use std::sync::Arc;
+
+use super::carried_out::{Run, Workbench};
+use crate::certificate::Bounding;
+use crate::engine::Load;
 use crate::error::Error;
-use crate::linear::{SparseMatrix, SymmetricMatrix, ldexp};
+use crate::linear::{SparseMatrix, SymmetricMatrix};
+use crate::method::Start;
+use crate::plan::{Answered, Best, Ended, Known, Ladder, Record};
 use crate::problem::ContactProblem;
-use crate::settings::{Method, Precision, Settings};
+use crate::settings::Settings;
 use crate::solution::{Solution, Why};
 use crate::transform::Scaling;
 
@@ -23,86 +29,82 @@ const FEWEST_STEPS: usize = 3;
 /// Largest number of steps with `K + rho E`; each multiplies the error by `rho / eigenvalue`.
 const MOST_STEPS: usize = 12;
 
-/// The diagonal of `rho E`.
-fn added(scaling: &Scaling) -> Vec<f64> {
-    let equilibration = scaling.equilibration();
-    equilibration.diagonal.iter().map(|d| ldexp(1.0, STEP - equilibration.factor - 2 * d)).collect()
+impl Run<'_> {
+    /// The answer by steps with a regular stiffness.
+    pub(super) fn by_proximal_steps(&mut self, record: &mut Record) -> Result<Ended, Error> {
+        let Some(existence) = &self.existence else { return Ok(Ended::Empty) };
+        let before = self.history.records.iter().rev().find(|record| record.answer.is_some());
+        let because = before.map_or_else(String::new, |record| record.shortfall(self.settings.goal()));
+        let lost_pivot = self.history.best.as_ref().and_then(|best| best.solution.lost_pivot);
+        let found = answers(&existence.scaling, self.problem, self.settings)?;
+        let mut all: Option<Answered> = None;
+        for solution in found {
+            let asks = |best: &Best| best.solution.certificate.asks_for_more(self.settings.goal());
+            if all.is_some() && self.history.best.as_ref().is_some_and(|best| !asks(best)) {
+                break;
+            }
+            let reason = format!("{}: {because}", solution.reason);
+            let solution = Solution { reason, lost_pivot, ..solution };
+            let answer = Best::of(solution, record.place.attempt);
+            let answered = self.judged(answer, &Bounding::OwnFactor, record)?;
+            all = Some(all.map_or(answered, |all| all.or(answered)));
+        }
+        Ok(all.map_or(Ended::Empty, Ended::Answered))
+    }
 }
 
 /// Answers by steps with `K + rho E`, E the diagonal that the scaling makes the identity: minimise the energy plus
-/// `rho/2` times the squared distance, in E, from the last answer. Those of the last two steps are returned, without a
-/// certificate for the problem itself, each also without the rounding of its step.
+/// `rho/2` times the squared distance, in E, from the last answer. The steps share a factor, and each starts from the
+/// set of the last. The answers of the last two are returned, the last first, without a certificate for the problem
+/// itself; each also without the rounding of its step, which comes before the answer as it is.
 ///
 /// # Errors
-/// [`Error::Infeasible`] for contact rows that contradict each other.
+/// [`Error::Infeasible`] for contact rows that contradict each other; those of a ladder.
 ///
 /// # Source
 /// R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control Optim. 14 (1976) 877-898.
-pub(super) fn answers(
-    scaling: &Scaling,
-    problem: &ContactProblem,
-    settings: &Settings,
-    solve: Solve,
-) -> Result<Vec<Solution>, Error> {
-    let added = added(scaling);
+fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>, Error> {
+    let added = scaling.identity(STEP);
+    let (load, gap) = (problem.load(), problem.gap().to_vec());
     let stiffness = with_diagonal(problem.stiffness(), &added)?;
-    let dofs = problem.dofs();
-    let settings_of_step = settings_of_step(settings);
-    let (mut last, mut answers) = (Vec::new(), Vec::new());
-    let (mut centre, mut before_last) = (vec![0.0; dofs], f64::INFINITY);
+    let mut of_step = ContactProblem::computed(stiffness, load.to_vec(), problem.contact().clone(), gap)?;
+    let settings = &settings.of_question();
+    let known = Known { gaps: MOST_STEPS, is_whole: true };
+    let ladder = Ladder::of(&of_step, known, settings)?.without_existence();
+    let (mut start, mut kept): (Start, Option<Workbench>) = (Start::default(), None);
+    let (mut last, mut before): (Vec<Solution>, Vec<Solution>) = (Vec::new(), Vec::new());
+    let (mut centre, mut before_last) = (vec![0.0; problem.dofs()], f64::INFINITY);
     for step in 1..=MOST_STEPS {
-        let load = (problem.load().iter().zip(&added).zip(&centre)).map(|((f, e), u)| f + e * u).collect();
-        let of_step =
-            ContactProblem::computed(stiffness.clone(), load, problem.contact().clone(), problem.gap().to_vec())?;
-        let found = match solve(&of_step, &settings_of_step) {
+        let mut run = Run::new(&of_step, &ladder, &start, settings);
+        run.made = kept.take();
+        run.carry_out();
+        kept = run.made.clone();
+        let found = match run.ended() {
             Ok(solution) => solution,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(infeasible @ Error::Infeasible { .. }) => return Err(infeasible),
             Err(_) => break,
         };
-        let moved = (0..dofs).map(|dof| added[dof] * (found.displacement[dof] - centre[dof]).powi(2)).sum::<f64>();
-        centre.clone_from(&found.displacement);
+        let lengths = added.iter().zip(found.displacement.iter().zip(&centre));
+        let moved = lengths.map(|(e, (u, centre))| e * (u - centre).powi(2)).sum::<f64>();
         // The steps become shorter until they are rounding.
         let is_shorter = moved < SHORTER * before_last;
-        before_last = moved;
+        (before_last, start) = (moved, Start::from(&found.contact_set));
+        centre.clone_from(&found.displacement);
         let reason = format!("by {step} steps with K + rho E, since the stiffness is singular");
         let found = Solution { reason, why: Why::default(), attempts: Vec::new(), ..found };
-        let each = without_rounding(problem, &added, &centre, &found.multiplier).into_iter();
+        let each = without_rounding(problem, &added, &centre, &found.multiplier).into_iter().rev();
         let each = each.map(|(displacement, multiplier)| Solution { displacement, multiplier, ..found.clone() });
-        answers = std::mem::replace(&mut last, each.collect());
+        before = std::mem::replace(&mut last, each.collect());
         if settings.watch.is_over() || step >= FEWEST_STEPS && !is_shorter {
             break;
         }
+        let load: Vec<f64> = load.iter().zip(&added).zip(&centre).map(|((f, e), u)| f + e * u).collect();
+        of_step = of_step.with_load(load.clone())?;
+        kept = kept.map(|bench| Workbench { load: Arc::new(Load::new(load)), ..bench });
     }
-    answers.append(&mut last);
-    Ok(answers)
-}
-
-/// Checks that some displacement meets the rows: the nearest to rest, in E.
-///
-/// # Errors
-/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
-pub(super) fn check_rows(
-    scaling: &Scaling,
-    problem: &ContactProblem,
-    settings: &Settings,
-    solve: Solve,
-) -> Result<(), Error> {
-    let diagonal: Vec<_> = added(scaling).into_iter().enumerate().map(|(dof, value)| (dof, dof, value)).collect();
-    let dofs = problem.dofs();
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal)?)?;
-    let nearest =
-        ContactProblem::computed(stiffness, vec![0.0; dofs], problem.contact().clone(), problem.gap().to_vec())?;
-    match solve(&nearest, &settings_of_step(settings)) {
-        Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
-        _ => Ok(()),
-    }
-}
-
-/// The settings of a step.
-fn settings_of_step(settings: &Settings) -> Settings {
-    let (method, precision) = (Method::ActiveSet, Precision::Double);
-    Settings { method, precision, accuracy: None, prove: false, ..settings.clone() }
+    last.append(&mut before);
+    Ok(last)
 }
 
 fn with_diagonal(stiffness: &SymmetricMatrix, added: &[f64]) -> Result<SymmetricMatrix, Error> {
@@ -140,7 +142,6 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::solve;
     use crate::watch::Watch;
 
     /// Two dofs, each with its own row: `stiffness` on the diagonal.
@@ -154,19 +155,22 @@ mod tests {
         // A dof of stiffness 2 under a force of 4 before a wall at 3, and one that a force of 3 presses to a wall at
         // 1/2.
         let problem = two([2.0, 0.0], [4.0, 3.0], [3.0, 0.5]);
-        let solves = Arc::new(AtomicUsize::new(0));
-        let counted = Arc::clone(&solves);
+        let counts = Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]);
+        let counted = Arc::clone(&counts);
         let watch = Watch::observed(move |watch| {
-            counted.fetch_add(usize::from(watch.activity().step == "certificate"), Ordering::SeqCst);
+            for (count, step) in counted.iter().zip(["certificate", "factorisation"]) {
+                count.fetch_add(usize::from(watch.activity().step == step), Ordering::SeqCst);
+            }
         });
         let settings = Settings { watch, ..Settings::default() };
         let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
-        let found = answers(&scaling, &problem, &settings, solve).unwrap();
+        let found = answers(&scaling, &problem, &settings.started().unwrap()).unwrap();
         assert!(found.iter().all(|found| found.displacement == [2.0, 0.5] && found.multiplier[1] == -3.0));
         // Each step multiplies the error by about 2^-20: the third leaves less than the last bit, the fourth has the
         // length of rounding, and there is no fifth.
-        let solves = solves.load(Ordering::SeqCst);
+        let [solves, factors] = [0, 1].map(|count| counts[count].load(Ordering::SeqCst));
         assert!((FEWEST_STEPS..=5).contains(&solves), "{solves}");
+        assert_eq!(factors, 1);
     }
 
     #[test]
