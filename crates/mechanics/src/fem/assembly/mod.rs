@@ -45,7 +45,7 @@ pub(crate) use shape_derivative::{
     body_force_by_places, centrifugal_by_places, gravity_by_places, internal_work_by_places, interpolated,
     own_energy_by_places,
 };
-pub(crate) use springs::Springs;
+pub(crate) use springs::{NodalForces, Springs};
 pub use stiffness::stiffness;
 pub(crate) use surface::{FacetPoint, facet_centres, facet_sizes, normal_sums, outward};
 pub use surface::{node_normals, tributary_areas};

@@ -1,6 +1,8 @@
 //! Springs between nodes and the ground: K_ab = integral over a boundary of k N_a N_b n n', or k n n' at a node; and
 //! between nodes: with the elongation e = sum of c_a . u_a, K_ab = k c_a c_b'.
 
+use std::collections::BTreeMap;
+
 use super::DofMap;
 use super::element_blocks::Block;
 use super::surface::for_each_point;
@@ -10,6 +12,9 @@ use crate::fem::geometry::{COORDINATES, length, unit};
 use crate::fem::mesh::Boundary;
 use signorini_qp as qp;
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
+
+/// Forces on some nodes, in force.
+pub(crate) type NodalForces = BTreeMap<usize, [f64; 3]>;
 
 /// Springs, in force per length.
 #[derive(Clone, Debug, Default)]
@@ -59,17 +64,18 @@ impl Springs {
         Springs { pairs, elongation: elongation.to_vec(), strained }
     }
 
-    /// The forces of the springs on the nodes (length `dim * n_nodes`) at a nodal displacement.
-    pub fn forces(&self, displacement: &[f64], dimension: usize) -> Vec<f64> {
-        let mut forces = vec![0.0; displacement.len()];
+    /// The forces of the springs on their nodes at a nodal displacement.
+    pub fn forces(&self, displacement: &[f64], dimension: usize) -> NodalForces {
+        let mut forces = NodalForces::new();
         for (a, b, block) in &self.pairs {
+            let force = forces.entry(*a).or_default();
             for i in 0..dimension {
                 let along: f64 = (0..dimension).map(|j| block[i][j] * displacement[dimension * b + j]).sum();
-                forces[dimension * a + i] -= along;
+                force[i] -= along;
             }
         }
         for (node, force) in &self.strained {
-            forces[dimension * node..dimension * (node + 1)].iter_mut().zip(force).for_each(|(sum, part)| *sum += part);
+            forces.entry(*node).or_default().iter_mut().zip(force).for_each(|(sum, part)| *sum += part);
         }
         forces
     }

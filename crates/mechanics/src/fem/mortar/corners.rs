@@ -1,11 +1,11 @@
-//! Corners of surfaces: where facets turn away from each other, a node belongs to several sides, with a normal and a
-//! row for each.
+//! The nodes of surfaces: their own alone among those of a mesh; and at corners, where facets turn away from each
+//! other, one for each side, with a normal and a row of its own.
 
 use super::facet::Facet;
 use super::{Found, SurfaceMesh};
 use crate::fem::element::FacetKind;
 
-/// A surface in which a node at a corner is several nodes at one place, one for each side.
+/// A surface with nodes of its own.
 pub(super) struct Sided {
     nodes: Vec<[f64; 3]>,
     facets: Vec<usize>,
@@ -14,6 +14,17 @@ pub(super) struct Sided {
 }
 
 impl Sided {
+    /// A surface with those of its nodes that facets have, in their order.
+    pub fn alone(surface: &SurfaceMesh) -> Self {
+        let mut node = surface.facets.to_vec();
+        node.sort_unstable();
+        node.dedup();
+        let place = |one: &usize| node.partition_point(|other| other < one);
+        let facets = surface.facets.iter().map(place).collect();
+        Sided { nodes: node.iter().map(|&node| surface.nodes[node]).collect(), facets, node }
+    }
+
+    /// A surface in which a node at a corner is several nodes at one place, one for each side.
     pub fn of(surface: &SurfaceMesh) -> Self {
         let count = surface.kind.nodes();
         let facets: Vec<Facet> = surface.facets.chunks_exact(count).map(|nodes| Facet::new(surface, nodes)).collect();

@@ -277,16 +277,22 @@ impl<'a> Mortar<'a> {
     /// As [`Mortar::rows`].
     pub(crate) fn found(&self) -> Result<Found, Error> {
         self.check()?;
+        let alone @ [slave, master] = &[self.slave, self.master].map(|surface| Sided::alone(&surface));
+        Ok(named(self.on(alone, |mortar| mortar.found_on_all_nodes())?, [&slave.node, &master.node]))
+    }
+
+    /// The same for surfaces that have all of their nodes.
+    fn found_on_all_nodes(&self) -> Result<Found, Error> {
         let sides = Sides::of(self);
         let Sight { covered, opposite, met } = self.sight(&sides);
         if let Some([slave, master]) = self.between.and_then(|_| sides.without_turned_away(&covered, &met)) {
             let [slave, master] =
                 [(self.slave, &slave), (self.master, &master)].map(|(of, facets)| SurfaceMesh { facets, ..of });
-            return Mortar { slave, master, ..*self }.found();
+            return Mortar { slave, master, ..*self }.found_on_all_nodes();
         }
-        let sided = [self.slave, self.master].map(|surface| Sided::of(&surface));
+        let sided @ [slave, master] = &[self.slave, self.master].map(|surface| Sided::of(&surface));
         if self.has_sides && sided.iter().any(Sided::has_corners) {
-            return self.found_by_sides(&sided);
+            return Ok(named(self.on(sided, |mortar| mortar.found_on_all_nodes())?, [&slave.node, &master.node]));
         }
         if let Some((index, one)) = covered.iter().enumerate().find(|(_, one)| one.has_layers()) {
             return Err(Error::Mesh {
@@ -325,18 +331,17 @@ impl<'a> Mortar<'a> {
         })
     }
 
-    /// The same with a row for each side of a node at a corner.
-    fn found_by_sides(&self, [slave, master]: &[Sided; 2]) -> Result<Found, Error> {
+    /// What `find` gives on the nodes of other surfaces, which are some of these.
+    fn on<T>(&self, [slave, master]: &[Sided; 2], find: impl FnOnce(&Mortar) -> T) -> T {
         let may_carry = |own: usize| self.may_carry.is_none_or(|may_carry| may_carry(slave.node[own]));
         let has_coefficient = |own: usize| self.has_coefficient.is_none_or(|has| has(slave.node[own]));
-        let by_sides = Mortar {
+        find(&Mortar {
             slave: slave.surface(self.slave.kind),
             master: master.surface(self.master.kind),
             may_carry: Some(&may_carry),
             has_coefficient: Some(&has_coefficient),
             ..*self
-        };
-        Ok(named(by_sides.found()?, [&slave.node, &master.node]))
+        })
     }
 
     /// What the search finds, without rows; surfaces may lie in several layers before each other.
@@ -345,16 +350,22 @@ impl<'a> Mortar<'a> {
     /// As [`Mortar::rows`], except for layers.
     pub(crate) fn seen(&self) -> Result<Seen, Error> {
         self.check()?;
-        let sides = Sides::of(self);
-        let covered = self.sight(&sides).covered;
-        let has_layers = covered.iter().any(Covered::has_layers);
-        Ok(Seen { faces: covered.iter().map(Covered::is_covered).collect(), has_layers })
+        let alone = [self.slave, self.master].map(|surface| Sided::alone(&surface));
+        Ok(self.on(&alone, |mortar| {
+            let sides = Sides::of(mortar);
+            let covered = mortar.sight(&sides).covered;
+            let has_layers = covered.iter().any(Covered::has_layers);
+            Seen { faces: covered.iter().map(Covered::is_covered).collect(), has_layers }
+        }))
     }
 
     /// The sag of each slave facet, in length.
     pub(crate) fn sags(&self) -> Vec<f64> {
-        let sides = Sides::of(self);
-        sides.slave.iter().map(|one| facet::sag(std::slice::from_ref(one), &sides.normals[0])).collect()
+        let alone = [self.slave, self.master].map(|surface| Sided::alone(&surface));
+        self.on(&alone, |mortar| {
+            let sides = Sides::of(mortar);
+            sides.slave.iter().map(|one| facet::sag(std::slice::from_ref(one), &sides.normals[0])).collect()
+        })
     }
 
     /// Checks that facets and formulation fit.
@@ -374,7 +385,8 @@ impl<'a> Mortar<'a> {
                 let message = format!("a facet names node {node}, but there are {} nodes", surface.nodes.len());
                 return Err(Error::Mesh { message });
             }
-            if let Some(node) = surface.nodes.iter().position(|at| at.iter().any(|part| !part.is_finite())) {
+            let is_finite = |node: usize| surface.nodes[node].iter().all(|part| part.is_finite());
+            if let Some(node) = surface.facets.iter().find(|&&node| !is_finite(node)) {
                 return Err(Error::Mesh { message: format!("node {node} has a coordinate that is not finite") });
             }
         }

@@ -427,7 +427,7 @@ impl Model {
     /// The forces of a nodal displacement.
     fn forces(&self, displacement: &[f64], multiplier: &[f64], of_ties: &[f64]) -> Result<Forces, Error> {
         let contact = self.contact_forces(multiplier)?;
-        let ties = self.parts.tie_forces(of_ties, None);
+        let ties = self.parts.tie_forces(of_ties);
         let mut forces = internal_force(self.body(), displacement)?;
         let acting = self.nodal_load().iter().zip(&contact);
         forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);

@@ -152,9 +152,12 @@ pub(crate) fn nodes_named_once(mesh: &Mesh, names: &[String], path: &str) -> Res
 pub(crate) fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
     let dimension = mesh.dimension();
     let place = vector(path, at, dimension)?;
-    let away = |node: &[f64; 3]| distance(*node, place);
     let tolerance = PLACE_TOLERANCE * mesh.size();
-    let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| away(&mesh.nodes()[node]) <= tolerance).collect();
+    let is_there = |node: &[f64; 3]| {
+        // Most nodes are away along an axis.
+        (0..3).all(|axis| (node[axis] - place[axis]).abs() <= tolerance) && distance(*node, place) <= tolerance
+    };
+    let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| is_there(&mesh.nodes()[node])).collect();
     if let [node] = there[..] {
         return Ok(node);
     }

@@ -122,9 +122,10 @@ impl Model {
         let (allowed, drawn) = (self.depths_that_rows_leave(), self.drawn_together(unknowns));
         let solids: Vec<OnceCell<Solid>> = (0..regions.len()).map(|_| OnceCell::new()).collect();
         let solid = |region: usize| solids[region].get_or_init(|| Solid::of(self, region, &nodes));
+        let boxes: Vec<_> = regions.iter().map(|region| extent(&nodes[region.nodes()])).collect();
         let mut deepest: Option<Overlap> = None;
         for (own, other) in (0..regions.len()).flat_map(|own| (0..regions.len()).map(move |other| (own, other))) {
-            let [(low, high), (least, most)] = [own, other].map(|region| extent(&nodes[regions[region].nodes()]));
+            let [(low, high), (least, most)] = [boxes[own], boxes[other]];
             let of_node = |node: usize| allowed.get(&(node, own)).copied().unwrap_or(0.0);
             // Only a point in the box of a body can be inside it.
             let is_near = |at: &[f64; 3]| (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&at[axis]));

@@ -7,7 +7,7 @@ use super::symmetry::Symmetry;
 use super::ties::Ties;
 use super::unknowns::Unknowns;
 use crate::error::Error;
-use crate::fem::assembly::{DofMap, Springs};
+use crate::fem::assembly::{DofMap, NodalForces, Springs};
 use crate::fem::body::ElasticBody;
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::{Units, Warning};
@@ -75,7 +75,7 @@ impl Parts {
     pub fn acting_load(&self) -> Result<Vec<f64>, Error> {
         let mut load = self.load.clone();
         if !self.ties.shortenings.is_empty() {
-            let tensions = self.tie_forces(&vec![0.0; self.ties.rows.len()], None);
+            let tensions = self.tie_forces(&vec![0.0; self.ties.rows.len()]);
             load.iter_mut().zip(tensions).for_each(|(load, force)| *load += force);
         }
         if !self.springs.is_empty() {
@@ -96,39 +96,40 @@ impl Parts {
         }
     }
 
-    /// The forces of one tie on its first side, or of all ties on both sides: on the nodes, length `dim * n_nodes`, in
-    /// force, from the multipliers of all equations.
-    pub fn tie_forces(&self, of_ties: &[f64], one: Option<usize>) -> Vec<f64> {
+    /// The forces of all ties on both sides: on the nodes, length `dim * n_nodes`, in force, from the multipliers of
+    /// all equations.
+    pub fn tie_forces(&self, of_ties: &[f64]) -> Vec<f64> {
+        self.on_all_nodes([self.forces_of_ties(of_ties, None)])
+    }
+
+    /// The forces of one tie on its first side, or of all ties on both sides.
+    pub fn forces_of_ties(&self, of_ties: &[f64], one: Option<usize>) -> NodalForces {
         let ties = &self.ties;
         let rows = one.map_or(0..ties.rows.len(), |tie| ties.of_tie[tie].clone());
         let of_rows = rows.map(|row| (&ties.rows[row].terms, &ties.rows[row].own, of_ties[row]));
         let tensions = ties.shortenings.iter().filter(|of| one.is_none_or(|tie| tie == of.tie));
-        let all = of_rows.chain(tensions.filter_map(|of| Some((&of.terms, &of.own, of.force?))));
-        self.nodal(
-            all.map(|(terms, own, size)| (&terms[if one.is_some() { own.clone() } else { 0..terms.len() }], size)),
-        )
-    }
-
-    /// The forces on the nodes along vectors, each with a size.
-    fn nodal<'a>(&self, all: impl Iterator<Item = (&'a [(usize, [f64; 3])], f64)>) -> Vec<f64> {
-        let dimension = self.body.dimension();
-        let mut forces = vec![0.0; self.dofs.nodal_count()];
-        for (terms, size) in all {
-            for (node, vector) in terms {
-                let entries = &mut forces[dimension * node..dimension * (node + 1)];
-                entries.iter_mut().zip(vector).for_each(|(entry, part)| *entry += size * part);
+        let mut forces = NodalForces::new();
+        for (terms, own, size) in of_rows.chain(tensions.filter_map(|of| Some((&of.terms, &of.own, of.force?)))) {
+            for (node, vector) in &terms[if one.is_some() { own.clone() } else { 0..terms.len() }] {
+                for (of, share) in self.dofs.basis.shares(*node) {
+                    let force = forces.entry(of).or_default();
+                    force.iter_mut().zip(vector).for_each(|(entry, part)| *entry += share * size * part);
+                }
             }
         }
-        self.dofs.basis.scatter(&mut forces, dimension);
         forces
     }
 
     /// The forces of all springs on the nodes in a nodal displacement.
     pub fn spring_forces(&self, displacement: &[f64]) -> Vec<f64> {
-        let mut forces = vec![0.0; displacement.len()];
-        for springs in &self.springs {
-            let own = springs.forces(displacement, self.body.dimension());
-            forces.iter_mut().zip(own).for_each(|(force, own)| *force += own);
+        self.on_all_nodes(self.springs.iter().map(|springs| springs.forces(displacement, self.body.dimension())))
+    }
+
+    fn on_all_nodes(&self, all: impl IntoIterator<Item = NodalForces>) -> Vec<f64> {
+        let (mut forces, dimension) = (vec![0.0; self.dofs.nodal_count()], self.body.dimension());
+        for (node, force) in all.into_iter().flatten() {
+            let entries = &mut forces[dimension * node..dimension * (node + 1)];
+            entries.iter_mut().zip(force).for_each(|(entry, part)| *entry += part);
         }
         forces
     }

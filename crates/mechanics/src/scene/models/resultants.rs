@@ -261,13 +261,18 @@ impl Model {
         self.parts.symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
     }
 
-    /// The sum of nodal forces (length `dim * n_nodes`) on the whole body.
-    fn sum_of(&self, forces: &[f64]) -> Sum {
+    /// The sum of nodal forces on the whole body.
+    fn sum_of(&self, forces: impl IntoIterator<Item = (usize, [f64; 3])>) -> Sum {
         let mut sum = Sum::default();
-        for (node, &at) in self.mesh().nodes().iter().enumerate() {
-            self.add_images(&mut sum, at, self.at_node(forces, node), |_| true);
+        for (node, force) in forces {
+            self.add_images(&mut sum, self.mesh().nodes()[node], force, |_| true);
         }
         sum
+    }
+
+    /// Forces on all nodes (length `dim * n_nodes`), node by node.
+    fn by_node(&self, forces: &[f64]) -> impl Iterator<Item = (usize, [f64; 3])> {
+        (0..self.mesh().nodes().len()).map(|node| (node, self.at_node(forces, node)))
     }
 
     /// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
@@ -275,7 +280,7 @@ impl Model {
         let at_points = self.parts.points.forces_of_springs(|node| self.at_node(displacement, node));
         let of_springs = |((index, springs), name): ((usize, &Springs), String)| match at_points.get(&index) {
             Some(forces) => self.resultant_at(forces, name),
-            None => self.sum_of(&springs.forces(displacement, self.body().dimension())).resultant(self, name),
+            None => self.sum_of(springs.forces(displacement, self.body().dimension())).resultant(self, name),
         };
         self.parts.springs.iter().enumerate().zip(self.spring_names()).map(of_springs).collect()
     }
@@ -320,7 +325,7 @@ impl Model {
     pub(crate) fn face_resultants(&self, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
         let mut all = Vec::with_capacity(self.parts.rigid_faces.len());
         for (index, face) in self.parts.rigid_faces.iter().enumerate() {
-            let sum = self.sum_of(&self.force_of_faces(forces, |other| other == index)?);
+            let sum = self.sum_of(self.by_node(&self.force_of_faces(forces, |other| other == index)?));
             let found = self.parts.unknowns.motions(unknowns, index);
             let amount = |(motion, unknown): (&Motion, Option<f64>)| {
                 let by_unknown = unknown.map(|unknown| unknown * face.unit(motion));
@@ -350,7 +355,7 @@ impl Model {
                 return Resultant { on: point.or_else(|| self.name_of_body(first)), ..self.resultant_at(forces, of) };
             }
             let first = ties.rows[rows.clone()].first().and_then(|row| Some(row.terms.first()?.0));
-            let sum = self.sum_of(&self.parts.tie_forces(of_ties, Some(index)));
+            let sum = self.sum_of(self.parts.forces_of_ties(of_ties, Some(index)));
             let on = self.name_of_body(first);
             let shortening = ties.shortenings.iter().find(|one| one.tie == index);
             let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
@@ -366,8 +371,8 @@ impl Model {
     pub(crate) fn of_bolt(&self, tie: usize, of_ties: &[f64], unknowns: &[f64]) -> [f64; 2] {
         let ties = &self.parts.ties;
         let Some(one) = ties.shortenings.iter().find(|one| one.tie == tie) else { return [0.0; 2] };
-        let (forces, towards) = (self.parts.tie_forces(of_ties, Some(tie)), one.towards());
-        let force = (0..self.mesh().nodes().len()).map(|node| dot(self.at_node(&forces, node), towards)).sum();
+        let (forces, towards) = (self.parts.forces_of_ties(of_ties, Some(tie)), one.towards());
+        let force = forces.into_values().map(|force| dot(force, towards)).sum();
         [one.value((self.dofs(), &self.parts.unknowns), self.body().dimension(), unknowns), force]
     }
 
@@ -397,7 +402,7 @@ impl Model {
         let mut on_points = vec![0.0; self.nodal_load().len()];
         self.parts.points.add_load(&mut on_points, self.body().dimension());
         let loads: Vec<f64> = self.nodal_load().iter().zip(on_points).map(|(load, on_point)| load - on_point).collect();
-        let loads = self.sum_of(&loads);
+        let loads = self.sum_of(self.by_node(&loads));
         (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
     }
 
