@@ -88,7 +88,7 @@ AREAS = {
                 "numerics",
                 ("--test", "numerics"),
                 ("degenerate::", "dual_active_set::", "energy_bound::", "exact_path::", "extremes::", "methods::")
-                + ("obstacle_problems::", "penalty_ladder::", "precision::", "proven_set::", "separate_parts::", "watch::"),
+                + ("obstacle_problems::", "penalty_ladder::", "proven_set::", "separate_parts::", "watch::"),
             ),
             Stage("multigrid", ("--test", "multigrid"), ("cycle_bound::", "mprgp::")),
         ),

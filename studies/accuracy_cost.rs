@@ -14,19 +14,17 @@ use crate::table::{show, table};
 /// Required relative errors in energy. The last one stands for an answer that is exact up to rounding.
 const ACCURACIES: [(&str, f64); 4] = [("1e-2", 1e-2), ("1e-4", 1e-4), ("1e-8", 1e-8), ("exact", 1e-11)];
 
-/// Method, precision and unknowns, in the order of the table.
-const WAYS: [(&str, bool, bool); 11] = [
-    ("active-set", true, false),
-    ("active-set", true, true),
-    ("qp, polished", true, false),
-    ("qp, polished", true, true),
-    ("qp", true, false),
-    ("penalty", true, false),
-    ("active-set", false, false),
-    ("qp, polished", false, false),
-    ("qp", false, false),
-    ("penalty", false, false),
-    ("mprgp", false, false),
+/// Method and unknowns, `true` for those of the contact alone, in the order of the table.
+const WAYS: [(&str, bool); 9] = [
+    ("active-set", true),
+    ("qp, polished", true),
+    ("qp", true),
+    ("penalty", true),
+    ("active-set", false),
+    ("qp, polished", false),
+    ("qp", false),
+    ("penalty", false),
+    ("mprgp", false),
 ];
 
 /// Milliseconds of each method for an accuracy
@@ -67,18 +65,16 @@ fn rows(title: &str, measured: &Tradeoff) -> String {
         mesh.contact_rows,
         ACCURACIES.map(|(name, _)| name).join(" | ")
     );
-    let row = |&(method, condensed, mixed): &(&str, bool, bool)| {
-        let is_own =
-            |point: &&TradeoffPoint| point.method == method && point.condensed == condensed && point.mixed == mixed;
+    let row = |&(method, condensed): &(&str, bool)| {
+        let is_own = |point: &&TradeoffPoint| point.method == method && point.condensed == condensed;
         let own: Vec<&TradeoffPoint> = measured.points.iter().filter(is_own).collect();
         let cheapest = |accuracy: f64| {
             let good = own.iter().filter(|point| point.energy_error <= accuracy).map(|point| point.seconds);
             good.min_by(f64::total_cmp).map_or("-".to_string(), |least| format!("{:.2}", 1e3 * least))
         };
         let unknowns = if condensed { "contact dofs" } else { "all dofs" };
-        let precision = if mixed { ", single-precision factor" } else { "" };
         let cells = ACCURACIES.map(|(_, accuracy)| cheapest(accuracy)).join(" | ");
-        (!own.is_empty()).then(|| format!("{method}, {unknowns}{precision} | {cells}"))
+        (!own.is_empty()).then(|| format!("{method}, {unknowns} | {cells}"))
     };
     table(&heading, &WAYS.iter().filter_map(row).collect::<Vec<_>>()) + "\n"
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use pyo3::prelude::*;
-use signorini::{Condense, ContactProblem, Method, Precision, Settings};
+use signorini::{Condense, ContactProblem, Method, Settings};
 
 use crate::arrays::kind_of;
 use crate::errors::{bad_input, bad_type};
@@ -53,8 +53,8 @@ const METHODS: [(&str, Method); 5] = [
     ("mprgp", Method::Mprgp),
 ];
 
-const PRECISIONS: [(&str, Precision); 3] =
-    [("auto", Precision::Auto), ("double", Precision::Double), ("mixed", Precision::Mixed)];
+/// The precisions, and whether there are factors in them.
+const PRECISIONS: [(&str, bool); 3] = [("auto", true), ("double", true), ("mixed", false)];
 
 impl Options<'_> {
     /// Returns the settings. The defaults are those of the program: rows are proven, and all available memory may be
@@ -69,8 +69,10 @@ impl Options<'_> {
         if let Some(method) = &self.method {
             settings.method = word("method", method, &METHODS)?;
         }
-        if let Some(precision) = &self.precision {
-            settings.precision = word("precision", precision, &PRECISIONS)?;
+        if let Some(precision) = &self.precision
+            && !word("precision", precision, &PRECISIONS)?
+        {
+            return Err(bad_input(precision.py(), Settings::NO_SINGLE_PRECISION));
         }
         if let Some(tolerance) = &self.tolerance {
             settings.tolerance = Some(number("tolerance", tolerance)?);

@@ -46,9 +46,8 @@ use crate::work::{End, Place, run};
 ///     Limit in bytes, positive. "auto" avoids methods whose estimate is larger; another method is refused. The default
 ///     is the memory that the machine has available.
 /// precision : str, optional
-///     Precision of the factor; the solution is always in double precision. "double" and "mixed" name it: "mixed"
-///     factorises in single precision, with half the memory, and refines the solution. "auto" (the default) takes
-///     "double", except if `accuracy` is given and "mixed" reaches it in less time.
+///     Precision of the factor: "auto" (the default) and "double" are the same. "mixed" is refused; for less memory
+///     take the method "mprgp".
 /// condense : bool, optional
 ///     True (the default) reduces the problem to the dofs of its contact rows if an estimate shows that it pays. False
 ///     never does.

@@ -15,7 +15,7 @@ use super::settings::settings;
 use super::total_error;
 use crate::Error;
 use crate::qp;
-use crate::qp::{Goal, Method, Precision, Settings, Solution, Start, Watch, read_vector};
+use crate::qp::{Goal, Method, Settings, Solution, Start, Watch, read_vector};
 use crate::scene::{Answer, Scene};
 use crate::study::TotalErrorGoal;
 
@@ -72,7 +72,6 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         }
         None => {}
     }
-    settings.precision = options.precision;
     if let Method::Penalty(ladder) = &mut settings.method {
         ladder.extrapolate = options.extrapolate;
     }
@@ -96,7 +95,7 @@ fn check_options(options: &Solve, scene: Option<&Scene>) -> Result<(), Error> {
     let of_one_answer = [
         ("--total-error", options.total_error.is_some()),
         ("--accuracy", options.accuracy.is_some()),
-        ("--precision", options.precision != Precision::Auto),
+        ("--precision", options.precision.is_some()),
         ("--no-proof", options.no_proof),
         ("--extrapolate", options.extrapolate),
         ("--explain", options.explain),

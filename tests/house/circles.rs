@@ -19,7 +19,7 @@ fn folders(folder: &str) -> Vec<PathBuf> {
 #[test]
 fn no_two_rust_files_of_python_studies_or_tests_import_each_other() {
     let roots = |path: &PathBuf| path.join("main.rs").exists() || path.join("lib.rs").exists();
-    let programs = folders("tools").into_iter().chain(folders("tests")).filter(roots);
+    let programs = folders("tests").into_iter().filter(roots);
     let (mut found, mut files, mut arrows) = (BTreeMap::new(), 0, 0);
     for folder in programs.chain(["python/src", "studies"].map(|folder| root().join(folder))) {
         let house = House::of_folder(&folder);

@@ -279,9 +279,8 @@ fn no_line_of_a_comment_is_longer_than_120_letters() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut long = Vec::new();
     let mut comments = 0;
-    for path in ["crates", "src", "tests", "tools", "studies", "python", "examples"]
-        .iter()
-        .flat_map(|at| rust_files(&root.join(at)))
+    for path in
+        ["crates", "src", "tests", "studies", "python", "examples"].iter().flat_map(|at| rust_files(&root.join(at)))
     {
         let text = fs::read_to_string(&path).unwrap();
         let mut is_code = false;

@@ -33,8 +33,7 @@ const RUN_ELSEWHERE: [&str; 2] = ["docs/gallery.md", "docs/first-part.md"];
 const ROUNDING: f64 = 1e-9;
 
 /// Folders whose files documents name.
-pub const FOLDERS: [&str; 9] =
-    ["crates", "src", "tests", "tools", "studies", "examples", "python", "reference", "distributed"];
+pub const FOLDERS: [&str; 8] = ["crates", "src", "tests", "studies", "examples", "python", "reference", "distributed"];
 
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

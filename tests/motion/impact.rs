@@ -6,7 +6,7 @@
 //! REFERENCE: waves in bars (`closed_forms::ImpactingBar`, `closed_forms::BouncingBar`).
 
 use signorini::motion::{DynamicProblem, Integrator, Scheme, SchemeSpec, TimeFunction};
-use signorini::{ContactProblem, Error, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix, qp};
+use signorini::{ContactProblem, Error, Scene, Settings, SparseMatrix, SymmetricMatrix, qp};
 use support::impact::cases::cases;
 use support::impact::measure::run;
 
@@ -202,38 +202,6 @@ fn a_motion_goes_on_with_the_forces_of_the_displacement_and_velocity_of_its_stat
     // The midpoint rule preserves the energy from there on.
     integrator.advance().unwrap();
     assert!((integrator.observe().energy() - 5.0).abs() < 1e-14);
-}
-
-#[test]
-fn a_factor_in_single_precision_gives_the_same_motion() {
-    // A block that is thrown upwards against a parabola.
-    let axis = serde_json::json!({"points": [0, 1], "divisions": [16]});
-    let scene = serde_json::json!({
-        "body": {"rectangle": {"x": axis, "y": axis}},
-        "material": {"young": 1000, "poisson": 0.3, "density": 1},
-        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
-        "obstacles": [
-            {"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 1], "radius": 2}}}],
-        "analysis": {"dynamic": {
-            "duration": 1, "initial": [{"velocity": {"value": [0, 0], "gradient": [[0, 0], [0, 5]]}}]}}
-    });
-    let scene = Scene::from_json(&scene.to_string(), "scene").unwrap();
-    let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
-    let [double, mixed] = [Precision::Double, Precision::Mixed].map(|precision| {
-        let mut settings = Settings::default();
-        settings.precision = precision;
-        let mut integrator =
-            Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings).unwrap();
-        for _ in 0..20 {
-            integrator.advance().unwrap();
-        }
-        assert!(integrator.observe().closed > 0);
-        integrator.state().displacement.clone()
-    });
-    let largest = double.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
-    let apart = double.iter().zip(&mixed).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-    // Every step is refined to the rounding of double precision; the rounding differs.
-    assert!(apart > 0.0 && apart <= 1e-9 * largest, "{apart} of {largest}");
 }
 
 /// GOAL: a mass that bounces off a wall with a restitution.

@@ -138,7 +138,7 @@ fn options_without_effect_are_refused() {
     for option in [
         &["--total-error", "0.1"][..],
         &["--accuracy", "1e-3"],
-        &["--precision", "mixed"],
+        &["--precision", "double"],
         &["--no-proof"],
         &["--extrapolate"],
         &["--explain"],

@@ -1,4 +1,4 @@
-//! The QP: methods, certificate, bound, proofs, condensation and precision, on raw problems and small scenes.
+//! The QP: methods, certificate, bound, proofs and condensation, on raw problems and small scenes.
 
 mod certificate;
 mod claims;
@@ -18,7 +18,6 @@ mod methods;
 mod modes;
 mod obstacle_problems;
 mod penalty_ladder;
-mod precision;
 mod promises;
 mod proven_set;
 mod separate_parts;

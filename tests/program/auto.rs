@@ -2,7 +2,7 @@
 //! reached.
 
 use serde_json::json;
-use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
+use signorini::qp::{Condense, Method, Prepared, Settings};
 use signorini::{ContactProblem, Solution, qp, solve};
 use std::time::Duration;
 use support::program::{Desk, example, examples};
@@ -25,16 +25,11 @@ fn an_accuracy_is_reached_and_certified() {
         let problem = problem(&name);
         let exact = solve(&problem, &Settings::with_method(Method::ActiveSet)).unwrap();
         for accuracy in [1e-1, 1e-2, 1e-4, 1e-8, 1e-12] {
-            for precision in [Precision::Auto, Precision::Double, Precision::Mixed] {
-                let mut settings = Settings::for_accuracy(accuracy);
-                settings.precision = precision;
-                let found = solve(&problem, &settings).unwrap();
-                let bound = found.certificate.energy_error_bound;
-                // If no bound is known, the conditions decide, to the tolerance.
-                assert!(bound <= accuracy || (bound.is_infinite() && found.certificate.meets(1e-9)), "{name}");
-                assert!(error(&problem, &found, &exact) <= accuracy, "{name}, {accuracy:e}");
-                assert!(precision != Precision::Double || !found.single_precision);
-            }
+            let found = solve(&problem, &Settings::for_accuracy(accuracy)).unwrap();
+            let bound = found.certificate.energy_error_bound;
+            // If no bound is known, the conditions decide, to the tolerance.
+            assert!(bound <= accuracy || (bound.is_infinite() && found.certificate.meets(1e-9)), "{name}");
+            assert!(error(&problem, &found, &exact) <= accuracy, "{name}, {accuracy:e}");
         }
     }
 }
@@ -115,8 +110,9 @@ fn the_command_line_takes_accuracy_time_precision_and_extrapolation() {
     assert!(text.contains("certified to 1.0e-4, each relative"), "{text}");
     let json = run(&["--accuracy", "1e-4", "--format", "json"]).ends_with(0).json();
     assert_eq!((json["status"].as_str(), json["accuracy"].as_f64()), (Some("certified"), Some(1e-4)));
-    let text = run(&["--precision", "mixed"]).ends_with(0).stdout;
-    assert!(text.contains("factor in single precision"), "{text}");
+    run(&["--precision", "double"]).ends_with(0);
+    let refused = run(&["--precision", "mixed"]).ends_with(2).stderr;
+    assert!(refused.contains("single precision are gone") && refused.contains("take the method mprgp"), "{refused}");
     let text = run(&["--method", "penalty", "--accuracy", "1e-3"]).ends_with(0).stdout;
     assert!(text.contains("the penalty went up to"), "{text}");
     let text = run(&["--method", "penalty", "--extrapolate", "--accuracy", "1e-6"]).ends_with(0).stdout;

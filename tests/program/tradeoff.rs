@@ -22,7 +22,7 @@ fn errors_fall_with_the_tolerance_and_with_the_penalty() {
         for condensed in [true, false] {
             let of = |method: &str| -> Vec<&TradeoffPoint> {
                 let is_meant = |point: &&TradeoffPoint| {
-                    point.mesh == mesh && point.condensed == condensed && !point.mixed && point.method == method
+                    point.mesh == mesh && point.condensed == condensed && point.method == method
                 };
                 result.points.iter().filter(is_meant).collect()
             };
@@ -41,15 +41,6 @@ fn errors_fall_with_the_tolerance_and_with_the_penalty() {
             }
         }
     }
-    // A factor in single precision is refined to the requested accuracy or, without a request, to the answer of double
-    // precision.
-    let mixed: Vec<&TradeoffPoint> = result.points.iter().filter(|point| point.mixed).collect();
-    assert!(mixed.iter().all(|point| point.condensed));
-    let active = |point: &&&TradeoffPoint| point.method == "active-set";
-    assert!(mixed.iter().filter(active).all(|point| point.energy_error <= point.knob.unwrap_or(1e-12)));
-    assert!(
-        mixed.iter().any(|point| point.method == "active-set" && point.knob.is_none() && point.energy_error < 1e-12)
-    );
     for point in &result.points {
         assert!(point.seconds > 0.0 && point.energy_error.is_finite());
         assert!(point.energy_error <= point.energy_error_bound + 1e-12, "{point:?}");

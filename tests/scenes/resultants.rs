@@ -328,7 +328,7 @@ fn missing_advice_on_tolerance_and_mesh_names_its_reason() {
     summary.discretisation_error = Some(0.1);
     assert!(advice(&summary).contains("only a finer mesh improves the answer"));
     summary.solution.certificate.energy_error_bound = 0.5;
-    assert!(advice(&summary).contains("tighten the tolerance before the mesh is refined"));
+    assert!(advice(&summary).contains("tighten the tolerance, then refine the mesh"));
     summary.solution.certificate.energy_error_bound = f64::INFINITY;
     assert!(
         advice(&summary).contains("no advice on tolerance and mesh: the answer has no error bound"),

@@ -66,7 +66,7 @@ pub use method::{Ending, Outcome, Start};
 pub use petsc::Layout as PetscLayout;
 pub use prepared::{BoundarySolution, Path, Prepared};
 pub use problem::ContactProblem;
-pub use settings::{Condense, Method, Precision, Settings};
+pub use settings::{Condense, Method, Settings};
 pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution, Why};
 pub use watch::{Activity, Part, Watch};
 
@@ -236,7 +236,7 @@ impl ContactProblem {
             examine(&Bounding::OwnFactor)
         } else {
             match engine::Hierarchical::new(self, settings) {
-                Ok(hierarchical) => examine(&hierarchical.bounding(&settings.watch, 0.0)),
+                Ok(hierarchical) => examine(&hierarchical.bounding(&settings.watch)),
                 // A dof without stiffness, or a direction of negative energy, has no hierarchy.
                 Err(error) if error.leaves_existence_open() => examine(&Bounding::Nothing),
                 Err(error) => Err(error),

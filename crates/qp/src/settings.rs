@@ -24,8 +24,8 @@ const PENETRATION: f64 = 100.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The program chooses, by rules fitted to measured times; MPRGP if the factor of a body in space would cost much
-    /// more, or does not fit into [`Settings::memory`].
+    /// The program chooses by costs: the active set with a factor, or MPRGP if the factor of a body in space would cost
+    /// much more, or does not fit into [`Settings::memory`].
     #[default]
     Auto,
     /// Convex QP by Clarabel; the active-set loop settles its contact set unless [`InteriorPoint::polish`] is `false`.
@@ -90,20 +90,6 @@ pub enum Condense {
     Never,
 }
 
-/// Precision of the sparse factor; matrices, answers and certificates are always in double precision.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Precision {
-    /// Double, unless [`Method::Auto`] has an accuracy that single precision reaches in less time.
-    #[default]
-    Auto,
-    /// 8 bytes for each value of the factor, and no refinement.
-    Double,
-    /// Single precision with half the memory, and an answer refined in double precision; if the problem is not
-    /// condensed, or too ill-conditioned, the factor is in double precision after all.
-    Mixed,
-}
-
 /// The tolerance that every finite error meets.
 const ANY_FINITE: f64 = f64::MAX;
 
@@ -155,8 +141,6 @@ pub struct Settings {
     /// multigrid on 50,000 dofs or more those of the machine, 8 at most, which many problems share as well. They change
     /// no bit of an answer.
     pub threads: Option<usize>,
-    /// Precision of the sparse factor of the stiffness.
-    pub precision: Precision,
     /// Tolerance of the certificate, relative: what `Ok` promises. With `None` every finite error will do.
     pub tolerance: Option<f64>,
     /// Relative error in the energy norm that is good enough: if a bound is known, `Ok` promises that it is below, and
@@ -185,7 +169,6 @@ impl Default for Settings {
             method: Method::Auto,
             condense: Condense::Auto,
             threads: None,
-            precision: Precision::Auto,
             tolerance: Some(1e-9),
             accuracy: None,
             prove: false,
@@ -198,6 +181,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The answer to those who ask for a factor in single precision, which was slower than one in double precision
+    /// wherever it was measured.
+    pub const NO_SINGLE_PRECISION: &str = "factors in single precision are gone: they were slower than in double precision; for less \
+                                           memory take the method mprgp";
+
     /// The defaults with another method.
     pub fn with_method(method: Method) -> Self {
         Settings { method, ..Settings::default() }
@@ -226,8 +214,7 @@ impl Settings {
     /// The same for a regular problem that a question about another one gives rise to: by sets of rows, without a
     /// proof.
     pub(crate) fn of_question(&self) -> Self {
-        let (method, precision) = (Method::ActiveSet, Precision::Double);
-        Settings { method, precision, accuracy: None, prove: false, ..self.clone() }
+        Settings { method: Method::ActiveSet, accuracy: None, prove: false, ..self.clone() }
     }
 
     /// The same with a tolerance of the certificate, relative.
@@ -265,11 +252,6 @@ impl Settings {
     /// The same with a number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         Settings { threads: Some(threads), ..self }
-    }
-
-    /// The same with a precision of the factor.
-    pub fn with_precision(self, precision: Precision) -> Self {
-        Settings { precision, ..self }
     }
 
     /// The same with a rule for condensation.

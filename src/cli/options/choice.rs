@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::output::{Medium, Pictures};
-use crate::qp::{Method, Precision};
+use crate::qp::{Method, Settings};
 
 /// A choice of the library by its name on the command line.
 pub(super) trait Choice: Copy + Send + Sync + 'static {
@@ -23,6 +23,15 @@ pub(super) fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
     })
 }
 
+/// Takes the precision of a factor, of which one is left.
+pub(super) fn precision(name: &str) -> Result<(), String> {
+    match name {
+        "auto" | "double" => Ok(()),
+        "mixed" => Err(Settings::NO_SINGLE_PRECISION.into()),
+        _ => Err("it must be double".into()),
+    }
+}
+
 impl Choice for Method {
     const ALL: &[Self] = &[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
 
@@ -35,18 +44,6 @@ impl Choice for Method {
             _ => "The program chooses",
         };
         (self.name(), help)
-    }
-}
-
-impl Choice for Precision {
-    const ALL: &[Self] = &[Precision::Auto, Precision::Double, Precision::Mixed];
-
-    fn in_words(self) -> (&'static str, &'static str) {
-        match self {
-            Precision::Double => ("double", "Double precision"),
-            Precision::Mixed => ("mixed", "Single precision, half the memory, refined in double precision"),
-            _ => ("auto", "Double, unless single precision reaches the requested --accuracy sooner"),
-        }
     }
 }
 

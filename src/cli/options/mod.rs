@@ -13,9 +13,9 @@ use clap_complete::Shell;
 use super::line::{Line, parse_line};
 use super::memory::parse_size;
 use crate::output::{Medium, Pictures, Wanted};
-use crate::qp::{Method, Precision};
+use crate::qp::Method;
 use crate::study::TotalErrorGoal;
-use choice::choice;
+use choice::{choice, precision};
 use limits::DeckOptions;
 pub(super) use limits::Limits;
 
@@ -188,9 +188,9 @@ pub(super) struct Solve {
     /// Start from the answer that an earlier run with --out wrote into this folder (u.mtx, lambda.mtx)
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["total_error", "resume"])]
     pub start: Option<PathBuf>,
-    /// Precision of the sparse factor
-    #[arg(long, value_parser = choice::<Precision>(), default_value = "auto")]
-    pub precision: Precision,
+    /// Precision of the sparse factor, which is double
+    #[arg(long, hide = true, value_parser = precision)]
+    pub precision: Option<()>,
     /// Do not prove which rows are open and closed
     #[arg(long)]
     pub no_proof: bool,

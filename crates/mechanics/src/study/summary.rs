@@ -93,7 +93,7 @@ pub struct Summary {
 }
 
 /// The entries of a summary that planes of symmetry leave of the meshed part. All other numbers are of the whole body.
-pub(crate) const OF_MESHED_PART: [&str; 16] = [
+pub(crate) const OF_MESHED_PART: [&str; 15] = [
     "certificate",
     "contact.count",
     "contact.force_balance",
@@ -108,7 +108,6 @@ pub(crate) const OF_MESHED_PART: [&str; 16] = [
     "refinements",
     "seconds",
     "segments",
-    "single_precision",
     "why",
 ];
 

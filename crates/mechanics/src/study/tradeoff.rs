@@ -11,8 +11,7 @@ use super::warnings::check_approach;
 use crate::error::Error;
 use crate::scene::{Answer, Scene};
 use signorini_qp::{
-    Condense, ContactProblem, InteriorPoint, Method, Penalty, Precision, Prepared, Settings, Solution, Watch, dot,
-    solve,
+    Condense, ContactProblem, InteriorPoint, Method, Penalty, Prepared, Settings, Solution, Watch, dot, solve,
 };
 
 /// Tolerances of the interior point.
@@ -95,13 +94,11 @@ pub struct TradeoffPoint {
     pub mesh: usize,
     /// `qp`, `qp, polished`, `active-set`, `mprgp` or `penalty`.
     pub method: &'static str,
-    /// Tolerance of the interior point, last penalty of the ladder over the local stiffness, or accuracy of the
-    /// refinement or of the cycles; `None` if the method has no such setting.
+    /// Tolerance of the interior point, last penalty of the ladder over the local stiffness, or accuracy of the cycles;
+    /// `None` if the method has no such setting.
     pub knob: Option<f64>,
     /// `true` if the problem was condensed onto its contact boundary.
     pub condensed: bool,
-    /// `true` if the factor was in single precision and the answer refined.
-    pub mixed: bool,
     /// The fastest run, in seconds, from the checked problem to the answer at the tolerance of the method.
     pub seconds: f64,
     /// Wall-clock time of recomputing the conditions and the bound, in seconds; not part of `seconds`.
@@ -262,10 +259,9 @@ impl Measured<'_> {
             Err(_) if watch.acknowledge() => return Ok(None),
             solved => solved?,
         };
-        let mut ways = ways(Condense::Auto, Precision::Double);
-        ways.extend(self::ways(Condense::Auto, Precision::Mixed));
+        let mut ways = ways(Condense::Auto);
         if self.problem.dofs() <= grid.most_full_dofs {
-            ways.extend(self::ways(Condense::Never, Precision::Double));
+            ways.extend(self::ways(Condense::Never));
         }
         ways.extend(multigrid_ways());
         ways.iter_mut().for_each(|way| way.settings = watched(way.settings.clone()));
@@ -292,7 +288,6 @@ impl Measured<'_> {
             method: way.method,
             knob: way.knob,
             condensed: solution.condensed_dofs < self.problem.dofs(),
-            mixed: way.settings.precision == Precision::Mixed,
             seconds: *seconds,
             certificate_seconds: solution.seconds.certificate,
             proof_seconds: solution.seconds.proof,
@@ -315,17 +310,11 @@ struct Way {
     settings: Settings,
 }
 
-/// Every way to an answer with this condensation and precision.
-fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
-    let base = |method| {
-        let mut settings = Settings::with_method(method);
-        (settings.condense, settings.precision) = (condense, precision);
-        settings
-    };
+/// Every way to an answer with this condensation.
+fn ways(condense: Condense) -> Vec<Way> {
+    let base = |method| Settings::with_method(method).with_condensation(condense);
     let mut ways = Vec::new();
-    let mixed = precision == Precision::Mixed;
-    // The error of an interior point is larger than that of single precision.
-    for (method, polish) in [("qp", false), (POLISHED, true)].into_iter().filter(|way| way.1 || !mixed) {
+    for (method, polish) in [("qp", false), (POLISHED, true)] {
         for tolerance in TOLERANCES {
             let settings = base(Method::Qp(InteriorPoint { polish, tolerance }));
             // A loose answer is judged only by its own tolerance: otherwise it would be refined again, and the time
@@ -335,10 +324,6 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
         }
     }
     ways.push(Way { method: "active-set", knob: None, settings: base(Method::ActiveSet) });
-    for accuracy in WANTED.into_iter().filter(|_| mixed) {
-        let settings = base(Method::ActiveSet).with_accuracy(accuracy);
-        ways.push(Way { method: "active-set", knob: Some(accuracy), settings });
-    }
     for last in PENALTIES {
         let ladder = Penalty { last, penetration_threshold: 0.0, ..Penalty::default() };
         let settings = base(Method::Penalty(ladder)).without_tolerance();
@@ -367,8 +352,7 @@ struct Timed {
 /// The answer of each way, certified or not, and the seconds of its fastest runs. All ways run once before any runs
 /// again, so that other work on the machine affects them equally.
 ///
-/// The answer is `None` if the precision does not suffice, if multigrid cannot solve the problem, or if `watch` was
-/// asked to stop before the way was run.
+/// The answer is `None` if multigrid cannot solve the problem, or if `watch` was asked to stop before the way was run.
 fn timed(problem: &ContactProblem, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<Timed>>, Error> {
     let run = |number: usize, way: &Way| {
         if watch.acknowledge() {
@@ -382,18 +366,15 @@ fn timed(problem: &ContactProblem, ways: &[Way], runs: usize, watch: &Watch) -> 
             // An interrupted run gives no measurement.
             return Ok(None);
         }
-        let mixed = way.settings.precision == Precision::Mixed;
         let by_cycles = way.settings.method == Method::Mprgp;
         let solution = match solved {
             Ok(solution) => solution,
             Err(qp::Error::NotCertified { solution, .. }) => *solution,
-            Err(qp::Error::Numerical { .. }) if mixed => return Ok(None),
             Err(_) if by_cycles => return Ok(None),
             Err(error) => return Err(Error::from(error)),
         };
         let of_method = seconds - solution.seconds.certificate - solution.seconds.proof;
-        let timed = Timed { solution, seconds: of_method, second: f64::INFINITY };
-        Ok((by_cycles || timed.solution.single_precision == mixed).then_some(timed))
+        Ok(Some(Timed { solution, seconds: of_method, second: f64::INFINITY }))
     };
     let mut fastest = ways.iter().enumerate().map(|(index, way)| run(index, way)).collect::<Result<Vec<_>, Error>>()?;
     for round in 1..MOST_RUNS * runs {

@@ -25,7 +25,6 @@ function tradeoffSection(page, data, still) {
       dash: name.includes("all dofs") ? "6 4" : "none",
       marks: true,
       focus: true,
-      hollow: name.includes("mixed"),
       points: points.filter(point => nameOf(point) === name).map(placed),
     }));
     const front = points.filter(point => point.best).sort((a, b) => a.seconds - b.seconds),
@@ -59,7 +58,7 @@ function methodOf(name) {
 }
 
 function nameOf(point) {
-  return point.scheme ?? `${point.method}, ${point.condensed ? "contact" : "all"} dofs${point.mixed ? ", mixed" : ""}`;
+  return point.scheme ?? `${point.method}, ${point.condensed ? "contact" : "all"} dofs`;
 }
 
 function wordsOf(point) {

@@ -51,11 +51,8 @@ pub(crate) fn solve_text(title: &str, summary: &Summary, units: &Units) -> Strin
         condensed => format!(", condensed to {condensed} dofs"),
     };
     lines("method", vec![format!("{}, {}{unknowns}", solution.method, plural(solution.iterations, "iteration"))]);
-    let precision = solution.single_precision.then(|| "factor in single precision".to_string());
-    let refined = (solution.refinements > 0).then(|| plural(solution.refinements, "refinement"));
-    let words: Vec<String> = precision.into_iter().chain(refined).collect();
-    if !words.is_empty() {
-        lines("", vec![words.join(", ")]);
+    if solution.refinements > 0 {
+        lines("", vec![plural(solution.refinements, "refinement")]);
     }
     if !solution.reason.is_empty() {
         lines("", vec![solution.reason.clone()]);
@@ -348,7 +345,7 @@ fn mesh_text(summary: &Summary, units: &Units) -> String {
     if bound < of_mesh * FAR_BELOW {
         text += &entry("", "the error of the solver is far smaller: only a finer mesh improves the answer");
     } else if bound.is_finite() && bound > of_mesh {
-        text += &entry("", "the error of the solver may be larger: tighten the tolerance before the mesh is refined");
+        text += &entry("", "the error of the solver may be larger: tighten the tolerance, then refine the mesh");
     }
     text
 }

@@ -29,7 +29,7 @@ pub(crate) fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
     text += &format!(
         "\nEach time is the fastest of at least {}, from the data to the answer; certificate and proof have \
          columns of their own.\n\
-         A setting is the tolerance of the interior point, the accuracy of multigrid or of a mixed factor, the last penalty over the \
+         A setting is the tolerance of the interior point, the accuracy of multigrid, the last penalty over the \
          local stiffness.\nA star: no other row is both faster and as accurate.\n",
         plural(tradeoff.runs, "run")
     );
@@ -42,11 +42,10 @@ pub(crate) fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
 }
 
 /// The columns of the printed points of a trade-off.
-const COLUMNS: [Column<TradeoffPoint>; 12] = [
+const COLUMNS: [Column<TradeoffPoint>; 11] = [
     ("method", &|point| format!("{}{}", point.method, if point.best { " *" } else { "" })),
     ("setting", &|point| point.knob.map_or_else(|| "-".to_string(), |knob| format!("{knob:.0e}"))),
     ("unknowns", &|point| unknowns(point).to_string()),
-    ("precision", &|point| precision(point).to_string()),
     ("seconds", &|point| format!("{:.5}", point.seconds)),
     ("certificate", &|point| number(point.certificate_seconds)),
     ("proof", &|point| number(point.proof_seconds)),
@@ -64,10 +63,6 @@ pub(crate) fn unknowns(point: &TradeoffPoint) -> &'static str {
     if point.condensed { "contact" } else { "all" }
 }
 
-fn precision(point: &TradeoffPoint) -> &'static str {
-    if point.mixed { "mixed" } else { "double" }
-}
-
 /// A method with its settings in words.
 fn way(point: &TradeoffPoint) -> String {
     let named = match (point.method, point.knob) {
@@ -75,8 +70,7 @@ fn way(point: &TradeoffPoint) -> String {
         ("penalty", Some(knob)) => format!(" up to {knob:.0e} times the stiffness"),
         (_, Some(knob)) => format!(" to {knob:.0e}"),
     };
-    let mixed = if point.mixed { ", mixed precision" } else { "" };
-    format!("{}{named} on {} dofs{mixed}", point.method, unknowns(point))
+    format!("{}{named} on {} dofs", point.method, unknowns(point))
 }
 
 fn advice(tradeoff: &Tradeoff) -> String {
@@ -160,7 +154,6 @@ pub(crate) fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
             ("method", &|(_, point)| format!("\"{}\"", point.method)),
             ("knob", &|(_, point)| given(point.knob)),
             ("unknowns", &|(_, point)| unknowns(point).to_string()),
-            ("precision", &|(_, point)| precision(point).to_string()),
             ("seconds", &|(_, point)| format!("{:e}", point.seconds)),
             ("certificate_seconds", &|(_, point)| format!("{:e}", point.certificate_seconds)),
             ("proof_seconds", &|(_, point)| format!("{:e}", point.proof_seconds)),

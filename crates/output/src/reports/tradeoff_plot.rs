@@ -21,8 +21,7 @@ const MOST_CURVES: usize = 6;
 const NEARLY: f64 = 1.05;
 
 fn way(point: &TradeoffPoint) -> String {
-    let mixed = if point.mixed { ", mixed" } else { "" };
-    format!("{}, {} dofs{mixed}", point.method, unknowns(point))
+    format!("{}, {} dofs", point.method, unknowns(point))
 }
 
 /// The points of each way, in the order of the ways.
@@ -80,8 +79,7 @@ pub(crate) fn tradeoff_plot(medium: Medium, title: &str, tradeoff: &Tradeoff) ->
 pub(crate) fn total_error_plot(medium: Medium, title: &str, tradeoff: &Tradeoff) -> Drawing {
     let near = |point: &&TradeoffPoint| {
         let of_mesh = tradeoff.meshes.get(point.mesh).and_then(|mesh| mesh.discretisation_error);
-        let is_near = of_mesh.zip(point.total_error).is_some_and(|(of_mesh, total)| total <= NEARLY * of_mesh);
-        is_near && !point.mixed
+        of_mesh.zip(point.total_error).is_some_and(|(of_mesh, total)| total <= NEARLY * of_mesh)
     };
     let mut ways = by_way(tradeoff.points.iter().filter(near));
     for (_, points) in &mut ways {

@@ -6,7 +6,7 @@ use super::springs::Springs;
 use crate::error::Error;
 use crate::linear::{
     Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, exponent,
-    generic, if_definite, ldexp,
+    if_definite, ldexp,
 };
 use crate::watch::Watch;
 
@@ -16,12 +16,6 @@ const LARGEST_SHARE: f64 = 0.25;
 /// Up to this number, contact dofs are ordered last whatever their share: their dense matrices cost less than a
 /// millisecond.
 const FEW_DOFS: usize = 100;
-
-/// The true contraction may be larger than the measured one by this factor.
-const MEASURED: f64 = 10.0;
-
-/// Steps of the power method for a contraction.
-const POWER_STEPS: usize = 3;
 
 /// Rounding of a sweep, relative, over the smallest pivot.
 const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
@@ -46,8 +40,6 @@ pub(crate) struct EnergyNorm {
     pub(super) boundary: Option<Arc<Boundary>>,
     /// Rows whose compliance the method knows.
     pub(super) known: Option<Arc<Known>>,
-    /// Factor by which a bound in this norm is multiplied, because the factor is not exactly that of K.
-    pub(super) widening: f64,
     /// The springs that made a singular K definite.
     pub(super) springs: Option<Arc<Springs>>,
     /// The dofs without stiffness, in which the matrix has a stiffness of one, if these made K singular.
@@ -140,7 +132,7 @@ impl EnergyNorm {
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
         let watch = Watch::default();
-        EnergyNorm { cholesky, equilibration, boundary, known: None, widening: 1.0, springs: None, loose: None, watch }
+        EnergyNorm { cholesky, equilibration, boundary, known: None, springs: None, loose: None, watch }
     }
 
     /// The same norm with the compliance of the rows `contact`, if it serves balances of forces: the rows are `scaled`
@@ -178,29 +170,6 @@ impl EnergyNorm {
     /// Returns `true` if the time for a bound is over.
     pub(super) fn is_over(&self) -> bool {
         self.watch.is_over()
-    }
-
-    /// The same norm, for a factor K~ with this measured contraction `|I - K~^-1 K|`.
-    pub fn off_by(&self, contraction: f64) -> Self {
-        EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }
-    }
-
-    /// An estimate from below of `|I - K~^-1 K|` for this factor K~ and the stiffness K: by some steps of the power
-    /// method, since the steps of a refinement may be too few, or too short, to show it.
-    pub fn contraction(&self, stiffness: &SymmetricMatrix) -> f64 {
-        let (mut vector, mut contraction) = (generic(self.cholesky.dim(), 0), 0.0_f64);
-        let size = |vector: &[f64]| dot(vector, &stiffness.mul(vector)).max(0.0).sqrt();
-        for _ in 0..POWER_STEPS {
-            let length = size(&vector);
-            let kept = self.displacement(&stiffness.mul(&vector));
-            vector.iter_mut().zip(kept).for_each(|(value, kept)| *value -= kept);
-            let left = size(&vector);
-            if left == 0.0 {
-                break;
-            }
-            contraction = contraction.max(left / length);
-        }
-        contraction
     }
 
     /// Relative rounding of a norm that comes from sweeps through the factor: some units in the last place over the
@@ -338,32 +307,6 @@ mod tests {
 
     fn norm(stiffness: &SymmetricMatrix) -> EnergyNorm {
         EnergyNorm::of(stiffness, &SparseMatrix::from_triplets(0, 2, &[]).unwrap()).unwrap().unwrap()
-    }
-
-    #[test]
-    fn the_contraction_of_a_factor_is_measured_and_widens_the_bounds_tenfold() {
-        let stiffness = pair(4.0, 0.5);
-        assert!(norm(&stiffness).contraction(&stiffness) < 1e-15);
-        // I - K~^-1 K is one half for K~ = 2 K, and -1 for K~ = K / 2.
-        for (other, contraction) in [(8.0, 0.5), (2.0, 1.0)] {
-            let found = norm(&pair(other, 0.5)).contraction(&stiffness);
-            assert!((found - contraction).abs() < 1e-14, "{other}: {found}");
-        }
-        // For K~ = K + diag(e) on the diagonal only e / (4 + e) of the softest motion is missing at most.
-        let found = norm(&pair(4.0 / 0.9, 0.45)).contraction(&stiffness);
-        let (soft, stiff): (f64, f64) = (1.0 - 2.0 / (4.0 / 0.9 * 0.55), 1.0 - 6.0 / (4.0 / 0.9 * 1.45));
-        // Each step multiplies the component along (1, 1), of stiffness 2, by the one factor, and that along (1, -1),
-        // of 6, by the other.
-        let start = generic(2, 0);
-        let energy = |steps: i32| {
-            let (along, across) = ((start[0] + start[1]) * soft.powi(steps), (start[0] - start[1]) * stiff.powi(steps));
-            2.0 * along * along + 6.0 * across * across
-        };
-        let step = |steps: usize| (energy(steps as i32) / energy(steps as i32 - 1)).sqrt();
-        let exact = (1..=POWER_STEPS).map(step).fold(0.0, f64::max);
-        assert!((found - exact).abs() < 1e-14 && found <= soft, "{found} {exact} {soft}");
-        assert_eq!(norm(&stiffness).off_by(0.25).widening, 1.0 + MEASURED * 0.25);
-        assert_eq!(norm(&stiffness).widening, 1.0);
     }
 
     #[test]

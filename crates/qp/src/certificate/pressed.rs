@@ -90,7 +90,7 @@ impl Travel {
         let rough = compliance.reach_at_once().unwrap_or_else(|| vec![f64::INFINITY; body.rows()]);
         let place = |&(row, c): &(usize, f64)| -violation[row] / c;
         let nearest = self.rows.iter().map(place).fold(f64::INFINITY, f64::min);
-        let mut off: Vec<f64> = self.rows.iter().map(|&(row, c)| norm.widening * error * rough[row] / c).collect();
+        let mut off: Vec<f64> = self.rows.iter().map(|&(row, c)| error * rough[row] / c).collect();
         let candidates = |off: &[f64]| -> Vec<usize> {
             let surely = self.rows.iter().zip(off).map(|(row, off)| place(row) + off).fold(f64::INFINITY, f64::min);
             (0..off.len()).filter(|&index| place(&self.rows[index]) - off[index] <= surely).collect()
@@ -99,7 +99,7 @@ impl Travel {
         if first.len() <= MOST_SWEPT {
             for &index in &first {
                 let (row, c) = self.rows[index];
-                off[index] = off[index].min(norm.widening * error * compliance.reach(row) / c);
+                off[index] = off[index].min(error * compliance.reach(row) / c);
             }
         }
         let unsure = candidates(&off).into_iter().map(|index| off[index]).fold(0.0, f64::max);

@@ -109,20 +109,18 @@ impl ContactProblem {
         let found = || self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier).evidence;
         let Evidence { residual, violation, error, .. } = evidence.or_else(found)?.bounded()?;
         let answer = Answer { displacement, multiplier, residual, violation, rounding: 0.0 };
-        let widening = norm.widening;
         let compliance = ComplianceFactor::of(self, norm);
-        let wide_error = widening * error;
         // One solve saves sweeps.
         let at_once = || compliance.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
         let reach = if norm.is_over() { None } else { at_once() }.unwrap_or_else(|| self.any_reach());
-        let mut open = self.open_by(&answer, wide_error, &reach);
+        let mut open = self.open_by(&answer, error, &reach);
         let least = self.least_reach();
-        let limits = self.distances(&answer).into_iter().map(|distance| distance / wide_error).enumerate();
+        let limits = self.distances(&answer).into_iter().map(|distance| distance / error).enumerate();
         let is_doubtful = |&(row, limit): &(usize, f64)| limit > least[row] && !open.contains(row);
         let doubtful: Vec<(usize, f64)> = limits.filter(is_doubtful).collect();
         self.within_reach(norm, &compliance, &doubtful).into_iter().for_each(|row| open.insert(row));
-        let of_force = ROUNDED_BOUND * widening * norm.of_force(&self.unbalanced(&answer, &open).force);
-        let imbalance = widening * (of_force + error);
+        let of_force = ROUNDED_BOUND * norm.of_force(&self.unbalanced(&answer, &open).force);
+        let imbalance = of_force + error;
         let mut closed = self.closed_alone(&answer, &open, imbalance);
         let in_question: Vec<usize> = (0..self.rows()).filter(|&row| !open.contains(row)).collect();
         let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.contains(*row);

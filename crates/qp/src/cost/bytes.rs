@@ -51,15 +51,15 @@ pub(crate) fn of_hierarchy(dofs: f64, entries: f64) -> f64 {
     OF_HIERARCHY[0] * dofs + OF_HIERARCHY[1] * entries
 }
 
-/// Bytes of a Cholesky factor with this number of `values` of `size` bytes each, and of its workspace.
-pub(crate) fn of_factor(values: f64, size: usize) -> f64 {
-    WORKSPACE * size as f64 * values
+/// Bytes of a Cholesky factor with this number of `values`, and of its workspace.
+pub(crate) fn of_factor(values: f64) -> f64 {
+    WORKSPACE * size_of::<f64>() as f64 * values
 }
 
 /// Bytes of the same if a factor before it was released, whose memory may not serve it.
 pub(crate) fn of_next_factor(values: f64) -> f64 {
     let size = size_of::<f64>();
-    of_factor(values, size) + (size as f64 * values).min(MOST_KEPT)
+    of_factor(values) + (size as f64 * values).min(MOST_KEPT)
 }
 
 /// Bytes of the dense matrices on this number of contact dofs.
@@ -73,7 +73,7 @@ const WITH_SPRINGS: f64 = 3.0;
 
 /// Bytes of the factors of a singular stiffness with springs, and of its copies.
 pub(crate) fn of_springs(values: f64, entries: f64) -> f64 {
-    WITH_SPRINGS * of_factor(values, size_of::<f64>()) + 2.0 * OF_ENTRY * entries
+    WITH_SPRINGS * of_factor(values) + 2.0 * OF_ENTRY * entries
 }
 
 /// Bytes of the dense triangle on this number of contact dofs that come last in a factor of all dofs.

@@ -2,7 +2,7 @@
 
 use super::seconds::{self, factor_seconds};
 use super::smooth::Smooth;
-use crate::linear::{Fill, Width};
+use crate::linear::Fill;
 use crate::problem::ContactProblem;
 use crate::transform::Condensation;
 
@@ -43,9 +43,7 @@ impl BodyFactor {
     pub fn by_size(problem: &ContactProblem) -> Self {
         let dofs = problem.dofs() as f64;
         let (entries, seconds) = match problem.near_null().map(|near_null| near_null.count()) {
-            Some(1) if is_line(problem) => {
-                (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize, Width::Double))
-            }
+            Some(1) if is_line(problem) => (ALONG_A_LINE * dofs, factor_seconds(0.0, ALONG_A_LINE * dofs)),
             Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 7.7e-10 * dofs.powi(2)),
             _ => (6.0 * dofs * dofs.max(2.0).log2(), in_the_plane(problem)),
         };
@@ -61,7 +59,7 @@ impl BodyFactor {
         let Some(fill) = in_space.then(|| Fill::by_minimum_degree(problem.stiffness()).ok()).flatten() else {
             return by_size;
         };
-        let seconds = factor_seconds(fill.multiplications, fill.entries as usize, Width::Double);
+        let seconds = factor_seconds(fill.multiplications, fill.entries);
         if seconds >= by_size.seconds {
             return by_size;
         }

@@ -2,11 +2,9 @@
 
 pub(crate) mod bytes;
 mod direct;
-pub(crate) mod fitted;
 pub(crate) mod seconds;
 mod smooth;
 
-use super::linear::Width;
 use super::method::mprgp::takes_travels;
 use super::problem::ContactProblem;
 use crate::error::Error;
@@ -78,7 +76,7 @@ impl Estimate {
     pub fn bytes_of_factor(dofs: f64, entries: f64, factor_entries: f64, contact_dofs: f64) -> f64 {
         // With a larger dense matrix nothing is condensed.
         let dense = contact_dofs.powi(2).min(DENSE_SHARE * factor_entries.max(FEW_VALUES)).sqrt();
-        bytes::of_problem(dofs, entries) + bytes::of_factor(factor_entries, size_of::<f64>()) + bytes::of_dense(dense)
+        bytes::of_problem(dofs, entries) + bytes::of_factor(factor_entries) + bytes::of_dense(dense)
     }
 
     /// The same for the iterative path.
@@ -136,7 +134,7 @@ pub(crate) enum Kept {
     /// Nothing yet: the problem is being ordered.
     Nothing,
     /// The factor of the body, with `values` values, and dense matrices on `contact_dofs` contact dofs.
-    Condensed { values: usize, width: Width, contact_dofs: usize, by_interior_point: bool },
+    Condensed { values: usize, contact_dofs: usize, by_interior_point: bool },
     /// The factor of the body and those of two contact sets, with `values` values each; `last` contact dofs come last.
     Factors { values: usize, last: usize, by_interior_point: bool },
     /// The factor of one contact set, with `values` values.
@@ -148,7 +146,7 @@ pub(crate) enum Kept {
 impl Kept {
     /// The least that a condensation onto this number of contact dofs keeps.
     pub fn dense(contact_dofs: usize) -> Self {
-        Kept::Condensed { values: 0, width: Width::Single, contact_dofs, by_interior_point: false }
+        Kept::Condensed { values: 0, contact_dofs, by_interior_point: false }
     }
 
     /// The least that factors with this number of contact dofs last keep.
@@ -170,13 +168,13 @@ pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f6
     let of_interior_point = |values: f64, is_used| if is_used { bytes::OF_INTERIOR_POINT * values } else { 0.0 };
     let (factor_entries, beside) = match kept {
         Kept::Nothing | Kept::Multigrid => (0, 0.0),
-        Kept::Condensed { values, width, contact_dofs, by_interior_point } => {
+        Kept::Condensed { values, contact_dofs, by_interior_point } => {
             let dense = contact_dofs as f64;
             let on_boundary = bytes::of_dense(dense) + of_interior_point(dense * dense / 2.0, by_interior_point);
-            (values, bytes::of_factor(values as f64, width.bytes()) + on_boundary)
+            (values, bytes::of_factor(values as f64) + on_boundary)
         }
         Kept::Factors { values, last, by_interior_point } => {
-            let factors = FACTORS * bytes::of_factor(values as f64, size_of::<f64>());
+            let factors = FACTORS * bytes::of_factor(values as f64);
             let beside = bytes::OF_SETS * stiffness_entries + bytes::of_boundary(last as f64);
             (values, factors + beside + of_interior_point(values as f64, by_interior_point))
         }

@@ -1,13 +1,17 @@
-//! Seconds of a step of a solve, estimated for the machine of the fit; [`Watch::timed`] measures the ratio of this
+//! Seconds of a step of a solve, by counts and the rates of one machine; [`Watch::timed`] measures the ratio of this
 //! machine to it.
 
 use std::hint::black_box;
 
-use super::fitted::{DOUBLE, SINGLE};
 use crate::linear::selected_inverse::FACTORISATIONS;
-use crate::linear::{Analysis, SparseMatrix, SymmetricMatrix, Width};
+use crate::linear::{Analysis, SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
 use crate::watch::Watch;
+
+/// Seconds of a factorisation: of the call, for a multiplication, and for a value of the factor.
+const CALL: f64 = 5e-5;
+const MULTIPLICATION: f64 = 8e-12;
+const VALUE: f64 = 1.46e-8;
 
 /// Seconds of meshing and assembly for an entry of the stiffness, both triangles.
 const ASSEMBLY: f64 = 3e-8;
@@ -40,10 +44,9 @@ const MORE_FILL: f64 = 3.0;
 /// Cells along a side of the lattice; its matrix is factorised to measure the pace.
 const LATTICE: usize = 64;
 
-/// Seconds of a factorisation with this number of multiplications and values, on the machine of the fit.
-pub(crate) fn factor_seconds(multiplications: f64, values: usize, width: Width) -> f64 {
-    let cost = if width == Width::Single { SINGLE } else { DOUBLE };
-    cost.seconds(multiplications, values as f64)
+/// Seconds of a factorisation with this number of multiplications and values.
+pub(crate) fn factor_seconds(multiplications: f64, values: f64) -> f64 {
+    CALL + MULTIPLICATION * multiplications + VALUE * values
 }
 
 /// Seconds of meshing a scene and assembling this number of entries of its stiffness, both triangles.
@@ -79,7 +82,7 @@ pub(crate) fn certificate(problem: &ContactProblem) -> f64 {
 
 /// Seconds of one factorisation in double precision.
 pub(crate) fn factorisation(analysis: &Analysis) -> f64 {
-    factor_seconds(analysis.multiplications(), analysis.factor_entries(), Width::Double)
+    factor_seconds(analysis.multiplications(), analysis.factor_entries() as f64)
 }
 
 /// Seconds of one step of the interior-point method on a matrix with this analysis, with a row for each of its contact
@@ -95,7 +98,7 @@ pub(crate) fn dense(size: usize) -> f64 {
 
 /// Seconds that this number of columns adds to a factorisation if they come last.
 pub(crate) fn last_block(size: usize) -> f64 {
-    DOUBLE.per_multiplication * (size as f64).powi(3) / 6.0
+    MULTIPLICATION * (size as f64).powi(3) / 6.0
 }
 
 /// Seconds of `count` sweeps through this number of values.

@@ -74,7 +74,7 @@ impl Derivatives {
         let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
         let linear = self.problem.without_rows()?.with_load(force.to_vec())?;
         let linear = linear.with_all_equalities(&self.problem.contact().select_rows(&rows), pick(distances))?;
-        let by: Bounding = self.engine.bounding(&self.settings.watch, 0.0);
+        let by: Bounding = self.engine.bounding(&self.settings.watch);
         Ok(linear.examine(&by, x, &pick(y))?.certificate.energy_error_bound)
     }
 }

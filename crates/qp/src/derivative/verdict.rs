@@ -90,7 +90,7 @@ fn proven_here(
     if engine.hierarchy().is_none() && !problem.without_stiffness().is_empty() {
         return problem.prove_alone(answer());
     }
-    let by = engine.bounding(watch, 0.0);
+    let by = engine.bounding(watch);
     let (two_sided, of_rows) = problem.two_sided(multiplier);
     let evidence = two_sided.examine(&by, displacement, &of_rows)?.evidence;
     match problem.prove_by(&by, WithEvidence { evidence, ..answer() }) {

@@ -34,8 +34,7 @@ impl Factored {
         is_bounded: bool,
     ) -> Result<Option<(Reduced, Certificate)>, Error> {
         let settings = task.settings;
-        let found = self.find(task)?.filter(|found| found.refined.is_none());
-        let Some(found) = found else { return Ok(None) };
+        let Some(found) = self.find(task)? else { return Ok(None) };
         let Reduced { problem, outcome, .. } = &found;
         let by = if is_bounded { self.condensed_bounding(problem, &settings.watch) } else { Bounding::Nothing };
         let certificate = problem.examine(&by, &outcome.displacement, &outcome.multiplier)?.certificate;

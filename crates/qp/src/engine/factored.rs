@@ -11,9 +11,9 @@ use crate::cost::{bytes, check_time, seconds};
 use crate::error::Error;
 use crate::linear::{Augmented, Equilibration, dot, ldexp};
 use crate::method::{Ending, Outcome, ScaledProblem, active_set};
-use crate::plan::{Means, Step, Tried, Way};
+use crate::plan::{Means, Step, Tried};
 use crate::problem::ContactProblem;
-use crate::settings::{ByFactor, Settings};
+use crate::settings::ByFactor;
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::transform::Condensation;
 use crate::watch::Watch;
@@ -31,8 +31,9 @@ pub(crate) struct Factored {
     pub(super) augmented: Augmented,
     /// Energy norm of the condensed stiffness, if it is definite, made at its first use.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
-    /// The choice of method and means, if it was left to the program.
-    pub(super) way: Option<Way>,
+    /// The method, and whether the program chose it.
+    pub(super) method: ByFactor,
+    pub(super) is_chosen: bool,
     pub(super) multiplications: f64,
     /// Estimated seconds of the proof of the open and closed rows.
     pub(super) proof_seconds: f64,
@@ -45,25 +46,11 @@ pub(crate) struct Factored {
 #[derive(Clone, Debug)]
 pub(super) struct Reduced {
     pub loading: Arc<Loading>,
-    pub gap: Vec<f64>,
     /// The problem that the method worked on.
     pub problem: ContactProblem,
     pub unit: i32,
     pub outcome: Outcome,
     pub factor_seconds: f64,
-    /// State of the refinement, if the factor is in single precision.
-    pub refined: Option<Refined>,
-}
-
-/// State of the refinement so far.
-#[derive(Clone, Debug)]
-pub(super) struct Refined {
-    /// The displacement before the last step, length n.
-    pub base: Vec<f64>,
-    /// The largest measured contraction.
-    pub contraction: f64,
-    /// Steps after the first answer.
-    pub steps: usize,
 }
 
 /// A load in all its forms, and gaps of all rows.
@@ -81,12 +68,11 @@ impl Engine for Factored {
         self.seconds
     }
 
-    fn tried(&self, method: Option<ByFactor>, settings: &Settings) -> Tried {
+    fn tried(&self, method: Option<ByFactor>) -> Tried {
         Tried {
-            method: self.chosen(method, settings).into(),
+            method: self.chosen(method).into(),
             condensed_dofs: self.is_condensed().then(|| self.condensed_dofs()),
-            is_shortcut: self.is_single() || self.way.is_some_and(|way| way != Way::ActiveSet),
-            is_single: self.is_single(),
+            is_shortcut: self.is_chosen && self.method != ByFactor::ActiveSet,
             lost_pivot: self.lost_pivot,
             is_singular: self.lost_pivot.is_some(),
             multiplications: self.multiplications,
@@ -102,13 +88,9 @@ impl Engine for Factored {
         }
     }
 
-    fn bounding(&self, watch: &Watch, contraction: f64) -> Bounding<'_> {
+    fn bounding(&self, watch: &Watch) -> Bounding<'_> {
         let in_time = watch.allows(self.norm_seconds);
         match self.norm_within(watch) {
-            Some(norm) if self.is_single() => {
-                let contraction = contraction.max(norm.contraction(self.problem.stiffness()));
-                Bounding::Factor(norm.off_by(contraction))
-            }
             Some(norm) => Bounding::Factor(norm),
             None if in_time => Bounding::OwnFactor,
             None => Bounding::Nothing,
@@ -116,7 +98,7 @@ impl Engine for Factored {
     }
 
     fn bytes(&self) -> f64 {
-        let of_factor = |values: usize| bytes::of_factor(values as f64, size_of::<f64>());
+        let of_factor = |values: usize| bytes::of_factor(values as f64);
         match &self.reduction.condensation {
             Some(condensed) => of_factor(condensed.factor_entries()) + bytes::of_dense(self.condensed_dofs() as f64),
             None => match self.reduction.compliance() {
@@ -188,19 +170,18 @@ impl Factored {
         self.check_gap(task.problem.gap())?;
         let gap = task.problem.gap().to_vec();
         let loading = task.load.swept(&self.reduction, &self.reduction.selection.gap(&gap));
-        let Some(found) = self.find_step(Loaded { loading, gap }, task)? else { return Ok(None) };
-        if self.is_single() { self.refined(found, task).map(Some) } else { Ok(Some(found)) }
+        self.find_step(Loaded { loading, gap }, task)
     }
 
     /// The method of an attempt, which may leave it to the rules.
-    fn chosen(&self, method: Option<ByFactor>, settings: &Settings) -> ByFactor {
-        method.unwrap_or_else(|| self.way.unwrap_or(Way::ActiveSet).method(settings.accuracy))
+    fn chosen(&self, method: Option<ByFactor>) -> ByFactor {
+        method.unwrap_or(self.method)
     }
 
     /// One run of a method, under a load at some gaps.
     pub(super) fn find_step(&self, Loaded { loading, gap }: Loaded, task: &Task) -> Result<Option<Reduced>, Error> {
         let Task { step, settings, .. } = *task;
-        let method = self.chosen(task.method, settings);
+        let method = self.chosen(task.method);
         let watch = self.watch_of_loop(method, &settings.watch)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
         let scaled = self.scaled_problem(&problem).watched(&watch);
@@ -216,7 +197,7 @@ impl Factored {
         let made = ScaledStep { scaled: &scaled, start, method, accuracy, most_iterations, bound: &bound };
         let outcome = made.outcome(step)?;
         let factor_seconds = scaled.factor_seconds();
-        Ok(outcome.map(|outcome| Reduced { loading, gap, problem, unit, outcome, factor_seconds, refined: None }))
+        Ok(outcome.map(|outcome| Reduced { loading, problem, unit, outcome, factor_seconds }))
     }
 
     /// The scaled problem with its means.
@@ -234,7 +215,7 @@ impl Factored {
     /// What was found in terms of the whole problem.
     fn whole(&self, found: Reduced) -> Found {
         let displacement = self.displacement(&found);
-        let Reduced { unit, outcome, factor_seconds, refined, .. } = found;
+        let Reduced { unit, outcome, factor_seconds, .. } = found;
         let history = outcome.history.into_iter();
         let ending = match outcome.ending {
             Ending::Infeasible { rows, weights } => self.expand_contradiction(&rows, &weights),
@@ -250,7 +231,7 @@ impl Factored {
             ending,
             ..outcome
         };
-        Found { outcome, factor_seconds, refined: refined.map(|refined| (refined.steps, refined.contraction)) }
+        Found { outcome, factor_seconds }
     }
 
     /// The rows of the whole problem that contradict each other, with their weights.
@@ -269,17 +250,13 @@ impl Factored {
     /// improve. `None` without a factor at hand.
     fn repaired(&self, task: &Task, best: &Solution) -> Option<Found> {
         let norm = match &self.reduction.norm {
-            Norm::Kept(norm) if !self.is_single() => norm.watched(&task.settings.watch.finishing()),
+            Norm::Kept(norm) => norm.watched(&task.settings.watch.finishing()),
             _ => return None,
         };
         let (displacement, multiplier) = task.problem.repaired(&norm, &best.displacement, &best.multiplier)?;
         let contact_set = multiplier.iter().map(|&force| force < 0.0).collect();
         let at_rest = Outcome::at_rest(task.problem, Ending::Settled);
-        Some(Found {
-            outcome: Outcome { displacement, multiplier, contact_set, ..at_rest },
-            factor_seconds: 0.0,
-            refined: None,
-        })
+        Some(Found { outcome: Outcome { displacement, multiplier, contact_set, ..at_rest }, factor_seconds: 0.0 })
     }
 
     /// The energy norm of a stiffness that is definite by itself, with bounds that end when `watch` says so; `None`
@@ -339,7 +316,7 @@ impl Factored {
     /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row),
     /// pushing or pulling, and all others free; `None` if they do not hold the body, or contradict each other.
     pub(crate) fn balanced(&self, closed: &ContactSet, load: Vec<f64>, gap: &[f64]) -> Option<[Vec<f64>; 2]> {
-        let loading = Loading::of(&self.reduction, load, &self.reduction.selection.gap(gap));
+        let loading = Loading::of(&self.reduction, &load, &self.reduction.selection.gap(gap));
         let (problem, unit) = self.scaled(&loading, gap).ok()?;
         let task = self.scaled_problem(&problem);
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed)).ok()??;
@@ -348,16 +325,7 @@ impl Factored {
 
     /// The displacement of the whole body.
     pub(super) fn displacement(&self, found: &Reduced) -> Vec<f64> {
-        let mut displacement = self.expand(&found.loading, found.unit, &found.outcome.displacement);
-        if let Some(refined) = &found.refined {
-            displacement.iter_mut().zip(&refined.base).for_each(|(step, base)| *step += base);
-        }
-        displacement
-    }
-
-    /// Returns `true` if the problem is condensed with a factor in single precision.
-    pub fn is_single(&self) -> bool {
-        self.reduction.is_definite() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
+        self.expand(&found.loading, found.unit, &found.outcome.displacement)
     }
 
     /// Rows that were without obstacle when the problem was prepared, and only these, must still be so.

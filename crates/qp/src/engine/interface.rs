@@ -25,7 +25,7 @@ pub(crate) struct Task<'a> {
     pub limits: Limits,
     /// The method, if the attempt names it; `None` for the one that the rules chose, or the only one.
     pub method: Option<ByFactor>,
-    /// Accuracy, limits and a running clock; method, precision and arrangement are those of the attempt.
+    /// Accuracy, limits and a running clock; method and arrangement are those of the attempt.
     pub settings: &'a Settings,
     /// The best answer of the steps before this one; `None` without one.
     pub best: Option<&'a Solution>,
@@ -36,8 +36,6 @@ pub(crate) struct Found {
     pub outcome: Outcome,
     /// Seconds of its factorisations.
     pub factor_seconds: f64,
-    /// Refinements of a factor in single precision, and their largest measured contraction.
-    pub refined: Option<(usize, f64)>,
 }
 
 /// The answer on the contact boundary, in terms of the whole problem, with the certificate of the condensed problem.
@@ -82,7 +80,7 @@ pub(crate) trait Engine: Debug + Send + Sync {
     fn seconds(&self) -> Seconds;
 
     /// The method of an attempt, as in a [`Task`], and its unknowns.
-    fn tried(&self, method: Option<ByFactor>, settings: &Settings) -> Tried;
+    fn tried(&self, method: Option<ByFactor>) -> Tried;
 
     /// Makes a step; `None` if the step has no means here.
     ///
@@ -91,9 +89,8 @@ pub(crate) trait Engine: Debug + Send + Sync {
     /// fit.
     fn make(&self, task: &Task) -> Result<Option<Found>, Error>;
 
-    /// The means of a certificate, with bounds that end when `watch` says so. `contraction` is that of a refined
-    /// answer.
-    fn bounding(&self, watch: &Watch, contraction: f64) -> Bounding<'_>;
+    /// The means of a certificate, with bounds that end when `watch` says so.
+    fn bounding(&self, watch: &Watch) -> Bounding<'_>;
 
     /// Bytes of the prepared data, estimated.
     fn bytes(&self) -> f64;

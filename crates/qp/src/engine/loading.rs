@@ -21,15 +21,13 @@ impl Load {
     /// The load swept through the factor of `reduction`; the first call does this in a unit that fits `gap`, the gaps
     /// of the selected rows.
     pub(super) fn swept(&self, reduction: &Reduction, gap: &[f64]) -> Arc<Loading> {
-        self.swept.get_or_init(|| Arc::new(Loading::of(reduction, self.force.clone(), gap))).clone()
+        self.swept.get_or_init(|| Arc::new(Loading::of(reduction, &self.force, gap))).clone()
     }
 }
 
 /// A load in all the forms in which a solve needs it.
 #[derive(Clone, Debug)]
 pub(super) struct Loading {
-    /// The load f of the problem, length n.
-    pub load: Vec<f64>,
     /// Exponent of the reference displacement of the fields below.
     pub unit: i32,
     /// Forward sweep of the scaled load, if the body is condensed.
@@ -44,11 +42,11 @@ pub(super) struct Loading {
 
 impl Loading {
     /// Scales `load` (length n) in a unit that fits it and `gap`, the gaps of the selected rows, and sweeps it.
-    pub fn of(reduction: &Reduction, load: Vec<f64>, gap: &[f64]) -> Self {
+    pub fn of(reduction: &Reduction, load: &[f64], gap: &[f64]) -> Self {
         let stiffness = reduction.stiffest;
-        let statics = if stiffness > 0.0 { largest(&load) / stiffness } else { 0.0 };
+        let statics = if stiffness > 0.0 { largest(load) / stiffness } else { 0.0 };
         let unit = exponent(largest(gap).max(statics));
-        let scaled = reduction.scaling.load(&load, unit);
+        let scaled = reduction.scaling.load(load, unit);
         let (sweep, scaled) = match &reduction.condensation {
             Some(condensed) => {
                 let sweep = condensed.sweep(&scaled);
@@ -57,7 +55,7 @@ impl Loading {
             }
             None => (Vec::new(), scaled),
         };
-        Loading { load, unit, sweep, scaled, free: OnceLock::new(), statics }
+        Loading { unit, sweep, scaled, free: OnceLock::new(), statics }
     }
 
     /// The largest displacement that the load alone causes, if the stiffness is definite and its factor is at hand.
@@ -81,11 +79,6 @@ impl Loading {
             self.scaled.iter_mut().zip(condensed.dofs()).for_each(|(entry, &dof)| *entry += scaled[dof]);
         }
         self
-    }
-
-    /// The same forms, with another load f as their original.
-    pub fn with_load(&self, load: Vec<f64>) -> Self {
-        Loading { load, ..self.clone() }
     }
 
     /// The exponent of the reference displacement with the gaps of the selected rows.

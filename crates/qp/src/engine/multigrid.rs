@@ -79,7 +79,7 @@ impl Engine for Hierarchical {
         Seconds { factor: self.seconds, solve: self.seconds, ..Seconds::default() }
     }
 
-    fn tried(&self, _: Option<ByFactor>, _: &Settings) -> Tried {
+    fn tried(&self, _: Option<ByFactor>) -> Tried {
         Tried { is_singular: self.multigrid.is_shifted(), ..Tried::on_all_dofs(Method::Mprgp) }
     }
 
@@ -88,10 +88,10 @@ impl Engine for Hierarchical {
         // Once the loop ends, its answer is still to be certified.
         let watch = &settings.watch.keeping(seconds::certificate(problem));
         let mprgp = Mprgp { problem, multigrid: &self.multigrid, limits, watch };
-        Ok(Some(Found { outcome: mprgp.solve(task.start.clone())?, factor_seconds: 0.0, refined: None }))
+        Ok(Some(Found { outcome: mprgp.solve(task.start.clone())?, factor_seconds: 0.0 }))
     }
 
-    fn bounding(&self, watch: &Watch, _: f64) -> Bounding<'_> {
+    fn bounding(&self, watch: &Watch) -> Bounding<'_> {
         Bounding::Cycles(&self.multigrid, watch.clone())
     }
 

@@ -34,7 +34,7 @@ impl Factored {
     /// As [`Prepared::path`](crate::Prepared::path).
     pub fn walk_to(self: Arc<Self>, from: &Task, to: &[f64]) -> Result<Option<Walk>, Error> {
         let reduction = &self.reduction;
-        let is_walkable = reduction.is_definite() && !self.is_single();
+        let is_walkable = reduction.is_definite();
         let Some(condensed) = reduction.condensation.as_ref().filter(|_| is_walkable) else {
             return Err(Error::NotCondensed { step: "the exact path" });
         };

@@ -6,18 +6,14 @@ use std::time::Instant;
 use super::factored::Factored;
 use super::reduction::{Norm, Reduction};
 use crate::certificate::EnergyNorm;
-use crate::cost::seconds::factor_seconds;
-use crate::cost::{Kept, check_memory, check_time, seconds};
+use crate::cost::{check_time, seconds};
 use crate::error::Error;
-use crate::linear::{Analysis, Augmented, AugmentedMatrix, Cholesky, FactorError, Width, largest};
+use crate::linear::{Analysis, Augmented, AugmentedMatrix, Cholesky, FactorError, largest};
 use crate::plan::{Layout, WithFactor};
 use crate::problem::ContactProblem;
 use crate::settings::Settings;
 use crate::solution::Seconds;
 use crate::transform::{Condensation, RowSelection, Scaling};
-
-/// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
-const SINGLE_PIVOT: f64 = 1e-4;
 
 /// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
 pub(super) const LOST_PIVOT: f64 = 1e-10;
@@ -38,7 +34,7 @@ impl Factored {
         let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, with, settings)?;
-        let Layout { analysis, last, size, mut way, width, keeps_norm, .. } = layout;
+        let Layout { analysis, last, size, method, keeps_norm, .. } = layout;
         if watch.acknowledge() {
             return Err(Error::Interrupted);
         }
@@ -49,15 +45,9 @@ impl Factored {
         };
         let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
         let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
-        let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
-        let cholesky = factoring.definite(width, last.len())?;
-        let least_pivot = factoring.least_pivot;
+        let (cholesky, least_pivot) = definite(problem, &scaling, &analysis, settings)?;
         // If no columns come last, the contact sets have the order of the stiffness.
         let analysis = last.is_empty().then_some(analysis);
-        if cholesky.is_none() {
-            // Without a bound no accuracy can be reached, so only exact methods are left.
-            way = with.way(None, size);
-        }
         let condensation = match size.is_condensed {
             true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
             false => None,
@@ -79,9 +69,10 @@ impl Factored {
         Ok(Factored {
             problem: problem.clone(),
             reduction,
-            lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
+            lost_pivot: (least_pivot < LOST_PIVOT).then_some(least_pivot),
             augmented,
-            way,
+            method,
+            is_chosen: with.method.is_none(),
             multiplications: size.multiplications,
             proof_seconds,
             norm_seconds,
@@ -91,59 +82,29 @@ impl Factored {
     }
 }
 
-/// The factorisation of a stiffness with an analysed pattern.
-struct Factoring<'a> {
-    problem: &'a ContactProblem,
-    scaling: &'a Scaling,
-    analysis: &'a Analysis,
-    settings: &'a Settings,
-    /// The smallest pivot of the last factor; zero without a factor.
-    least_pivot: Option<f64>,
-}
-
-impl Factoring<'_> {
-    /// The factor in single precision if that is asked for and loses nothing, otherwise in double; `None` for a
-    /// stiffness that is not definite to working precision.
-    ///
-    /// # Errors
-    /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
-    fn definite(&mut self, width: Width, contact_dofs: usize) -> Result<Option<Cholesky>, Error> {
-        if self.problem.stiffness().diagonal().contains(&0.0) {
-            self.least_pivot = Some(0.0);
-            return Ok(None);
-        }
-        if width == Width::Single {
-            if let Some(cholesky) = self.factor(width)? {
-                return Ok(Some(cholesky));
-            }
-            let values = self.analysis.factor_entries();
-            let kept = Kept::Condensed { values, width: Width::Double, contact_dofs, by_interior_point: false };
-            check_memory(self.problem, kept, self.settings.memory)?;
-            check_time(&self.settings.watch, self.seconds(Width::Double))?;
-        }
-        self.factor(Width::Double)
+/// The factor of a stiffness with an analysed pattern, `None` if it is not definite to working precision, and its
+/// smallest pivot, zero without a factor.
+///
+/// # Errors
+/// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
+fn definite(
+    problem: &ContactProblem,
+    scaling: &Scaling,
+    analysis: &Analysis,
+    settings: &Settings,
+) -> Result<(Option<Cholesky>, f64), Error> {
+    if problem.stiffness().diagonal().contains(&0.0) {
+        return Ok((None, 0.0));
     }
-
-    fn seconds(&self, width: Width) -> f64 {
-        factor_seconds(self.analysis.multiplications(), self.analysis.factor_entries(), width)
-    }
-
-    fn factor(&mut self, width: Width) -> Result<Option<Cholesky>, Error> {
-        let scaled = self.scaling.equilibration();
-        let factor = || self.analysis.factor_equilibrated(self.problem.stiffness(), scaled, width);
-        match self.settings.watch.timed(self.seconds(width), factor) {
-            Ok(cholesky) => {
-                self.least_pivot = Some(cholesky.smallest_pivot());
-                let is_uncertain = width == Width::Single && cholesky.smallest_pivot() <= SINGLE_PIVOT;
-                let is_definite = || cholesky.is_safely_definite() || cholesky.is_definite(self.scaling.stiffness());
-                Ok((!is_uncertain && is_definite()).then_some(cholesky))
-            }
-            Err(FactorError::NotPositiveDefinite) => {
-                self.least_pivot = Some(0.0);
-                Ok(None)
-            }
-            Err(error) => Err(error.into()),
+    let factor = || analysis.factor_equilibrated(problem.stiffness(), scaling.equilibration());
+    match settings.watch.timed(seconds::factorisation(analysis), factor) {
+        Ok(cholesky) => {
+            let pivot = cholesky.smallest_pivot();
+            let is_definite = cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness());
+            Ok((is_definite.then_some(cholesky), pivot))
         }
+        Err(FactorError::NotPositiveDefinite) => Ok((None, 0.0)),
+        Err(error) => Err(error.into()),
     }
 }
 

@@ -8,7 +8,7 @@ use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
 
-use super::factor::{self, Factor, FactorError, Permuted, Real, Width, call};
+use super::factor::{self, Factor, FactorError, Permuted, call};
 use super::grouped::group_starts;
 use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dense_factor, dot, ldexp, ordering};
 use crate::error::Error;
@@ -57,28 +57,9 @@ pub struct Cholesky {
 /// Shared, because a factor is the largest object in memory.
 #[derive(Clone, Debug)]
 enum Values {
-    Double(Arc<Vec<f64>>),
-    Single(Arc<Vec<f32>>),
-    /// A whole triangle, in double precision.
+    InColumns(Arc<Vec<f64>>),
+    /// A whole triangle.
     Dense(LowerTriangle),
-}
-
-/// Calls a function of a sparse factor in its precision; gives `None` for a matrix without columns, and for a dense
-/// factor.
-macro_rules! by_precision {
-    ($cholesky:expr, $factor:ident => $call:expr) => {
-        $cholesky.supernodes().and_then(|nodes| match &$cholesky.values {
-            Values::Double(values) => {
-                let $factor = Factor::new(nodes, values);
-                Some($call)
-            }
-            Values::Single(values) => {
-                let $factor = Factor::new(nodes, values);
-                Some($call)
-            }
-            Values::Dense(_) => None,
-        })
-    };
 }
 
 impl Analysis {
@@ -112,7 +93,7 @@ impl Analysis {
         matrix.dim() >= LEAST_DENSE && matrix.lower().entries() as f64 >= DENSE * dim * (dim + 1.0) / 2.0
     }
 
-    /// As [`Analysis::with_last`], for a factor in block columns, which may be in single precision.
+    /// As [`Analysis::with_last`], for a factor in block columns.
     ///
     /// # Errors
     /// As [`Analysis::of`].
@@ -184,30 +165,24 @@ impl Analysis {
         }
         let permuted = self.permuted(matrix.lower(), value);
         drop(matrix);
-        self.factorised(permuted, Values::Double)
+        self.factorised(permuted)
     }
 
-    /// Factorises the equilibrated `c D A D` of `matrix` without building it, in double precision or, with half the
-    /// memory and some seven digits of each entry, if that is the `width` and the factor is in block columns.
+    /// Factorises the equilibrated `c D A D` of `matrix` without building it.
     ///
     /// # Errors
-    /// As [`Analysis::factor`]; in single precision a pivot may also be lost to rounding.
+    /// As [`Analysis::factor`].
     pub fn factor_equilibrated(
         &self,
         matrix: &SymmetricMatrix,
         equilibration: &Equilibration,
-        width: Width,
     ) -> Result<Cholesky, FactorError> {
         let scale = &equilibration.diagonal;
         let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
         if let Structure::Dense(order) = &self.structure {
             return self.factorised_densely(order, matrix.lower(), entry);
         }
-        if width == Width::Single {
-            let rounded = |row: usize, column: usize, value| entry(row, column, value) as f32;
-            return self.factorised(self.permuted(matrix.lower(), rounded), Values::Single);
-        }
-        self.factorised(self.permuted(matrix.lower(), entry), Values::Double)
+        self.factorised(self.permuted(matrix.lower(), entry))
     }
 
     /// The dense factor of the matrix with this lower triangle, of which `entry(row, column, value)` makes the entries.
@@ -241,33 +216,25 @@ impl Analysis {
         Ok(Cholesky { analysis: self.clone(), values: Values::Dense(triangle), smallest_pivot })
     }
 
-    fn factorised<T: Real>(
-        &self,
-        permuted: Permuted<T>,
-        shared: fn(Arc<Vec<T>>) -> Values,
-    ) -> Result<Cholesky, FactorError> {
+    fn factorised(&self, permuted: Permuted) -> Result<Cholesky, FactorError> {
         let (values, smallest_pivot) = match self.supernodes() {
             Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, dense_factor::par(self.threads)))?,
             // Only a matrix without columns has no supernodes.
             None => (Vec::new(), f64::INFINITY),
         };
-        Ok(Cholesky { analysis: self.clone(), values: shared(Arc::new(values)), smallest_pivot })
+        Ok(Cholesky { analysis: self.clone(), values: Values::InColumns(Arc::new(values)), smallest_pivot })
     }
 
     /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
     /// makes them.
-    pub(crate) fn permuted<T: Real>(
-        &self,
-        lower: &SparseMatrix,
-        entry: impl Fn(usize, usize, f64) -> T,
-    ) -> Permuted<T> {
+    pub(crate) fn permuted(&self, lower: &SparseMatrix, entry: impl Fn(usize, usize, f64) -> f64) -> Permuted {
         let order = self.structure.order();
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
         let first = |(row, column, _): (usize, usize, f64)| place[column].min(place[row]);
         let starts = group_starts(lower.columns(), lower.triplets().map(first));
         let mut next = starts.clone();
-        let (mut rows, mut values) = (vec![0; lower.entries()], vec![T::default(); lower.entries()]);
+        let (mut rows, mut values) = (vec![0; lower.entries()], vec![0.0; lower.entries()]);
         for (column, &to) in place.iter().enumerate() {
             for (row, value) in lower.column(column) {
                 let (first, second) = (to.min(place[row]), to.max(place[row]));
@@ -331,11 +298,6 @@ impl Cholesky {
         self.analysis.factor_entries()
     }
 
-    /// Returns `true` if its values are in single precision.
-    pub fn is_single(&self) -> bool {
-        matches!(self.values, Values::Single(_))
-    }
-
     /// The solution x of A x = b, length `dim`. If faer fails or b does not fit, every entry of x is NaN, which no
     /// certificate accepts.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
@@ -355,7 +317,7 @@ impl Cholesky {
         match &self.values {
             Values::Dense(_) if b.len() != self.dim() => vec![f64::NAN; self.dim()],
             Values::Dense(triangle) => triangle.forward(ordered),
-            _ => by_precision!(self, factor => factor::forward(factor, &ordered)).unwrap_or_default(),
+            Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::forward(own, &ordered)),
         }
     }
 
@@ -364,7 +326,7 @@ impl Cholesky {
         let ordered = match &self.values {
             Values::Dense(_) if y.len() != self.dim() => vec![f64::NAN; self.dim()],
             Values::Dense(triangle) => triangle.backward(y),
-            _ => by_precision!(self, factor => factor::backward(factor, &y)).unwrap_or_default(),
+            Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::backward(own, &y)),
         };
         let mut x = vec![0.0; ordered.len()];
         self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
@@ -378,15 +340,20 @@ impl Cholesky {
         if let Values::Dense(triangle) = &self.values {
             return triangle.last(size);
         }
-        let block = by_precision!(self, factor => factor::trailing_block(factor, size));
+        let block = self.in_columns().map(|own| factor::trailing_block(own, size));
         LowerTriangle::new(size, block.unwrap_or_default())
     }
 
-    /// Structure and values of a factor in block columns of doubles.
+    /// The factor in block columns; `None` for a whole triangle, and for a matrix without columns.
+    fn in_columns(&self) -> Option<Factor<'_>> {
+        self.block_columns().map(|(nodes, values)| Factor::new(nodes, values))
+    }
+
+    /// Structure and values of a factor in block columns.
     pub(crate) fn block_columns(&self) -> Option<(&supernodal::SymbolicSupernodalCholesky<usize>, &[f64])> {
         match &self.values {
-            Values::Double(values) => Some((self.supernodes()?, values)),
-            Values::Single(_) | Values::Dense(_) => None,
+            Values::InColumns(values) => Some((self.supernodes()?, values)),
+            Values::Dense(_) => None,
         }
     }
 
@@ -397,7 +364,7 @@ impl Cholesky {
 
     /// The values of block column `node`: the rows of its own columns, then those below.
     pub(super) fn block_column(&self, node: usize) -> faer::Mat<f64> {
-        by_precision!(self, factor => factor::block_column(factor, node)).unwrap_or_else(faer::Mat::new)
+        self.in_columns().map_or_else(faer::Mat::new, |own| factor::block_column(own, node))
     }
 
     /// Number of multiplications of its factorisation, counted as if each column were eliminated by itself.

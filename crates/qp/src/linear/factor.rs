@@ -1,16 +1,11 @@
-//! The values of a Cholesky factor, in double or in single precision, and the sweeps through them.
-//!
-//! Loads and answers are doubles. For a factor in single precision a load is scaled by a power of two to order one, so
-//! that it neither under- nor overflows, and rounded.
+//! The values of a Cholesky factor, and the sweeps through them.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::solvers::LltError;
 use faer::sparse::linalg::cholesky::supernodal;
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
-use faer::traits::RealField;
 use faer::{Conj, Mat, MatMut, Par};
 
-use super::{exponent, largest, ldexp};
 use crate::error::Error;
 use crate::panics::guarded;
 
@@ -61,83 +56,34 @@ pub(super) fn memory(request: StackReq) -> Result<MemBuffer, FactorError> {
     MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
 }
 
-/// The floating-point numbers in which a factor or a hierarchy is stored; iterations around it are always in double
-/// precision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Width {
-    /// 64 bits, about sixteen digits.
-    Double,
-    /// Single: half the memory, about seven digits of each value.
-    Single,
-}
-
-impl Width {
-    /// Memory that one number takes, in bytes.
-    pub fn bytes(self) -> usize {
-        match self {
-            Width::Double => size_of::<f64>(),
-            Width::Single => size_of::<f32>(),
-        }
-    }
-}
-
-/// `f64` or `f32`: the precisions in which a factor, or a hierarchy, may be stored.
-pub trait Real: RealField + Copy + Default + Into<f64> + Send + Sync + 'static {
-    /// A unit in the last place of one.
-    const EPSILON: f64;
-
-    /// The nearest value.
-    fn of(value: f64) -> Self;
-
-    /// The same value in double precision.
-    fn double(self) -> f64 {
-        self.into()
-    }
-}
-
-impl Real for f64 {
-    const EPSILON: f64 = f64::EPSILON;
-
-    fn of(value: f64) -> Self {
-        value
-    }
-}
-
-impl Real for f32 {
-    const EPSILON: f64 = f32::EPSILON as f64;
-
-    fn of(value: f64) -> Self {
-        value as f32
-    }
-}
-
 /// The values of a factor with its structure.
-pub(super) type Factor<'a, T> = supernodal::SupernodalLltRef<'a, usize, T>;
+pub(super) type Factor<'a> = supernodal::SupernodalLltRef<'a, usize, f64>;
 
 /// The lower triangle of a matrix in compressed columns, in the order of elimination; the rows of a column are in any
 /// order.
-pub(crate) struct Permuted<T> {
+pub(crate) struct Permuted {
     pub starts: Vec<usize>,
     pub rows: Vec<usize>,
-    pub values: Vec<T>,
+    pub values: Vec<f64>,
 }
 
 /// Factorises a matrix.
 ///
 /// # Errors
 /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for lack of memory.
-pub(super) fn factorise<T: Real>(
+pub(super) fn factorise(
     supernodes: &supernodal::SymbolicSupernodalCholesky<usize>,
-    permuted: &Permuted<T>,
+    permuted: &Permuted,
     par: Par,
-) -> Result<(Vec<T>, f64), FactorError> {
+) -> Result<(Vec<f64>, f64), FactorError> {
     let size = supernodes.len_val();
     // Memory is requested first, because a vector of zeros ends the program if memory is short; the zeros come
     // untouched from the system.
-    let request = Vec::<T>::new().try_reserve_exact(size);
+    let request = Vec::<f64>::new().try_reserve_exact(size);
     request.map_err(|_| FactorError::Failed("out of memory".into()))?;
-    let mut values = vec![T::default(); size];
-    let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, T>(supernodes, par, Default::default());
+    let mut values = vec![0.0; size];
+    let scratch =
+        supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(supernodes, par, Default::default());
     let mut buffer = memory(scratch)?;
     // faer takes columns in any order of their rows.
     let Permuted { starts, rows, values: entries } = permuted;
@@ -158,13 +104,13 @@ pub(super) fn factorise<T: Real>(
 }
 
 /// The smallest pivot, and `true` if all entries are finite: every entry enters the pivot of its row.
-fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[T]) -> (f64, bool) {
+fn pivots(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[f64]) -> (f64, bool) {
     let (mut smallest, mut finite) = (f64::INFINITY, true);
     let factor = Factor::new(supernodes, values);
     for node in 0..supernodes.n_supernodes() {
         let block = factor.supernode(node).val();
         for j in 0..block.ncols() {
-            let entry = block[(j, j)].double();
+            let entry = block[(j, j)];
             smallest = smallest.min(entry * entry);
             finite &= entry.is_finite();
         }
@@ -172,38 +118,36 @@ fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, v
     (smallest, finite)
 }
 
-/// A vector swept through a factor: scaled and rounded before, if the factor is in single precision, and converted back
-/// to doubles after. If the sweep fails or the vector does not fit, every entry is NaN.
-fn swept<T: Real>(factor: Factor<T>, load: &[f64], sweep: impl FnOnce(MatMut<T>, &mut MemStack)) -> Vec<f64> {
+/// A vector swept through a factor. If the sweep fails or the vector does not fit, every entry is NaN.
+fn swept(factor: Factor, load: &[f64], sweep: impl FnOnce(MatMut<f64>, &mut MemStack)) -> Vec<f64> {
     if load.len() != factor.symbolic().nrows() {
         return vec![f64::NAN; load.len()];
     }
-    let unit = if T::EPSILON > f64::EPSILON { exponent(largest(load)) } else { 0 };
-    let mut x: Vec<T> = load.iter().map(|&value| T::of(ldexp(value, -unit))).collect();
-    let scratch = factor.symbolic().solve_in_place_scratch::<T>(1, Par::Seq);
+    let mut x = load.to_vec();
+    let scratch = factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq);
     let done = call(|| {
         let mut buffer = memory(scratch)?;
         sweep(MatMut::from_column_major_slice_mut(&mut x, load.len(), 1), MemStack::new(&mut buffer));
         Ok(())
     });
     match done {
-        Ok(()) => x.into_iter().map(|value| ldexp(value.double(), unit)).collect(),
+        Ok(()) => x,
         Err(_) => vec![f64::NAN; load.len()],
     }
 }
 
 /// The solution of L y = b, both in the order of elimination.
-pub(super) fn forward<T: Real>(factor: Factor<T>, b: &[f64]) -> Vec<f64> {
+pub(super) fn forward(factor: Factor, b: &[f64]) -> Vec<f64> {
     swept(factor, b, |y, stack| factor.l_solve_with_conj(Conj::No, y, Par::Seq, stack))
 }
 
 /// The solution of L' x = y, both in the order of elimination.
-pub(super) fn backward<T: Real>(factor: Factor<T>, y: &[f64]) -> Vec<f64> {
+pub(super) fn backward(factor: Factor, y: &[f64]) -> Vec<f64> {
     swept(factor, y, |x, stack| factor.l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack))
 }
 
 /// The last `size` rows and columns of L, column by column with zeros above the diagonal.
-pub(super) fn trailing_block<T: Real>(factor: Factor<T>, size: usize) -> Vec<f64> {
+pub(super) fn trailing_block(factor: Factor, size: usize) -> Vec<f64> {
     let first = factor.symbolic().nrows() - size;
     let mut block = vec![0.0; size * size];
     for node in 0..factor.symbolic().n_supernodes() {
@@ -212,18 +156,18 @@ pub(super) fn trailing_block<T: Real>(factor: Factor<T>, size: usize) -> Vec<f64
         for j in first.saturating_sub(start)..values.ncols() {
             let column = start + j - first;
             for i in j..values.ncols() {
-                block[column * size + start + i - first] = values[(i, j)].double();
+                block[column * size + start + i - first] = values[(i, j)];
             }
             for (i, &row) in node.pattern().iter().enumerate() {
-                block[column * size + row - first] = values[(values.ncols() + i, j)].double();
+                block[column * size + row - first] = values[(values.ncols() + i, j)];
             }
         }
     }
     block
 }
 
-/// The values of block column `node`, as doubles.
-pub(super) fn block_column<T: Real>(factor: Factor<T>, node: usize) -> Mat<f64> {
+/// The values of block column `node`.
+pub(super) fn block_column(factor: Factor, node: usize) -> Mat<f64> {
     let block = factor.supernode(node).val();
-    Mat::from_fn(block.nrows(), block.ncols(), |i, j| block[(i, j)].double())
+    Mat::from_fn(block.nrows(), block.ncols(), |i, j| block[(i, j)])
 }

@@ -28,6 +28,7 @@ mod orthogonal;
 mod power_iteration;
 mod power_of_two;
 mod quotient;
+mod real;
 mod rows;
 pub mod selected_inverse;
 mod spare;
@@ -46,8 +47,9 @@ pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, 
 pub use dense_factor::{forward_all, par, products};
 pub use dependence::Dependence;
 pub use exact_sum::ExactSum;
-pub use factor::{FactorError, Width, call, if_definite};
+pub use factor::{FactorError, call, if_definite};
 pub use forest::Forest;
+pub use multigrid::Width;
 pub use null_space::{NullSpace, generic};
 pub use ordering::Fill;
 pub use orthogonal::{inverse_lengths, inverse_lengths_by_products};

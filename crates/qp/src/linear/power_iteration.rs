@@ -1,6 +1,6 @@
 //! The power iteration.
 
-use super::factor::Real;
+use super::real::Real;
 
 /// The vector that `map` makes of a vector without symmetry, the same in every run, in `steps` applications, fewer if
 /// one gives `None`; the largest entry is one after each. The entries of the first vector are spread evenly from

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 pub(crate) use crate::method::mprgp::Limits;
-use crate::settings::{ByFactor, Method, Precision};
+use crate::settings::{ByFactor, Method};
 
 /// Iterations of the active-set loop after which its start counts as poor.
 pub(crate) const PATIENCE: usize = 16;
@@ -31,15 +31,13 @@ impl Means {
 pub(crate) struct WithFactor {
     /// `None` if the rules choose it, once the pattern of the stiffness is analysed.
     pub method: Option<ByFactor>,
-    pub precision: Precision,
     /// The first of these that fits into memory and time is taken.
     pub arrangements: &'static [Arrangement],
 }
 
 impl WithFactor {
-    /// The method, precision and arrangements by the rules.
-    pub const BY_RULES: WithFactor =
-        WithFactor { method: None, precision: Precision::Auto, arrangements: &Arrangement::ALL };
+    /// The method and the arrangements by the rules.
+    pub const BY_RULES: WithFactor = WithFactor { method: None, arrangements: &Arrangement::ALL };
 }
 
 /// The unknowns of a method with a factor, and the order of its elimination.
@@ -198,8 +196,6 @@ pub(crate) struct Tried {
     pub condensed_dofs: Option<usize>,
     /// `true` if the answer may fall short of a goal that a slower way would reach.
     pub is_shortcut: bool,
-    /// `true` if the factor is in single precision.
-    pub is_single: bool,
     /// The smallest pivot of the stiffness, for a diagonal of order one, if it is close to rounding.
     pub lost_pivot: Option<f64>,
     /// `true` if the stiffness is known to be singular to rounding.
@@ -212,8 +208,8 @@ impl Tried {
     /// A method on all dofs that is no shortcut, without a factor.
     pub fn on_all_dofs(method: Method) -> Self {
         let (condensed_dofs, lost_pivot, multiplications) = (None, None, 0.0);
-        let [is_shortcut, is_single, is_singular] = [false; 3];
-        Tried { method, condensed_dofs, is_shortcut, is_single, lost_pivot, is_singular, multiplications }
+        let [is_shortcut, is_singular] = [false; 2];
+        Tried { method, condensed_dofs, is_shortcut, lost_pivot, is_singular, multiplications }
     }
 
     /// The method and its unknowns in words, if the rules chose it.
@@ -223,9 +219,7 @@ impl Tried {
             None => "on all dofs".to_string(),
         };
         let (method, multiplications) = (self.method.name(), self.multiplications);
-        format!(
-            "of such methods {method}, {on}: by rules fitted to measured times, for {multiplications:.1e} multiplications of a factor"
-        )
+        format!("of such methods {method}, {on}, for {multiplications:.1e} multiplications of a factor")
     }
 }
 

@@ -110,14 +110,12 @@ pub struct Best {
     /// How its method ended.
     pub ending: Ending,
     pub evidence: Option<Evidence>,
-    /// The contraction of a factor in single precision.
-    pub contraction: f64,
 }
 
 impl Best {
     /// An answer of a settled method without an engine.
     pub fn of(solution: Solution, attempt: usize) -> Self {
-        Best { solution, attempt, tried: None, ending: Ending::Settled, evidence: None, contraction: 0.0 }
+        Best { solution, attempt, tried: None, ending: Ending::Settled, evidence: None }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::cost::{Estimate, starts_near};
 use crate::error::Error;
 use crate::method::interior_point::InteriorPoint;
 use crate::problem::ContactProblem;
-use crate::settings::{ByFactor, Condense, Method, Precision, Settings};
+use crate::settings::{ByFactor, Condense, Method, Settings};
 use crate::transform::Pieces;
 
 /// MPRGP ends at this share of the tolerance of the certificate, because the scales of the two differ.
@@ -93,7 +93,7 @@ impl Ladder {
 
     /// The same ladder under settings that change nothing but its limits; `None` if they change more.
     pub fn under(&self, settings: &Settings) -> Option<Self> {
-        let of = |settings: &Settings| (settings.method, settings.precision, settings.condense, settings.memory);
+        let of = |settings: &Settings| (settings.method, settings.condense, settings.memory);
         if of(settings) != of(&self.settings) {
             return None;
         }
@@ -153,12 +153,11 @@ impl Ladder {
 
     /// A factor under the settings as they were given, with this method or that of the rules.
     fn factor(&self, method: Option<ByFactor>) -> Means {
-        let Settings { precision, condense, .. } = self.settings;
-        let arrangements: &[Arrangement] = match condense {
+        let arrangements: &[Arrangement] = match self.settings.condense {
             Condense::Auto => &Arrangement::ALL,
             Condense::Never => &Arrangement::ON_ALL_DOFS,
         };
-        Means::Factor(WithFactor { method, precision, arrangements })
+        Means::Factor(WithFactor { method, arrangements })
     }
 
     /// An attempt by these means, from the start that was given.
@@ -168,8 +167,7 @@ impl Ladder {
         Attempt { means, start, limits, when, because: because.into(), steps }
     }
 
-    /// Adds the attempts with a factor: the `first`; after a shortcut in double precision; after a condensation on all
-    /// dofs.
+    /// Adds the attempts with a factor: the `first`; after a shortcut the active set; after a condensation on all dofs.
     fn with_factor(&mut self, first: Attempt) {
         let means = first.means;
         self.add(first);
@@ -180,9 +178,9 @@ impl Ladder {
             self.add(Attempt { when: When::ShortOfUnsettled, ..polished });
         }
         let method = Some(with.method.unwrap_or(ByFactor::ActiveSet));
-        let exact = WithFactor { method, precision: Precision::Double, ..with };
-        if with.method.is_none() || with.precision == Precision::Mixed {
-            let because = "the rules prefer speed; the active set in double precision leaves out no digit";
+        let exact = WithFactor { method, ..with };
+        if with.method.is_none() {
+            let because = "the active set leaves out no digit";
             let exact = self.attempt(Means::Factor(exact), because);
             self.add(Attempt { when: When::ShortOfShortcut, start: From::Nothing, ..exact });
         }

@@ -1,14 +1,13 @@
-//! The layout of a factor: its arrangement, its precision, and the parts that are kept, within memory and time.
+//! The layout of a factor: its arrangement, and the parts that are kept, within memory and time.
 
 use super::attempt::{Arrangement, WithFactor};
-use super::rules::{Size, Way, is_crowded};
+use super::rules::{Size, is_crowded};
 use crate::certificate::EnergyNorm;
 use crate::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
 use crate::error::Error;
-use crate::linear::{Analysis, Width};
+use crate::linear::Analysis;
 use crate::problem::ContactProblem;
-use crate::settings::Method;
-use crate::settings::{ByFactor, Precision, Settings};
+use crate::settings::{ByFactor, Method, Settings};
 use crate::transform::{Condensation, Scaling};
 
 /// An order of elimination with its structure, and its kept parts.
@@ -17,11 +16,7 @@ pub(crate) struct Layout {
     /// The dofs that are eliminated last.
     pub last: Vec<usize>,
     pub size: Size,
-    /// The chosen way, if the choice was left to the rules.
-    pub way: Option<Way>,
     pub method: ByFactor,
-    /// The precision of the factor.
-    pub width: Width,
     /// `true` if the factor of the stiffness is kept beside those of the contact sets; if not, it is computed again for
     /// the certificate.
     pub keeps_norm: bool,
@@ -72,9 +67,7 @@ impl Layout {
             let analysis = analysis.with_threads(settings.threads.unwrap_or(1));
             let (multiplications, rows) = (analysis.multiplications(), problem.rows());
             let size = Size { is_condensed, multiplications, rows, is_crowded: is_crowded(problem) };
-            let way = with.way(settings.accuracy, size);
-            let (width, keeps_norm, method) = (Width::Double, true, ByFactor::ActiveSet);
-            let layout = Layout { analysis, last, size, way, method, width, keeps_norm };
+            let layout = Layout { analysis, last, size, method: with.chosen(size), keeps_norm: true };
             match layout.fitting(problem, with, settings) {
                 Err(error @ Error::TooLarge { .. }) => keep_least(&mut refused, error),
                 decided => return decided,
@@ -83,27 +76,19 @@ impl Layout {
         Err(refused.unwrap_or(Error::Interrupted))
     }
 
-    /// The layout with the way and the precision that fit into memory and time.
+    /// The layout with the method and the parts that fit into memory and time.
     fn fitting(mut self, problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<Self, Error> {
-        let (way, is_condensed) = (self.way, self.size.is_condensed);
-        let precision = way.map_or(with.precision, |way| way.precision(with.precision));
-        let is_mixed = is_condensed && precision == Precision::Mixed;
-        let mut choices = vec![(way, if is_mixed { Width::Single } else { Width::Double }, true)];
-        // The fastest way by the rules may take more memory than available, or too much time before its first step.
-        if way.is_some() {
-            choices.push((Some(Way::ActiveSet), Width::Double, true));
+        let mut choices = vec![(self.method, true)];
+        // The chosen method may take more memory than available, or too much time before its first step.
+        if with.method.is_none() && self.method != ByFactor::ActiveSet {
+            choices.push((ByFactor::ActiveSet, true));
         }
-        if way.is_some() && is_condensed && with.precision != Precision::Double {
-            choices.push((Some(Way::ActiveSetMixed), Width::Single, true));
-        }
-        if !is_condensed && self.last.is_empty() && with.method == Some(ByFactor::ActiveSet) {
-            choices.push((way, Width::Double, false));
+        if !self.size.is_condensed && self.last.is_empty() && with.method == Some(ByFactor::ActiveSet) {
+            choices.push((ByFactor::ActiveSet, false));
         }
         let mut refused: Option<Error> = None;
         for choice in choices {
-            (self.way, self.width, self.keeps_norm) = choice;
-            let of_way = self.way.unwrap_or(Way::ActiveSet).method(settings.accuracy);
-            self.method = with.method.unwrap_or(of_way);
+            (self.method, self.keeps_norm) = choice;
             let fits = check_memory(problem, self.kept(), settings.memory)
                 .and_then(|()| check_time(&settings.watch, self.seconds()));
             match fits {
@@ -118,7 +103,7 @@ impl Layout {
         let (values, last) = (self.analysis.factor_entries(), self.last.len());
         let by_interior_point = self.is_by_interior_point();
         match (self.size.is_condensed, self.keeps_norm) {
-            (true, _) => Kept::Condensed { values, width: self.width, contact_dofs: last, by_interior_point },
+            (true, _) => Kept::Condensed { values, contact_dofs: last, by_interior_point },
             (false, true) => Kept::Factors { values, last, by_interior_point },
             (false, false) => Kept::OneFactor { values },
         }
@@ -141,11 +126,10 @@ impl Layout {
 
     /// Seconds until the first set of contact rows is settled, or the first step of the interior point is done.
     fn seconds(&self) -> f64 {
-        let of = |width| seconds::factor_seconds(self.size.multiplications, self.analysis.factor_entries(), width);
-        let first = of(self.width);
+        let first = seconds::factorisation(&self.analysis);
         match (self.size.is_condensed, self.is_by_interior_point()) {
             (true, _) => first + seconds::dense(self.last.len()),
-            (false, false) => first + of(Width::Double),
+            (false, false) => 2.0 * first,
             (false, true) => first + 2.0 * seconds::interior_point(&self.analysis),
         }
     }
@@ -158,7 +142,7 @@ fn check_room_to_order(problem: &ContactProblem, with: &WithFactor, settings: &S
             let estimate = Estimate::of(problem);
             let may_condense = with.arrangements.contains(&Arrangement::Condensed);
             let of_others = if may_condense { 0.0 } else { FACTORS - 1.0 };
-            let others = of_others * bytes::of_factor(estimate.factor_entries, size_of::<f64>());
+            let others = of_others * bytes::of_factor(estimate.factor_entries);
             let bytes = bytes + bytes::of_next_factor(estimate.factor_entries) + others;
             Err(Error::TooLarge { dofs, stiffness_entries, factor_entries: estimate.factor_entries, bytes, allowed })
         }

@@ -6,7 +6,7 @@
 //! pieces        uncoupled parts, each by a ladder of its own
 //! with a factor method -> existence, if it met a free motion -> continuation, if unsettled -> dual, if unsettled
 //!                 -> refinement and repair, while they gain -> dual, if it falls short -> refinement and repair
-//!               the same in double precision after a shortcut; the same on all dofs after a condensation
+//!               the active set after a shortcut; the same on all dofs after a condensation
 //! multigrid     MPRGP -> MPRGP to a smaller tolerance, while it settles
 //! at the end    existence, if that is in doubt -> proximal steps, if there is an answer -> uniqueness
 //! ```
@@ -31,4 +31,3 @@ pub(super) use choice::is_bounded_by_factor;
 pub use history::{Answered, Best, Ended, History, Record};
 pub(super) use ladder::{Known, Ladder};
 pub(super) use layout::Layout;
-pub(super) use rules::Way;

@@ -142,7 +142,6 @@ impl Ladder {
         let method = history.last_tried().map_or(self.settings.method, |tried| tried.method);
         let in_attempt = || history.records.iter().filter(|record| record.place.attempt == place.attempt);
         let was_made = |step: Step| in_attempt().any(|record| record.step == step);
-        let is_mixed = || history.last_tried().is_some_and(|tried| tried.is_single);
         let answer = history.last_answer();
         let is_unheld = answer.is_some_and(|answer| answer.is_unheld);
         match (when, step) {
@@ -156,7 +155,7 @@ impl Ladder {
             }
             (When::Unsettled, _) => {
                 let is_unsettled = answer.is_some_and(|answer| !answer.is_settled);
-                !certified && is_unsettled && method.allows_last_resort(f64::INFINITY) && !is_mixed()
+                !certified && is_unsettled && method.allows_last_resort(f64::INFINITY)
             }
             (When::Improvable, _) => {
                 // A repair follows a refinement also if that gained nothing.
@@ -167,11 +166,11 @@ impl Ladder {
                 };
                 let last = in_attempt().rfind(|record| record.step != Step::Existence);
                 let asks = certificate.is_some_and(|certificate| certificate.asks_for_more(history.goal));
-                asks && last.is_some_and(is_new) && method.wants_best() && !(is_mixed() && step == Step::Repair)
+                asks && last.is_some_and(is_new) && method.wants_best()
             }
             (When::Short, Step::Dual) => {
                 let may_gain = method.allows_last_resort(miss(certificate, history));
-                !certified && may_gain && !was_made(Step::Dual) && !is_mixed()
+                !certified && may_gain && !was_made(Step::Dual)
             }
             (When::Doubtful, _) => !history.was_in_doubt() && self.is_doubtful(history),
             (When::Exists, _) => {

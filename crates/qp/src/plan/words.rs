@@ -9,7 +9,6 @@ use super::layout::Layout;
 use crate::error::Error;
 use crate::memory::in_words as memory;
 use crate::problem::ContactProblem;
-use crate::settings::Precision;
 use crate::settings::Settings;
 use crate::solution::Why;
 use crate::transform::{RowSelection, Scaling};
@@ -116,7 +115,7 @@ impl When {
             When::Improvable | When::Short => "if the answer falls short",
             When::ShortOfMultigrid => "if multigrid falls short",
             When::ShortOfUnsettled => "if the method does not settle and its answer falls short",
-            When::ShortOfShortcut => "if a faster method, or a factor in single precision, falls short",
+            When::ShortOfShortcut => "if a faster method falls short",
             When::ShortOnCondensed => "if the answer on condensed dofs falls short",
             When::Doubtful => "if an answer has no bound",
             When::Exists => "if there is an answer, and none was found",
@@ -151,17 +150,12 @@ impl Attempt {
             true => "condensed to the contact dofs if that pays",
             false => "on all dofs",
         };
-        let precision = match with.precision {
-            Precision::Auto => "",
-            Precision::Double => " in double precision",
-            Precision::Mixed => " in single precision",
-        };
         let start = match self.start {
             From::Given | From::Nothing => "",
             From::Cycles => ", from the set that a few cycles of multigrid find",
             From::Best => ", from the best set so far",
         };
-        format!("{method} with a factor{precision}, {on}{start}")
+        format!("{method} with a factor, {on}{start}")
     }
 }
 

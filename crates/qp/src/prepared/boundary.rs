@@ -121,8 +121,8 @@ impl Prepared {
         self.ask(gap, &self.start, |engine, task| engine.settled(task))
     }
 
-    /// The displacement, one entry per dof, in length, that the load causes if no row is closed, in the precision of
-    /// the factor; `None` without one.
+    /// The displacement, one entry per dof, in length, that the load causes if no row is closed; `None` without a
+    /// factor.
     pub fn response(&self) -> Option<Vec<f64>> {
         self.bench.as_ref().and_then(|bench| bench.engine.response(&bench.load))
     }

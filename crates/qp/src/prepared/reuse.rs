@@ -123,8 +123,7 @@ impl Prepared {
         let elimination = Elimination::of(&self.problem).ok()??;
         let rest = elimination.problem(&self.problem).ok()?;
         let rest = Self::for_gaps(&rest, gaps, &Settings { memory, ..settings.clone() }).ok()?;
-        let by = if self.is_single() { Bounding::OwnFactor } else { bench.engine.bounding(&settings.watch, 0.0) };
-        let norm = match by {
+        let norm = match bench.engine.bounding(&settings.watch) {
             Bounding::Factor(norm) => Some(norm),
             Bounding::OwnFactor if !elimination.is_cut() => self.problem.norm_on_equalities().ok()?,
             _ => None,
@@ -133,7 +132,7 @@ impl Prepared {
     }
 
     /// The same problem under other settings. The prepared data are kept if their method works on them, with its
-    /// condensation, precision and threads; otherwise the problem is prepared again.
+    /// condensation and threads; otherwise the problem is prepared again.
     ///
     /// # Errors
     /// As [`Prepared::new`].
@@ -264,7 +263,7 @@ impl Prepared {
 
     /// The method and its means, if the data are prepared.
     fn tried(&self) -> Option<Tried> {
-        self.bench.as_ref().map(|bench| bench.engine.tried(None, &self.settings))
+        self.bench.as_ref().map(|bench| bench.engine.tried(None))
     }
 
     /// Number of unknowns that the prepared methods work on: less than those of the problem if it is condensed.
@@ -277,19 +276,14 @@ impl Prepared {
         self.bench.as_ref().map_or(0, |bench| bench.engine.factor_entries())
     }
 
-    /// Memory of the values of the factor, in bytes: 8 for each, 4 in single precision.
+    /// Memory of the values of the factor, in bytes.
     pub fn factor_bytes(&self) -> usize {
-        self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
+        self.factor_entries() * size_of::<f64>()
     }
 
     /// Multiplications of the factorisation of the stiffness; zero without one.
     pub fn multiplications(&self) -> f64 {
         self.tried().map_or(0.0, |tried| tried.multiplications)
-    }
-
-    /// Returns `true` if the prepared factor is in single precision.
-    pub fn is_single(&self) -> bool {
-        self.tried().is_some_and(|tried| tried.is_single)
     }
 
     /// The attempts and steps that a solve makes, in order, each with its condition and its reason, a line each.

@@ -141,7 +141,7 @@ impl<'a> Run<'a> {
         let Some(bench) = self.prepared(next.place.attempt, record)? else { return Ok(Ended::Empty) };
         let Workbench { engine, load, .. } = bench;
         let (method, settings) = (attempt.means.method(), self.settings);
-        let tried = engine.tried(method, settings);
+        let tried = engine.tried(method);
         record.tried = Some(tried);
         let start = self.start_from(next.start, record.step);
         let best = self.history.best.as_ref().map(|best| &best.solution);
@@ -152,11 +152,10 @@ impl<'a> Run<'a> {
         if let Ending::Infeasible { rows, weights } = &found.outcome.ending {
             return Ok(Ended::Decided(problem.infeasible(rows, weights)));
         }
-        let contraction = found.refined.map_or(0.0, |refined| refined.1);
         let (ending, solution) = (found.outcome.ending.clone(), self.answer(found, &tried, record));
         self.settings.watch.step("certificate", 0);
-        let by = engine.bounding(&self.settings.watch.finishing(), contraction);
-        let answer = Best { ending, tried: Some(tried), contraction, ..Best::of(solution, next.place.attempt) };
+        let by = engine.bounding(&self.settings.watch.finishing());
+        let answer = Best { ending, tried: Some(tried), ..Best::of(solution, next.place.attempt) };
         self.judged(answer, &by, record).map(Ended::Answered)
     }
 
@@ -198,7 +197,7 @@ impl<'a> Run<'a> {
 
     /// What was found as an answer, not judged yet.
     fn answer(&mut self, found: Found, tried: &Tried, record: &Record) -> Solution {
-        let Found { mut outcome, refined, .. } = found;
+        let mut outcome = found.outcome;
         let attempt = record.place.attempt;
         match (record.improves(), &self.history.best) {
             (true, Some(best)) => Solution {
@@ -216,10 +215,8 @@ impl<'a> Run<'a> {
                 let sets = Outcome { displacement: Vec::new(), multiplier: Vec::new(), ..outcome.clone() };
                 self.last = Some((attempt, sets));
                 let condensed_dofs = tried.condensed_dofs.unwrap_or(outcome.displacement.len());
-                let (lost_pivot, single_precision) = (tried.lost_pivot, refined.is_some());
-                let refinements = refined.map_or(0, |refined| refined.0);
                 let solution = without_certificate(outcome, tried.method.name());
-                Solution { condensed_dofs, single_precision, refinements, lost_pivot, ..solution }
+                Solution { condensed_dofs, lost_pivot: tried.lost_pivot, ..solution }
             }
         }
     }
@@ -326,7 +323,6 @@ pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
         certificate: Certificate::unknown(),
         proven: None,
         cut_short: None,
-        single_precision: false,
         refinements: 0,
         lost_pivot: None,
         reason: String::new(),
@@ -348,7 +344,7 @@ mod tests {
     use super::*;
     use crate::method::interior_point::InteriorPoint;
     use crate::plan::Means;
-    use crate::settings::{Method, Precision};
+    use crate::settings::Method;
 
     /// A chain of springs between a support and nothing, its last dofs before walls, under a force on each dof.
     fn chain(dofs: usize, ground: f64, walls: &[(usize, f64)], force: f64) -> ContactProblem {
@@ -370,7 +366,7 @@ mod tests {
     fn the_steps_that_are_recorded_are_those_of_the_plan() {
         let held = || chain(30, 1.0, &[(29, 1.0), (20, 0.5)], 1.0);
         let loose = Method::Qp(InteriorPoint { polish: false, tolerance: 1e-2 });
-        let kinds: [(&str, ContactProblem, Settings, bool); 12] = [
+        let kinds: [(&str, ContactProblem, Settings, bool); 11] = [
             ("held", held(), Settings::default(), true),
             ("as exact as doubles", held(), Settings::default().with_tolerance(1e-300), true),
             ("by name", held(), by(Method::ActiveSet), true),
@@ -378,7 +374,6 @@ mod tests {
             ("unpolished", held(), by(loose), false),
             ("penalty", held(), by(Method::penalty()), false),
             ("multigrid", held(), by(Method::Mprgp), true),
-            ("single", held(), by(Method::ActiveSet).with_precision(Precision::Mixed), true),
             ("held by a wall", chain(30, 0.0, &[(29, 1.0)], 1.0), Settings::default(), true),
             ("driven away", chain(30, 0.0, &[(29, 1.0)], -1.0), Settings::default(), false),
             ("in balance", chain(30, 0.0, &[(29, 1.0)], 0.0), Settings::default(), false),

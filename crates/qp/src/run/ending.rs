@@ -153,7 +153,7 @@ impl Run<'_> {
             return nothing;
         }
         let clock = Instant::now();
-        let by = bench.engine.bounding(&watch.finishing(), best.contraction);
+        let by = bench.engine.bounding(&watch.finishing());
         let Solution { displacement, multiplier, .. } = &best.solution;
         let evidence = best.evidence.take();
         (self.problem.prove_by(&by, WithEvidence { displacement, multiplier, evidence }), clock.elapsed().as_secs_f64())

@@ -48,7 +48,6 @@ pub(super) fn solved(
         iterations: answers.iter().map(|answer| answer.iterations).max().unwrap_or(0),
         history: history(pieces, &answers),
         proven: proven(pieces, &answers),
-        single_precision: answers.iter().any(|answer| answer.single_precision),
         refinements: answers.iter().map(|answer| answer.refinements).max().unwrap_or(0),
         reason: answers
             .iter()

@@ -10,8 +10,6 @@ pub use certificate::Met;
 pub use certificate::{Certificate, Goal};
 pub use contact_set::ContactSet;
 
-use std::ops::Not;
-
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
@@ -156,9 +154,6 @@ pub struct Solution {
     /// The limit that ended the search before its end, in words; `None` if it ended by itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut_short: Option<String>,
-    /// `true` if the factor was in single precision.
-    #[serde(skip_serializing_if = "Not::not")]
-    pub single_precision: bool,
     /// Steps of refinement, each the answer for the residual of the answer before.
     #[serde(skip_serializing_if = "is_none")]
     pub refinements: usize,

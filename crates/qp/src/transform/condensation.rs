@@ -100,11 +100,6 @@ impl Condensation {
         &self.contact_dofs
     }
 
-    /// Returns `true` if the factor of K is in single precision.
-    pub fn is_single(&self) -> bool {
-        self.cholesky.is_single()
-    }
-
     /// The condensed stiffness S.
     pub fn stiffness(&self) -> &SymmetricMatrix {
         &self.stiffness

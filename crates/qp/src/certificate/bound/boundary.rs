@@ -119,7 +119,7 @@ impl<'a> FirstRepair<'a> {
         let bound = repair.bound(&witness);
         // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
         let is_precise = norm.springs.is_none() || norm.loss() <= LOST_WITH_SPRINGS;
-        let is_exact = norm.widening == 1.0 && !witness.is_rounded && is_precise;
+        let is_exact = !witness.is_rounded && is_precise;
         let is_rounding = problem.parts().count() == 1 && bound.whole <= answer.rounding;
         let is_sharp = is_exact && (is_rounding || repair.vague(&witness) <= SMALL * bound.whole);
         Some(FirstRepair { repair, witness, bound, is_sharp })

@@ -126,7 +126,7 @@ impl ContactProblem {
             self.bound_row_by_row(norm, answer, Some(closed)).smaller(self.bound_row_by_row(norm, answer, None))
         });
         let (underflow, rounding) = (self.underflow(answer), self.rounding_of_residual(answer));
-        let bound = bound.widened(norm.widening * norm.rounding());
+        let bound = bound.widened(norm.rounding());
         let with_lost = |bound: f64, rounding: f64| bound + underflow + norm.loss() * rounding;
         let of_part = |(bound, rounding): (f64, &f64)| with_lost(bound, *rounding);
         ErrorBound {

@@ -1,7 +1,7 @@
 //! Nodes gathered into aggregates along strong connections.
 
 use super::blocks::BlockMatrix;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 
 /// No aggregate yet.
 const NONE: u32 = u32::MAX;

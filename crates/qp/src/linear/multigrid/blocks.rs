@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::linear::Spare;
-use crate::linear::factor::Real;
 use crate::linear::grouped::group_starts;
+use crate::linear::real::Real;
 use crate::linear::threads::{SharedRows, in_order};
 
 /// Largest number of parts of a product with the transposed matrix: each has its own vector.

@@ -10,8 +10,8 @@ use super::operator::Operator;
 use super::patches::Patches;
 use super::repeated::RowByRow;
 use crate::linear::Spare;
-use crate::linear::factor::Real;
 use crate::linear::power_iteration::power_iteration;
+use crate::linear::real::Real;
 
 /// Products that estimate the largest eigenvalue of D^-1 A.
 const POWER_STEPS: usize = 12;

@@ -6,7 +6,7 @@
 use super::coarsest::lower_part;
 use super::hierarchy::{Hierarchy, Level};
 use super::{Levels, Multigrid};
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 use crate::linear::{Spare, SymmetricMatrix, ldexp};
 
 /// An unknown starts at its bound if more than this share of the unknowns that it is interpolated from is at their

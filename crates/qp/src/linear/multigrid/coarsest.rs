@@ -1,7 +1,7 @@
 //! The coarsest level: a Cholesky factor, shifted if nothing holds the body.
 
 use super::blocks::BlockMatrix;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 use crate::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, ldexp};
 
 /// Pivots of the coarsest matrix below this many units in the last place are rounding: the body is not supported. The

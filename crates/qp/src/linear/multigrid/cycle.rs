@@ -4,7 +4,7 @@ use super::face::FaceLevels;
 use super::hierarchy::Hierarchy;
 use super::operator::Operator;
 use crate::linear::Spare;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 
 impl<T: Real> Hierarchy<T> {
     /// Approximately `A^-1` of a force, by one V-cycle, in the given face; a vector of `work`.

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use super::hierarchy::Hierarchy;
 use super::operator::Operator;
-use crate::linear::factor::Real;
 use crate::linear::power_iteration::power_iteration;
+use crate::linear::real::Real;
 
 /// Cycles of a quick measurement, and of the one that gives the degree.
 const CYCLES: (usize, usize) = (5, 10);

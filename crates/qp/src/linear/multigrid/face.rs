@@ -23,7 +23,7 @@ use super::coarsest::Coarsest;
 use super::held::{Held, Hold, ways};
 use super::hierarchy::{Hierarchy, Level};
 use crate::linear::FactorError;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 
 /// The data of a face on the levels of a hierarchy.
 #[derive(Debug)]

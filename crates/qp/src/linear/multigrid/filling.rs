@@ -6,7 +6,7 @@ use super::super::quotient::Quotient;
 use super::super::{SymmetricMatrix, ldexp};
 use super::blocks::BlockMatrix;
 use super::repeated::RowByRow;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 use crate::linear::threads::in_order;
 
 /// Groups of dofs whose rows are made at a time.

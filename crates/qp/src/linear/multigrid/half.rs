@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::blocks::{BlockMatrix, Product};
 use crate::linear::Spare;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 use crate::linear::threads::{SharedRows, in_order};
 
 /// Largest number of parts of a product: each has its own vector.

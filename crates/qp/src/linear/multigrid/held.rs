@@ -2,7 +2,7 @@
 
 use super::blocks::BlockMatrix;
 use super::nodes::Nodes;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 
 /// A vector of few dofs: dofs and coefficients, in the units of the nodes.
 pub type Direction = Vec<(usize, f64)>;

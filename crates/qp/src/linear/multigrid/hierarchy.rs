@@ -13,7 +13,7 @@ use super::nodes::Nodes;
 use super::operator::Operator;
 use super::patches::Patches;
 use super::prolongator::{Candidates, smoothed, smoothed_in_steps, tentative};
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 use crate::linear::{FactorError, Spare, SymmetricMatrix, ldexp};
 
 /// Strength of connection on the finest level; it is halved from level to level, as in the source.

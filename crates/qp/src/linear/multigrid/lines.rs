@@ -9,7 +9,7 @@
 use super::aggregation::{Graph, aggregate, strong_connections};
 use super::blocks::BlockMatrix;
 use super::prolongator::Candidates;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 
 /// Strength of the connections along a line, on every level.
 const ALONG_LINES: f64 = 0.4;

@@ -38,7 +38,6 @@ pub use held::{Direction, Hold};
 pub use near_null::NearNullSpace;
 pub use nodes::Units;
 
-pub use super::Width;
 use super::{FactorError, Spare, SymmetricMatrix};
 use crate::error::Error;
 use face::FaceLevels;
@@ -69,6 +68,15 @@ macro_rules! by_precision {
             Levels::Double($hierarchy) => $call,
         }
     };
+}
+
+/// The floating-point numbers in which a hierarchy is stored; iterations around it are always in double precision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// 64 bits, about sixteen digits.
+    Double,
+    /// Single: half the memory, about seven digits of each value.
+    Single,
 }
 
 impl Multigrid {

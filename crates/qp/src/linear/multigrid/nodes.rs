@@ -4,7 +4,7 @@ use super::super::quotient::Quotient;
 use super::super::{SymmetricMatrix, exponent, ldexp};
 use super::blocks::BlockMatrix;
 use super::filling::Filling;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 
 /// Largest number of dofs of a node; if more have the same neighbours, they count as dofs of several nodes.
 const MOST_DOFS: usize = 3;

@@ -5,7 +5,7 @@ use super::half;
 use super::held::Held;
 use super::repeated;
 use crate::linear::Spare;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 
 /// A matrix A minus the change by a face: on the finest level the face is the range of E = I - N, on coarser ones A
 /// becomes A - C.

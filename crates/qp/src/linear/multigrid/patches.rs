@@ -11,8 +11,8 @@
 
 use super::blocks::BlockMatrix;
 use super::inverse::invert;
-use crate::linear::factor::Real;
 use crate::linear::grouped::group_starts;
+use crate::linear::real::Real;
 use crate::linear::threads::SharedRows;
 
 /// No place.

@@ -2,8 +2,8 @@
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
-use crate::linear::factor::Real;
 use crate::linear::grouped::grouped;
+use crate::linear::real::Real;
 use crate::linear::threads::SharedRows;
 
 /// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after

@@ -8,7 +8,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::blocks::{BlockMatrix, Product};
 use crate::linear::Spare;
-use crate::linear::factor::Real;
+use crate::linear::real::Real;
 
 /// Nodes that are multiplied together.
 const TILE: usize = 16;
