@@ -30,11 +30,11 @@ class Tradeoff:
         One per mesh: "divided_by" (parts of each edge of the mesh of the scene), "dofs", "contact_rows", and
         "discretisation_error", estimated, for a scene.
     points : list of dict
-        One per solve. "mesh" is its index in `meshes`; "method" and "knob" say how it was solved; "condensed" and
-        "mixed" are bools; "seconds", "certificate_seconds" and "proof_seconds" are times. "energy_error",
-        "total_error" (against the continuum), "force_error" and "pressure_error" are relative. "rows_wrong" is the
-        number of wrong rows, "energy_error_bound" the bound of the certificate. "best" is True if no other point of its
-        mesh is both faster and more accurate.
+        One per solve. "mesh" is its index in `meshes`; "method" and "knob" say how it was solved; "condensed" is a
+        bool; "seconds", "certificate_seconds" and "proof_seconds" are times. "energy_error", "total_error" (against
+        the continuum), "force_error" and "pressure_error" are relative. "rows_wrong" is the number of wrong rows,
+        "energy_error_bound" the bound of the certificate. "best" is True if no other point of its mesh is both faster
+        and more accurate.
     advice : list of dict
         For each goal ("accuracy", "total_error" or "seconds") in "point" the index of the best point, or None.
     """
@@ -73,7 +73,7 @@ class Tradeoff:
         for point in self.points:
             error = point.get(name)
             if error is not None:
-                key = (point["method"] + (", mixed" if point["mixed"] else ""), point["condensed"], point["mesh"])
+                key = (point["method"], point["condensed"], point["mesh"])
                 lines.setdefault(key, []).append((point["seconds"], max(error, _LEAST_ERROR)))
         colours = {method: f"C{i % 10}" for i, method in enumerate(sorted({key[0] for key in lines}))}
         seen: set[str] = set()

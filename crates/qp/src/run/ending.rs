@@ -36,7 +36,10 @@ impl Run<'_> {
         if let Some(error) = self.ladder.no_room(&self.history).filter(|_| !certified) {
             return Err(error);
         }
-        if !certified && let Some(error) = self.moves.take().or_else(|| self.doubt()) {
+        // A motion says nothing of rows that are not met.
+        let meets_rows = |best: &Best| best.solution.certificate.penetration <= self.ladder.sure_tolerance();
+        let moves = if self.history.best.as_ref().is_some_and(meets_rows) { self.moves.take() } else { None };
+        if !certified && let Some(error) = moves.or_else(|| self.doubt()) {
             return Err(error);
         }
         let (why, reason) = (self.ladder.why(&self.history), self.ladder.reason(&self.history));
