@@ -109,7 +109,7 @@ impl Estimate {
         Estimate {
             direct_bytes: bytes::START
                 + bytes::of_problem(dofs, problem.stiffness().entries() as f64)
-                + bytes::of_next_factor(direct.factor_entries),
+                + bytes::of_factor(direct.factor_entries),
             factor_entries: direct.factor_entries,
             direct_seconds: times * direct.seconds,
             multigrid_bytes: if takes_travels(problem) { multigrid_bytes(problem) } else { f64::INFINITY },

@@ -140,10 +140,8 @@ fn check_room_to_order(problem: &ContactProblem, with: &WithFactor, settings: &S
     match check_memory(problem, Kept::Nothing, settings.memory) {
         Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
             let estimate = Estimate::of(problem);
-            let may_condense = with.arrangements.contains(&Arrangement::Condensed);
-            let of_others = if may_condense { 0.0 } else { FACTORS - 1.0 };
-            let others = of_others * bytes::of_factor(estimate.factor_entries);
-            let bytes = bytes + bytes::of_next_factor(estimate.factor_entries) + others;
+            let factors = if with.arrangements.contains(&Arrangement::Condensed) { 1.0 } else { FACTORS };
+            let bytes = bytes + factors * bytes::of_factor(estimate.factor_entries);
             Err(Error::TooLarge { dofs, stiffness_entries, factor_entries: estimate.factor_entries, bytes, allowed })
         }
         checked => checked,
