@@ -368,3 +368,29 @@ fn digits_lost_by_condensation_are_restored_by_a_repair_or_by_a_solve_on_all_dof
     let held = answer(&pressed_block(1.0, 1.0), &settings(Method::ActiveSet, Condense::Auto));
     assert!(held.attempts.is_empty() && held.condensed_dofs < held.displacement.len(), "{:?}", held.attempts);
 }
+
+/// A slender beam between two clamps, pressed by a parabola, takes more than thirty sets. If each has a factor on all
+/// dofs, the loop ends once they have cost twice what multigrid is expected to cost.
+#[test]
+fn sets_on_all_dofs_that_do_not_settle_give_way_to_multigrid() {
+    let clamps = ["left", "right"].map(|side| json!({"on": {"boundary": side}, "x": 0, "y": 0}));
+    let beam = built(&json!({
+        "model": "plane-strain",
+        "body": {"rectangle": {"element": "q4", "x": {"points": [0, 4], "divisions": [200]},
+            "y": {"points": [0, 0.1], "divisions": [4]}}},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": clamps,
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [2, 0.1], "radius": 10}}}],
+        "gap": -0.1,
+    }));
+    let problem = beam.problem();
+    let long = answer(problem, &settings(Method::ActiveSet, Condense::Never));
+    let switched = answer(problem, &settings(Method::Auto, Condense::Never));
+    let condensed = answer(problem, &settings(Method::Auto, Condense::Auto));
+    assert_eq!((&*switched.method, &*condensed.method), ("mprgp", "active-set-continuation"));
+    assert_eq!(switched.attempts[0].method, "active-set-unsettled");
+    assert!(switched.why.reason.contains("sets with a factor each cost more"), "{}", switched.why.reason);
+    assert!(long.iterations > 30, "{}", long.iterations);
+    assert_eq!(switched.contact_set, long.contact_set);
+    same(&condensed.displacement, &long.displacement, "on the contact dofs");
+}

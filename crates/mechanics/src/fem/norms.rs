@@ -161,7 +161,7 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
         let scale = cell.unit().powi(self.body.dimension() as i32);
         let mut sums = Sums::default();
         for at in &table.points {
-            let point = self.body.point(cell, at);
+            let point = self.body.displaced(cell, at, local);
             let place = cell.place(&at.shape);
             let exact = (self.exact)(place);
             let mut away = exact.displacement;
@@ -169,8 +169,7 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
                 away.iter_mut().zip(value).for_each(|(away, component)| *away -= share * component);
             }
             let mut difference = exact.strain;
-            let strain = point.strain(local, cell.unit());
-            difference.iter_mut().zip(strain).for_each(|(entry, component)| *entry -= component);
+            difference.iter_mut().zip(point.strain()).for_each(|(entry, component)| *entry -= component);
             let weight = point.weight * scale;
             let square = |vector: &[f64; 3]| vector.iter().map(|component| component * component).sum::<f64>();
             let here = Sums {

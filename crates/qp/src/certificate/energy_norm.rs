@@ -147,6 +147,15 @@ impl EnergyNorm {
         EnergyNorm { known, ..self }
     }
 
+    /// The same norm, which keeps the compliance of the rows `contact` for many answers.
+    pub fn keeping(self, contact: &SparseMatrix) -> Self {
+        let rows = self.rows_on_boundary(contact, |_| true).filter(|rows| rows.compliance.is_none());
+        let Some(rows) = rows else { return self };
+        let compliance = Some(Arc::new(Compliance::on(&self.cholesky, rows.by_row.clone())));
+        let known = Known { contact: contact.clone(), rows: RowsOnBoundary { compliance, ..rows } };
+        EnergyNorm { known: Some(Arc::new(known)), ..self }
+    }
+
     /// The compliance of the scaled rows, if it serves balances of forces.
     pub fn compliance(&self) -> Option<&Compliance> {
         self.known.as_ref()?.rows.compliance.as_deref()

@@ -22,8 +22,9 @@ pub(crate) const NEAR_CYCLES: f64 = 8.0;
 /// condensed.
 const SETS: [f64; 2] = [10.0, 5.0];
 
-/// The sets of a condensed problem take about this many times the seconds of condensing it.
-const DENSE_STEPS: f64 = 3.0;
+/// Condensing a problem and its sets take about this many times the seconds of a product of its dense matrices: 2 to 7,
+/// by the rows that are closed on the way.
+const DENSE_STEPS: f64 = 6.0;
 
 /// Returns `true` if the contact boundary is most of the body, so that a front of closed rows has a long way to go.
 fn is_everywhere(problem: &ContactProblem) -> bool {
@@ -42,11 +43,12 @@ impl BodyFactor {
     /// By the number of unknowns, with the law of a bar, a square or a cube.
     pub fn by_size(problem: &ContactProblem) -> Self {
         let dofs = problem.dofs() as f64;
-        let (entries, seconds) = match problem.near_null().map(|near_null| near_null.count()) {
-            Some(1) if is_line(problem) => (ALONG_A_LINE * dofs, factor_seconds(0.0, ALONG_A_LINE * dofs)),
-            Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 7.7e-10 * dofs.powi(2)),
-            _ => (6.0 * dofs * dofs.max(2.0).log2(), in_the_plane(problem)),
+        let (multiplications, entries) = match problem.near_null().map(|near_null| near_null.count()) {
+            Some(1) if is_line(problem) => (0.0, ALONG_A_LINE * dofs),
+            Some(MODES_IN_SPACE..) => (10.0 * dofs.powi(2), 23.0 * dofs.powf(4.0 / 3.0)),
+            _ => (in_the_plane(problem), 6.0 * dofs * dofs.max(2.0).log2()),
         };
+        let seconds = factor_seconds(multiplications, entries);
         BodyFactor { entries, seconds, ordering_seconds: seconds::ordering(problem) }
     }
 
@@ -74,9 +76,9 @@ fn is_line(problem: &ContactProblem) -> bool {
     problem.stiffness().lower().entries() <= 2 * problem.dofs()
 }
 
-/// Seconds of a factor in the plane; each part has its own.
+/// Multiplications of a factor in the plane; each part has its own.
 fn in_the_plane(problem: &ContactProblem) -> f64 {
-    3.7e-9 * problem.parts().sums(|_| 1.0).into_iter().map(|dofs| dofs.powf(1.5)).sum::<f64>()
+    34.0 * problem.parts().sums(|_| 1.0).into_iter().map(|dofs| dofs.powf(1.5)).sum::<f64>()
 }
 
 /// The estimated costs of the direct path.
@@ -102,7 +104,7 @@ impl Direct {
             (body.seconds, if starts_near { near } else { from_nothing })
         } else {
             let factor = body.seconds + seconds::last_block(boundary);
-            let is_condensed = Condensation::is_small(boundary, body.entries);
+            let is_condensed = Condensation::pays(boundary as f64, dofs, body.entries);
             (factor, if is_condensed { DENSE_STEPS * seconds::dense(boundary) } else { SETS[1] * factor })
         };
         let shared_seconds = body.ordering_seconds + factor;

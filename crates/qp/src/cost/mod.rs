@@ -8,7 +8,6 @@ mod smooth;
 use super::method::mprgp::takes_travels;
 use super::problem::ContactProblem;
 use crate::error::Error;
-use crate::transform::FEW_VALUES;
 use crate::watch::Watch;
 use direct::{BodyFactor, Direct};
 pub(crate) use direct::{NEAR_CYCLES, starts_near};
@@ -34,9 +33,6 @@ fn is_turned(problem: &ContactProblem) -> bool {
     let of_travels: usize = problem.without_stiffness().into_iter().map(|dof| contact.column(dof).count()).sum();
     contact.entries() - of_travels > contact.rows()
 }
-
-/// If a dense matrix would have more than this share of the values of the factor, nothing is condensed.
-const DENSE_SHARE: f64 = 0.4;
 
 /// Estimated time and memory of the two paths.
 ///
@@ -74,9 +70,9 @@ impl Estimate {
     /// `entries` of the stiffness, both triangles, `factor_entries` values of its factor, and at most `contact_dofs` on
     /// which it may be condensed.
     pub fn bytes_of_factor(dofs: f64, entries: f64, factor_entries: f64, contact_dofs: f64) -> f64 {
-        // With a larger dense matrix nothing is condensed.
-        let dense = contact_dofs.powi(2).min(DENSE_SHARE * factor_entries.max(FEW_VALUES)).sqrt();
-        bytes::of_problem(dofs, entries) + bytes::of_factor(factor_entries) + bytes::of_dense(dense)
+        let factor = bytes::of_factor(factor_entries);
+        // Instead of large dense matrices the factor of a set is kept.
+        bytes::of_problem(dofs, entries) + factor + bytes::of_dense(contact_dofs).min(factor)
     }
 
     /// The same for the iterative path.
@@ -183,15 +179,13 @@ pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f6
         }
     };
     let is_factor = !matches!(kept, Kept::Nothing | Kept::Multigrid);
-    // The bound of a singular stiffness needs further factors, with springs.
-    let beside = match is_factor && problem.is_singular() {
-        true => beside + bytes::of_springs(factor_entries as f64, stiffness_entries),
-        false => beside,
-    };
     let bytes = match kept {
         Kept::Multigrid => multigrid_bytes(problem),
         _ => bytes::START + bytes::of_problem(dofs, stiffness_entries) + beside,
     };
+    // The bound of a singular stiffness needs further factors, with springs; whether it is singular takes a while.
+    let springs = if is_factor { bytes::of_springs(factor_entries as f64, stiffness_entries) } else { 0.0 };
+    let bytes = if bytes + springs > allowed && problem.is_singular() { bytes + springs } else { bytes };
     if bytes > allowed {
         let factor_entries = factor_entries as f64;
         return Err(Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed });

@@ -35,6 +35,8 @@ pub(crate) struct Factored {
     pub(super) method: ByFactor,
     pub(super) is_chosen: bool,
     pub(super) multiplications: f64,
+    /// Estimated seconds of a set of closed rows, if each has a factor of its own; zero if not.
+    pub(super) set_seconds: f64,
     /// Estimated seconds of the proof of the open and closed rows.
     pub(super) proof_seconds: f64,
     /// Estimated seconds of the factorisation that a bound takes if the stiffness is not definite by itself.
@@ -76,6 +78,7 @@ impl Engine for Factored {
             lost_pivot: self.lost_pivot,
             is_singular: self.lost_pivot.is_some(),
             multiplications: self.multiplications,
+            set_seconds: self.set_seconds,
         }
     }
 
@@ -193,7 +196,8 @@ impl Factored {
             let of_whole = self.share_of_boundary(&loading, unit, on_boundary);
             examined.map_or(f64::INFINITY, |examined| examined.certificate.energy_error_bound * of_whole)
         };
-        let (accuracy, most_iterations) = (settings.accuracy, settings.max_iterations);
+        let accuracy = settings.accuracy;
+        let most_iterations = settings.max_iterations.min(task.limits.most_sets(self.set_seconds));
         let made = ScaledStep { scaled: &scaled, start, method, accuracy, most_iterations, bound: &bound };
         let outcome = made.outcome(step)?;
         let factor_seconds = scaled.factor_seconds();

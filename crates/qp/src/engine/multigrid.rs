@@ -107,7 +107,7 @@ impl Engine for Hierarchical {
         let values = rows.iter().map(|&row| gap[row]).collect();
         let free = self.problem.without_rows()?.with_load(load.to_vec())?;
         let problem = &free.with_all_equalities(&self.problem.contact().select_rows(&rows), values)?;
-        let limits = Limits { tolerance: HELD, most_cycles: MOST_HELD_CYCLES, worth: usize::MAX };
+        let limits = Limits { most_cycles: MOST_HELD_CYCLES, ..Limits::to(HELD) };
         let outcome = Mprgp { problem, multigrid: &self.multigrid, limits, watch }.solve(Start::default())?;
         if !outcome.is_settled() {
             return Ok(None);
@@ -131,7 +131,7 @@ impl Hierarchical {
     /// A contact set near that of the answer; `None` if the method meets a difficulty that another method must treat.
     pub fn near(&self, watch: &Watch) -> Option<Start> {
         let most_cycles = NEAR_CYCLES as usize;
-        let limits = Limits { tolerance: NEAR, most_cycles, worth: usize::MAX };
+        let limits = Limits { most_cycles, ..Limits::to(NEAR) };
         let mprgp = Mprgp { problem: &self.problem, multigrid: &self.multigrid, limits, watch };
         Some(mprgp.solve(Start::default()).ok()?.contact_set.into())
     }

@@ -44,7 +44,8 @@ impl Factored {
             boundary => boundary * boundary,
         };
         let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
-        let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
+        let set_seconds = seconds::factorisation(&analysis);
+        let norm_seconds = seconds::ordering(problem) + set_seconds;
         let (cholesky, least_pivot) = definite(problem, &scaling, &analysis, settings)?;
         // If no columns come last, the contact sets have the order of the stiffness.
         let analysis = last.is_empty().then_some(analysis);
@@ -62,7 +63,8 @@ impl Factored {
         };
         let augmented = augmented(condensation.as_ref(), &scaling, analysis, threads.unwrap_or(1))?;
         let reduction = Reduction { selection, scaling, stiffest, norm, condensation };
-        if reduction.compliance().is_none() {
+        let by_factor = reduction.compliance().is_none();
+        if by_factor {
             augmented.matrix()?;
         }
         let factor = factor_clock.elapsed().as_secs_f64();
@@ -74,6 +76,7 @@ impl Factored {
             method,
             is_chosen: with.method.is_none(),
             multiplications: size.multiplications,
+            set_seconds: if by_factor && !size.is_condensed { set_seconds } else { 0.0 },
             proof_seconds,
             norm_seconds,
             condensed_norm: OnceLock::new(),

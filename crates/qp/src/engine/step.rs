@@ -84,6 +84,7 @@ impl ScaledStep<'_> {
         if scaled.watch().is_over() {
             return Ok(Outcome { ending: Ending::Unsettled, variant: "-unsettled", ..approach });
         }
+        let most_iterations = most_iterations.saturating_sub(approach.iterations).max(1);
         let second = ActiveSet { scaled, most_iterations }.solve(approach.contact_set.clone().into())?;
         let variant = if second.is_settled() { "-continuation" } else { second.variant };
         Ok(Outcome { variant, ..second.after(approach) })

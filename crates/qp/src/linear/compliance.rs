@@ -69,8 +69,13 @@ impl Compliance {
             true => rows.transposed(),
             false => rows.select(rows.rows(), Some, last.iter().copied()).transposed(),
         };
+        Some(Self::on(cholesky, by_row))
+    }
+
+    /// The same for any factor of K, given the rows, each a column, on the columns that it eliminates last.
+    pub fn on(cholesky: &Cholesky, by_row: SparseMatrix) -> Self {
         let (cholesky, block) = (cholesky.clone(), cholesky.trailing_block());
-        Some(Compliance { cholesky, block, by_row, halves: OnceLock::new() })
+        Compliance { cholesky, block, by_row, halves: OnceLock::new() }
     }
 
     /// Memory of the values, in bytes.

@@ -20,21 +20,20 @@ const WITH_FACTOR: &str = "factor";
 const ALL_DIGITS: f64 = 9.0;
 const FIRST_DIGITS: f64 = 1.5;
 
-/// Cycles allowed beyond those that take the time of a factorisation: the answer may be near.
-const MARGIN: usize = 10;
-
 /// An estimate may be too large by this factor.
 const UNSURE: f64 = 2.0;
+
+/// Cycles of multigrid, or sets on all dofs, go on until they have cost this many times what the other way is expected
+/// to cost.
+const OUTRUN: f64 = 2.0;
 
 /// The chosen path, with the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Choice {
-    /// The direct path: a factorisation of the stiffness.
-    Factor { reason: String },
-    /// Multigrid: it is much faster, unless it takes more cycles than this.
-    Speed { reason: String, most_cycles: usize },
-    /// Multigrid: nothing else fits into the memory.
-    Room { reason: String },
+    /// The direct path: a factorisation of the stiffness, unless its sets take more seconds than this.
+    Factor { reason: String, most_seconds: f64 },
+    /// Multigrid: it is much faster, unless it takes more cycles than this, or nothing else fits into the memory.
+    Multigrid { reason: String, most_cycles: usize },
 }
 
 impl Estimate {
@@ -54,12 +53,14 @@ impl Estimate {
         // For a body, constants alone give a poor hierarchy.
         if ratio > CLEARLY && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes {
             let reason = format!("by multigrid: a factorisation would take about {ratio:.1} times as long");
-            // After this number of cycles a factorisation would have been as fast.
-            let most_cycles = if fits { MARGIN + (self.cycles * ratio) as usize } else { usize::MAX };
-            return Ok(Choice::Speed { reason, most_cycles });
+            let of_cycles = OUTRUN * self.direct_seconds - self.hierarchy_seconds;
+            let cycle_seconds = (self.multigrid_seconds - self.hierarchy_seconds) / self.cycles;
+            let most_cycles = if fits { (of_cycles / cycle_seconds) as usize } else { usize::MAX };
+            return Ok(Choice::Multigrid { reason, most_cycles });
         }
         if self.direct_bytes > UNSURE * most_bytes {
-            return self.without_factor(self.direct_bytes, most_bytes).map(|reason| Choice::Room { reason });
+            let reason = self.without_factor(self.direct_bytes, most_bytes)?;
+            return Ok(Choice::Multigrid { reason, most_cycles: usize::MAX });
         }
         let slower = 1.0 / ratio;
         let reason = match self.smooth {
@@ -77,15 +78,17 @@ impl Estimate {
             _ if slower > 1.0 => format!("with a factor: multigrid would take about {slower:.1} times as long"),
             _ => format!("with a factor: its bound is proven, and multigrid is not {CLEARLY} times as fast"),
         };
-        Ok(Choice::Factor { reason })
+        let takes_both = self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes;
+        let most_seconds = if takes_both { OUTRUN * self.multigrid_seconds } else { f64::INFINITY };
+        Ok(Choice::Factor { reason, most_seconds })
     }
 
     /// The estimates behind a choice, and its reason.
     pub(super) fn why(&self, choice: &Choice) -> Why {
         let mprgp = Method::Mprgp.name();
         let (chosen, reason) = match choice {
-            Choice::Factor { reason } => (WITH_FACTOR, reason),
-            Choice::Speed { reason, .. } | Choice::Room { reason } => (mprgp, reason),
+            Choice::Factor { reason, .. } => (WITH_FACTOR, reason),
+            Choice::Multigrid { reason, .. } => (mprgp, reason),
         };
         let expected = |method: &str, seconds, bytes| Expected { method: method.to_string(), seconds, bytes };
         let considered = vec![

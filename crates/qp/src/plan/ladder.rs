@@ -99,7 +99,8 @@ impl Ladder {
         }
         let mut ladder = Ladder { settings: settings.clone(), ..self.clone() };
         for attempt in &mut ladder.attempts {
-            attempt.limits = Limits { worth: attempt.limits.worth, ..limits(settings) };
+            let Limits { tolerance, most_cycles, .. } = limits(settings);
+            attempt.limits = Limits { tolerance, most_cycles, ..attempt.limits };
         }
         Some(ladder)
     }
@@ -120,21 +121,19 @@ impl Ladder {
         // The way stands before the colon.
         let because = |reason: &str| reason.split_once(": ").map_or(reason, |(_, because)| because).to_string();
         match choice {
-            Choice::Factor { reason } => {
-                self.with_factor(Attempt { start, ..self.attempt(self.factor(None), because(reason)) });
+            Choice::Factor { reason, most_seconds } => {
+                let mut first = Attempt { start, ..self.attempt(self.factor(None), because(reason)) };
+                first.limits.most_seconds = *most_seconds;
+                self.with_factor(first);
                 let refused = self.attempt(Means::Multigrid, "it takes less memory, and begins sooner");
-                self.add(Attempt { when: When::Refused, ..refused });
+                self.add(Attempt { when: When::Refused, start: From::Best, ..refused });
                 // The refusal was of a faster method, which takes more memory than one factor at a time.
                 self.with_factor(after(self, Some(ByFactor::ActiveSet)));
             }
-            Choice::Speed { reason, most_cycles } => {
+            Choice::Multigrid { reason, most_cycles } => {
                 let mut multigrid = self.attempt(Means::Multigrid, because(reason));
                 multigrid.limits.worth = *most_cycles;
                 self.add(multigrid);
-                self.with_factor(after(self, None));
-            }
-            Choice::Room { reason } => {
-                self.add(self.attempt(Means::Multigrid, because(reason)));
                 self.with_factor(after(self, None));
             }
         }
@@ -198,7 +197,7 @@ const REQUESTED: &str = "it was requested";
 /// The first limits of MPRGP.
 fn limits(settings: &Settings) -> Limits {
     let tolerance = settings.accuracy.map_or(MARGIN * settings.goal().tolerance, |accuracy| FIRST * accuracy);
-    Limits { tolerance, most_cycles: settings.max_iterations, worth: usize::MAX }
+    Limits { most_cycles: settings.max_iterations, ..Limits::to(tolerance) }
 }
 
 /// Returns `true` if the direct path starts from a few cycles of multigrid.

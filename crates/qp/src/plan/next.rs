@@ -45,7 +45,7 @@ impl Ladder {
         }
         let has_ended = matches!((&last.ended, last.step), (Ended::Refused(_) | Ended::Failed(_), Step::Method));
         // A method that fails leaves its data to the next steps.
-        let is_prepared = !has_ended || last.tried.is_some();
+        let is_prepared = (!has_ended || last.tried.is_some()) && !self.is_outrun(history);
         let rest = if is_prepared { self.attempts[last.place.attempt].steps.len() } else { 0 };
         let here = (last.place.rung + 1..rest).map(|rung| Place { attempt: last.place.attempt, rung });
         let later = (last.place.attempt + 1..self.attempts.len())
@@ -54,7 +54,11 @@ impl Ladder {
         let place = here.chain(later).find(|place| self.holds(*place, history))?;
         match place.rung {
             0 => Some(self.start_of(place.attempt)),
-            _ => Some(Next { place, start: From::Best, limits: self.attempts[place.attempt].limits }),
+            _ => {
+                let limits = self.attempts[place.attempt].limits;
+                let most_seconds = limits.most_seconds - Self::spent(history, place.attempt);
+                Some(Next { place, start: From::Best, limits: Limits { most_seconds, ..limits } })
+            }
         }
     }
 
@@ -119,10 +123,28 @@ impl Ladder {
                         && self.choice.as_ref().is_some_and(|(e, _)| watch.allows(e.hierarchy_seconds))
                 }
                 Some(Ended::Refused(_)) => self.multigrid_fits(),
-                _ => false,
+                _ => self.multigrid_fits() && self.is_outrun(history),
             },
             _ => false,
         }
+    }
+
+    /// Estimated seconds of the sets of an attempt so far, each with a factor of its own.
+    fn spent(history: &History, attempt: usize) -> f64 {
+        let seconds = |record: &Record| match (&record.ended, record.tried) {
+            (Ended::Answered(answered), Some(tried)) => answered.iterations as f64 * tried.set_seconds,
+            _ => 0.0,
+        };
+        history.records.iter().filter(|record| record.place.attempt == attempt).map(seconds).sum()
+    }
+
+    /// Returns `true` if the last attempt did not settle, and one more set would cost more than the other way.
+    fn is_outrun(&self, history: &History) -> bool {
+        let Some(last) = history.records.last() else { return false };
+        let attempt = last.place.attempt;
+        let is_unsettled = matches!(last.ended, Ended::Answered(Answered { is_settled: false, is_unheld: false, .. }));
+        let next = last.tried.map_or(0.0, |tried| tried.set_seconds);
+        is_unsettled && Self::spent(history, attempt) + next > self.attempts[attempt].limits.most_seconds
     }
 
     /// Returns `true` if the last step eliminated equalities and left forces out of balance at a dof: an elimination

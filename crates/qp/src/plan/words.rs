@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::attempt::{Arrangement, Attempt, From, Means, Rung, Step, Tried, When, WithFactor};
+use super::choice::Choice;
 use super::history::{Ended, History, Record};
 use super::ladder::Ladder;
 use super::layout::Layout;
@@ -49,7 +50,7 @@ impl Ladder {
 
     /// The reason for multigrid after a factor was refused.
     fn without_factor(&self, history: &History) -> Option<String> {
-        let (estimate, _) = self.choice.as_ref()?;
+        let (estimate, choice) = self.choice.as_ref()?;
         let refused = history.records.iter().find_map(|record| match &record.ended {
             Ended::Refused(Error::TooLarge { bytes, allowed, .. }) => {
                 let [of_multigrid, of_factor, allowed] = [estimate.multigrid_bytes, *bytes, *allowed].map(memory);
@@ -60,6 +61,9 @@ impl Ladder {
             Ended::Refused(Error::OutOfTime { needed, time }) => Some(format!(
                 "by multigrid: a factorisation would take about {needed:.1e} s, but {time:.1e} s are left"
             )),
+            Ended::Answered(answered) if !answered.is_settled && matches!(choice, Choice::Factor { .. }) => {
+                Some("by multigrid: sets with a factor each cost more, and did not settle".to_string())
+            }
             _ => None,
         });
         refused.or_else(|| self.refusal.clone())
@@ -109,7 +113,7 @@ impl When {
     fn in_words(self) -> &'static str {
         match self {
             When::Always => "",
-            When::Refused => "if memory or time do not allow the attempt before",
+            When::Refused => "if memory or time do not allow the attempt before, or its sets cost too much",
             When::Unheld => "if the method meets a motion that nothing stops",
             When::Unsettled => "if no set is settled",
             When::Improvable | When::Short => "if the answer falls short",

@@ -128,6 +128,7 @@ impl Prepared {
             Bounding::OwnFactor if !elimination.is_cut() => self.problem.norm_on_equalities().ok()?,
             _ => None,
         };
+        let norm = norm.map(|norm| norm.keeping(self.problem.contact()));
         Some(Arc::new(Without { elimination, rest, norm }))
     }
 

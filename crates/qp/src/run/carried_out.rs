@@ -190,7 +190,7 @@ impl<'a> Run<'a> {
                 near.and_then(|near| near.near(&self.settings.watch)).unwrap_or_default()
             }
             (From::Cycles, _) => self.start.clone(),
-            (From::Best, _) => best().map_or_else(Start::default, Start::from),
+            (From::Best, _) => best().map_or_else(|| self.start.clone(), Start::from),
             (From::Nothing, _) => Start::default(),
         }
     }

@@ -20,14 +20,8 @@ const LARGEST_SHARE: f64 = 0.25;
 /// A dense factorisation on the contact dofs may cost this many times the estimate for the sparse one, which is low.
 const DENSE_WORK: f64 = 3.0;
 
-/// Number of dense matrices on the contact dofs that exist at one time, in units of the memory of their values.
-const DENSE_MATRICES: f64 = 5.0;
-
 /// A difference below this share of its terms is rounding: the factorisation of a large body loses a few digits.
 const LEFT_OVER: f64 = 1e-12;
-
-/// A number of dense values below which their memory does not count.
-pub(crate) const FEW_VALUES: f64 = 1e6;
 
 /// The condensed stiffness, with the transform back to the whole body.
 #[derive(Clone, Debug)]
@@ -52,21 +46,20 @@ impl Condensation {
     /// As [`Analysis::sparse_with_last`].
     pub fn analyse(stiffness: &SymmetricMatrix, contact_dofs: &[usize]) -> Result<Option<Analysis>, FactorError> {
         let (dim, count) = (stiffness.dim() as f64, contact_dofs.len() as f64);
-        if count == 0.0 || count > LARGEST_SHARE * dim {
+        if !Self::pays(count, dim, f64::INFINITY) {
             return Ok(None);
         }
         let analysis = Analysis::sparse_with_last(stiffness, contact_dofs)?;
-        // The work of the interior is at least the square of its entries over its columns.
         let interior_entries = (analysis.factor_entries() as f64 - count * count / 2.0).max(0.0);
-        let interior_work = interior_entries * interior_entries / (dim - count);
-        let quick = count.powi(3) / 3.0 <= DENSE_WORK * interior_work;
-        let small = Self::is_small(contact_dofs.len(), analysis.factor_entries() as f64);
-        Ok((quick && small).then_some(analysis))
+        Ok(Self::pays(count, dim, interior_entries).then_some(analysis))
     }
 
-    /// Returns `true` if the dense matrices on this number of contact dofs take no more than the values of the factor.
-    pub fn is_small(contact_dofs: usize, factor_entries: f64) -> bool {
-        DENSE_MATRICES * (contact_dofs as f64).powi(2) <= FEW_VALUES.max(factor_entries)
+    /// Returns `true` if the dense factorisation on `count` contact dofs of `dim` costs little beside that of the
+    /// interior, whose factor has `interior_entries` values. Whether the dense matrices fit is a question of memory.
+    pub fn pays(count: f64, dim: f64, interior_entries: f64) -> bool {
+        // The work of the interior is at least the square of its entries over its columns.
+        let interior_work = interior_entries * interior_entries / (dim - count);
+        count > 0.0 && count <= LARGEST_SHARE * dim && count.powi(3) / 3.0 <= DENSE_WORK * interior_work
     }
 
     /// Condenses with a factorisation of K, or if it `holds_rows` of K + B'B, that put `contact_dofs` last; the rows

@@ -7,7 +7,6 @@ mod rows;
 mod scaling;
 
 pub use condensation::Condensation;
-pub(crate) use condensation::FEW_VALUES;
 pub use elimination::Elimination;
 pub use pieces::Pieces;
 pub use rows::RowSelection;

@@ -28,7 +28,7 @@ pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f6
         let strained = body.strained(&tables, displacement, &element);
         let scale = cell.unit().powi(dimension as i32 - 1);
         for at in &tables.at(element.kind).points {
-            let (point, stress) = strained.at(at);
+            let (point, (_, stress)) = (body.point(cell, at), strained.at(at));
             let weight = point.weight * scale;
             let [xx, yy, zz, xy, yz, zx] = stress.map(|component| component * weight);
             let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];

@@ -9,7 +9,7 @@ mod region;
 pub use integration::Integration;
 pub(crate) use phase::PhaseNumber;
 pub use phase::{Phase, Temperature};
-pub(crate) use point::LocalPoint;
+pub(crate) use point::{Displaced, LocalPoint};
 pub use region::Region;
 
 use std::ops::Range;
@@ -317,7 +317,7 @@ impl ElasticBody {
 
     fn with_coordinates<'a>(&'a self, element: usize, nodes: &'a [usize], phase_number: u32) -> BodyElement<'a> {
         let kind = self.mesh.kind_of(element);
-        let cell = Cell::new(kind.reference(), &self.coordinates(nodes));
+        let cell = Cell::at(kind.reference(), |local| self.mesh.nodes()[nodes[local]]);
         BodyElement { nodes, kind, cell, phase: &self.phases[phase_number as usize], phase_number }
     }
 
@@ -369,6 +369,23 @@ impl ElasticBody {
         }
     }
 
+    /// The deformation at a tabulated point of an element with these displacements of its nodes.
+    #[inline]
+    pub fn displaced(&self, cell: &Cell, at: &TabulatedPoint, displacement: &PerNode<[f64; 3]>) -> Displaced {
+        let (slope, determinant) = cell.slope(&at.derivative, displacement);
+        let (mut hoop, mut radius) = (0.0, 0.0);
+        if self.formulation().is_axisymmetric() {
+            radius = cell.place(&at.shape)[0];
+            let radial = at.shape.iter().zip(displacement).take(cell.nodes()).map(|(share, moved)| share * moved[0]);
+            hoop = radial.sum::<f64>() / radius;
+        }
+        Displaced {
+            slope: slope.map(|row| row.map(|entry| entry / cell.unit())),
+            hoop,
+            weight: determinant * at.weight * self.formulation().measure(radius),
+        }
+    }
+
     /// Returns `true` for a linear quadrilateral whose opposite sides are parallel, to the last bit: there strains are
     /// linear in the place.
     pub(crate) fn is_parallelogram(&self, element: usize) -> bool {
@@ -384,16 +401,9 @@ impl ElasticBody {
         let (reference, nodes) = (self.mesh.kind_of(element).reference(), self.mesh.element(element));
         let cell = Cell::new(reference, &self.coordinates(nodes));
         let own = self.gather(displacement, nodes);
-        let is_axisymmetric = self.formulation().is_axisymmetric();
         move |at| {
-            let local = cell.reference_coordinates(at);
-            let gradients = cell.map(&(reference.derivative)(local)).gradients;
-            let hoop = match is_axisymmetric {
-                true => (reference.shape)(local).map(|value| value * cell.unit() / at[0]),
-                false => [0.0; MAX_NODES],
-            };
-            let point = LocalPoint { gradients, hoop, nodes: nodes.len(), weight: 0.0 };
-            point.strain(&own, cell.unit())
+            let at = TabulatedPoint::new(reference, cell.reference_coordinates(at), 0.0);
+            self.displaced(&cell, &at, &own).strain()
         }
     }
 
@@ -422,8 +432,8 @@ impl ElasticBody {
         }
         let (mut integral, mut volume) = (0.0, 0.0);
         for at in &table.points {
-            let point = self.point(&element.cell, at);
-            integral += point.weight * trace(&point.strain(displacement, element.cell.unit()));
+            let point = self.displaced(&element.cell, at, displacement);
+            integral += point.weight * trace(&point.strain());
             volume += point.weight;
         }
         Some(integral / volume)
@@ -457,27 +467,27 @@ pub(crate) struct Elastic {
 }
 
 impl Strained<'_> {
-    /// A tabulated point of the element in place, and the stress there.
+    /// The deformation at a tabulated point.
     #[inline]
-    pub fn at(&self, at: &TabulatedPoint) -> (LocalPoint, Symmetric) {
-        let cell = &self.element.cell;
-        let point = self.body.point(cell, at);
-        let stress = self.element.stress(at, &point.strain(&self.local, cell.unit()), self.mean_dilatation);
-        (point, stress)
+    fn displaced(&self, at: &TabulatedPoint) -> Displaced {
+        self.body.displaced(&self.element.cell, at, &self.local)
+    }
+
+    /// The weight of a tabulated point, as that of a [`LocalPoint`], and the stress there.
+    #[inline]
+    pub fn at(&self, at: &TabulatedPoint) -> (f64, Symmetric) {
+        let point = self.displaced(at);
+        (point.weight, self.element.stress(at, &point.strain(), self.mean_dilatation))
     }
 
     /// The displacement at a tabulated point: its gradient, its strain, and the stress of this strain alone.
     #[inline]
     pub fn elastic(&self, at: &TabulatedPoint) -> Elastic {
         let (cell, law) = (&self.element.cell, &self.element.phase.law);
-        let point = self.body.point(cell, at);
-        let strain = point.strain(&self.local, cell.unit());
+        let point = self.displaced(at);
+        let strain = point.strain();
         let dilatation = self.mean_dilatation.unwrap_or_else(|| trace(&strain));
-        Elastic {
-            slope: point.slope(&self.local).map(|row| row.map(|entry| entry / cell.unit())),
-            strain,
-            stress: law.stress(&strain, dilatation, || cell.place(&at.shape)),
-        }
+        Elastic { slope: point.slope, strain, stress: law.stress(&strain, dilatation, || cell.place(&at.shape)) }
     }
 
     /// The dilatation that replaces that of every point, if the integration takes its mean.
@@ -488,11 +498,10 @@ impl Strained<'_> {
     /// The strain at a tabulated point, and the stress there: tensor components `[xx, yy, zz, xy, yz, zx]`. In plane
     /// stress the strain across the plane is that of the stress and the temperature.
     pub fn strain_and_stress(&self, at: &TabulatedPoint) -> [Symmetric; 2] {
-        let cell = &self.element.cell;
-        let (point, stress) = self.at(at);
-        let mut strain = point.strain(&self.local, cell.unit());
+        let (_, stress) = self.at(at);
+        let mut strain = self.displaced(at).strain();
         if let Formulation::PlaneStress { .. } = self.body.formulation {
-            strain[2] = self.element.phase.strain_across(&stress, cell.place(&at.shape));
+            strain[2] = self.element.phase.strain_across(&stress, self.element.cell.place(&at.shape));
         }
         [strain, stress]
     }

@@ -1,4 +1,4 @@
-//! A point in an element: gradients, hoop terms, weight; the strain there.
+//! A point in an element: gradients, hoop terms, weight; the strain of a displacement there.
 
 use crate::fem::element::PerNode;
 use crate::fem::geometry::Symmetric;
@@ -18,37 +18,28 @@ pub struct LocalPoint {
     pub weight: f64,
 }
 
-impl LocalPoint {
-    /// The strain at the point of an element with the given `unit`, from the displacement of its nodes.
+/// The deformation at a point of a displaced element.
+#[derive(Clone, Copy, Debug)]
+pub struct Displaced {
+    /// `[i][k]`: the derivative of component i along axis k.
+    pub slope: [[f64; 3]; 3],
+    /// Radial displacement over radius; zero except in bodies of revolution.
+    pub hoop: f64,
+    /// As that of a [`LocalPoint`].
+    pub weight: f64,
+}
+
+impl Displaced {
+    /// The strain at the point.
     #[inline]
-    pub fn strain(&self, displacement: &PerNode<[f64; 3]>, unit: f64) -> Symmetric {
-        let slope = self.slope(displacement);
-        let hoop = (1..self.nodes)
-            .fold(self.hoop[0] * displacement[0][0], |sum, node| sum + self.hoop[node] * displacement[node][0]);
+    pub fn strain(&self) -> Symmetric {
+        let slope = &self.slope;
         let shear = |i: usize, j: usize| (slope[i][j] + slope[j][i]) / 2.0;
-        [slope[0][0], slope[1][1], slope[2][2] + hoop, shear(0, 1), shear(1, 2), shear(2, 0)]
-            .map(|component| component / unit)
+        [slope[0][0], slope[1][1], slope[2][2] + self.hoop, shear(0, 1), shear(1, 2), shear(2, 0)]
     }
 
     /// The rotation at the point about x, y and z, in radians if it is small.
-    pub fn rotation(&self, displacement: &PerNode<[f64; 3]>, unit: f64) -> [f64; 3] {
-        let slope = self.slope(displacement);
-        [(1, 2), (2, 0), (0, 1)].map(|(i, j)| (slope[j][i] - slope[i][j]) / (2.0 * unit))
-    }
-
-    /// The derivative of each component of the displacement along each axis, per unit.
-    #[inline]
-    pub fn slope(&self, displacement: &PerNode<[f64; 3]>) -> [[f64; 3]; 3] {
-        let mut slope = [[0.0; 3]; 3];
-        for node in 1..self.nodes {
-            // Relative to the first node: a translation then gives exactly zero strain.
-            for (axis, row) in slope.iter_mut().enumerate() {
-                let relative = displacement[node][axis] - displacement[0][axis];
-                for (entry, gradient) in row.iter_mut().zip(&self.gradients[node]) {
-                    *entry += relative * gradient;
-                }
-            }
-        }
-        slope
+    pub fn rotation(&self) -> [f64; 3] {
+        [(1, 2), (2, 0), (0, 1)].map(|(i, j)| (self.slope[j][i] - self.slope[i][j]) / 2.0)
     }
 }

@@ -58,10 +58,17 @@ impl Cell {
     /// The cell `reference` at `coordinates` (x, y, z of its nodes, in its order).
     #[inline]
     pub fn new(reference: &'static ReferenceElement, coordinates: &PerNode<[f64; 3]>) -> Self {
-        let origin = coordinates[0];
+        Self::at(reference, |local| coordinates[local])
+    }
+
+    /// The same, with a function from local nodes to coordinates.
+    #[inline]
+    pub fn at(reference: &'static ReferenceElement, coordinates: impl Fn(usize) -> [f64; 3]) -> Self {
+        let origin = coordinates(0);
         let mut relative = [[0.0; 3]; MAX_NODES];
         let mut size: f64 = 0.0;
-        for (at, node) in relative.iter_mut().zip(coordinates).take(reference.nodes.len()) {
+        for (local, at) in relative.iter_mut().enumerate().take(reference.nodes.len()) {
+            let node = coordinates(local);
             *at = [node[0] - origin[0], node[1] - origin[1], node[2] - origin[2]];
             size = size.max(at[0].abs()).max(at[1].abs()).max(at[2].abs());
         }
@@ -174,14 +181,7 @@ impl Cell {
     #[inline]
     pub fn map(&self, derivative: &PerNode<[f64; 3]>) -> Mapping {
         let dimension = self.reference.dimension;
-        let mut j = self.jacobian(derivative);
-        // The unused directions map to themselves.
-        for (axis, row) in j.iter_mut().enumerate().skip(dimension) {
-            row[axis] = 1.0;
-        }
-        let determinant = determinant(&j, 3);
-        // Columns of J^-1 times the determinant: cross products of the rows of J.
-        let cofactors = [cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])];
+        let (cofactors, determinant) = self.cofactors(derivative);
         let mut gradients = [[0.0; 3]; MAX_NODES];
         for (gradient, slope) in gradients.iter_mut().zip(derivative).take(self.reference.nodes.len()) {
             for axis in 0..dimension {
@@ -190,6 +190,34 @@ impl Cell {
             }
         }
         Mapping { gradients, determinant }
+    }
+
+    /// The columns of J^-1 times the determinant of J, and the determinant.
+    #[inline]
+    fn cofactors(&self, derivative: &PerNode<[f64; 3]>) -> ([[f64; 3]; 3], f64) {
+        let mut j = self.jacobian(derivative);
+        // The unused directions map to themselves.
+        for (axis, row) in j.iter_mut().enumerate().skip(self.reference.dimension) {
+            row[axis] = 1.0;
+        }
+        // Cross products of the rows of J.
+        ([cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])], determinant(&j, 3))
+    }
+
+    /// The derivative of each component of nodal `values` along each axis, per unit, `[i][k]`: component i along axis
+    /// k; and the determinant. The same for all nodes gives exactly zero.
+    #[inline]
+    pub fn slope(&self, derivative: &PerNode<[f64; 3]>, values: &PerNode<[f64; 3]>) -> ([[f64; 3]; 3], f64) {
+        let (cofactors, determinant) = self.cofactors(derivative);
+        let mut along = [[0.0; 3]; 3];
+        for (slope, value) in derivative.iter().zip(values).take(self.reference.nodes.len()).skip(1) {
+            for (axis, along) in along.iter_mut().enumerate() {
+                let relative = value[axis] - values[0][axis];
+                along.iter_mut().zip(slope).for_each(|(sum, slope)| *sum += relative * slope);
+            }
+        }
+        let of_axis = |along: [f64; 3], k: usize| (0..3).map(|i| along[i] * cofactors[i][k]).sum::<f64>() / determinant;
+        (along.map(|along| [0, 1, 2].map(|k| of_axis(along, k))), determinant)
     }
 
     /// The area vector of a facet at the point with the given shape function derivatives: normal to the facet; its

@@ -65,18 +65,19 @@ impl EstimatedError {
             }
             let recovered = |at: &TabulatedPoint| match Patches::are_for(element.kind) {
                 true => patches.stress(&element, at),
-                false => interpolated(&at.shape, &of_nodes),
+                false => interpolated(&at.shape, &of_nodes[..nodes.len()]),
             };
             let volume = cell.unit().powi(body.dimension() as i32);
             for at in &tables.at(element.kind).points {
-                let (point, stress) = strained.at(at);
+                let (weight, stress) = strained.at(at);
+                let weight = volume * weight;
                 let place = || cell.place(&at.shape);
                 let recovered = recovered(at);
                 let away = [0, 1, 2, 3, 4, 5].map(|component| stress[component] - recovered[component]);
-                difference += volume * point.weight * law.complementary_energy(&away, place);
-                whole += volume * point.weight * law.complementary_energy(&stress, place);
+                difference += weight * law.complementary_energy(&away, place);
+                whole += weight * law.complementary_energy(&stress, place);
                 if let Some(own) = element.own_stress(at) {
-                    unstrained += volume * point.weight * law.complementary_energy(&own, place);
+                    unstrained += weight * law.complementary_energy(&own, place);
                 }
             }
             [difference, whole, unstrained]
@@ -102,7 +103,7 @@ impl EstimatedError {
 }
 
 /// The value of the shape functions with these nodal values.
-fn interpolated(shape: &PerNode<f64>, of_nodes: &PerNode<Symmetric>) -> Symmetric {
+fn interpolated(shape: &PerNode<f64>, of_nodes: &[Symmetric]) -> Symmetric {
     let mut value = [0.0; 6];
     for (share, of_node) in shape.iter().zip(of_nodes) {
         value.iter_mut().zip(of_node).for_each(|(sum, component)| *sum += share * component);

@@ -70,10 +70,10 @@ pub(crate) fn volume_and_energy(body: &ElasticBody, displacement: &[f64]) -> Res
         let strained = body.strained(&tables, displacement, &element);
         let (mut volume, mut energy) = (0.0, 0.0);
         for at in &tables.at(element.kind).points {
-            let (point, stress) = strained.at(at);
-            volume += point.weight;
+            let (weight, stress) = strained.at(at);
+            volume += weight;
             let law = &laws[element.phase_number as usize];
-            energy += point.weight * law.complementary_energy(&stress, || element.cell.place(&at.shape)) / 2.0;
+            energy += weight * law.complementary_energy(&stress, || element.cell.place(&at.shape)) / 2.0;
         }
         let scale = element.cell.unit().powi(body.dimension() as i32);
         [scale * volume, scale * energy]

@@ -28,11 +28,10 @@ impl Deformation {
         let body = model.body();
         let tables = body.tabulated();
         let of_element = |(element, of): (usize, BodyElement)| {
-            let (point, own) =
-                (body.point(&of.cell, &tables.at(of.kind).centroid), body.gather(displacement, of.nodes));
-            let strain = point.strain(&own, of.cell.unit());
-            let strain = strain.iter().fold(0.0, |largest: f64, component| largest.max(component.abs()));
-            let rotation = length(point.rotation(&own, of.cell.unit()));
+            let own = body.gather(displacement, of.nodes);
+            let point = body.displaced(&of.cell, &tables.at(of.kind).centroid, &own);
+            let strain = point.strain().iter().fold(0.0, |largest: f64, component| largest.max(component.abs()));
+            let rotation = length(point.rotation());
             Deformation { strain: (strain, element), rotation: (rotation, element) }
         };
         let larger = |one: (f64, usize), other: (f64, usize)| if other.0 > one.0 { other } else { one };

@@ -58,7 +58,7 @@ const NEAR: f64 = 1e-3;
 /// If the residual in twice the precision is above this share of the previous one, it will not decrease any more.
 const NO_GAIN: f64 = 0.5;
 
-/// The accuracy and the numbers of cycles at which the loop ends.
+/// The accuracy and the costs at which a loop ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
@@ -68,6 +68,20 @@ pub struct Limits {
     /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or
     /// after this number unless few are left.
     pub worth: usize,
+    /// Estimated seconds that the sets of a loop with a factor may take, because another way takes less.
+    pub most_seconds: f64,
+}
+
+impl Limits {
+    /// This accuracy at any cost.
+    pub fn to(tolerance: f64) -> Self {
+        Limits { tolerance, most_cycles: usize::MAX, worth: usize::MAX, most_seconds: f64::INFINITY }
+    }
+
+    /// The sets of a loop with a factor whose cost they allow, one at least, if a set takes this number of seconds.
+    pub fn most_sets(&self, set_seconds: f64) -> usize {
+        (self.most_seconds / set_seconds.max(f64::MIN_POSITIVE)).max(1.0) as usize
+    }
 }
 
 /// MPRGP on an unscaled problem, with the hierarchy of its stiffness.
@@ -195,7 +209,7 @@ fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> Iterate<'
 /// The start from the second level, if there is one with nodal values.
 fn nested(mprgp: &Mprgp, bounds: &Bounds) -> Option<Start> {
     let below = |problem: &ContactProblem, multigrid: &Multigrid, tolerance, most_cycles| {
-        let limits = Limits { tolerance, most_cycles, worth: usize::MAX };
+        let limits = Limits { most_cycles, ..Limits::to(tolerance) };
         Mprgp { problem, multigrid, limits, watch: mprgp.watch }.solve(Start::default())
     };
     nested_start(mprgp.problem, bounds, mprgp.multigrid, below).map(Start::near)
