@@ -154,9 +154,9 @@ impl ContactProblem {
         let balanced = self.balanced_forces(terms.iter().zip(&forces).map(|(terms, forces)| terms + forces).collect());
         let share = |dof: usize, force: f64| relative(force.abs(), balanced[dof]);
         let mut shares_of_rows = vec![0.0; self.rows()];
-        for (row, dof, b) in self.contact.triplets().filter(|entry| lambda[entry.0] != 0.0) {
+        self.contact.triplets().filter(|entry| lambda[entry.0] != 0.0).for_each(|(row, dof, b)| {
             shares_of_rows[row] = larger(share(dof, b * lambda[row]), shares_of_rows[row]);
-        }
+        });
         let own_length = |row: usize| {
             let of_part = scales.of_parts[self.parts().of_row(row)].strain.max(0.0).sqrt() * scales.reach[row];
             let gap = if self.gap[row].is_finite() { self.gap[row].abs() } else { 0.0 };
@@ -276,12 +276,10 @@ impl ContactProblem {
         let terms = sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
         let strain = sums.products_by(u, |_| 0, 1)[0];
         let elastic = sums.sums().map(f64::abs).collect();
-        for (dof, &load) in self.load.iter().enumerate() {
-            sums.add_product(dof, load, -1.0);
-            for lambda in multipliers {
-                let pressed = self.contact.column(dof).filter(|entry| lambda[entry.0] != 0.0);
-                pressed.for_each(|(row, b)| sums.add_product(dof, b, -lambda[row]));
-            }
+        self.load.iter().enumerate().for_each(|(dof, &load)| sums.add_product(dof, load, -1.0));
+        for lambda in multipliers {
+            let against: Vec<f64> = lambda.iter().map(|lambda| -lambda).collect();
+            sums.add_transposed(|dof| self.contact.column(dof), &against);
         }
         Balance { residual: sums.sums().map(|sum| -sum).collect(), elastic, strain, terms }
     }
@@ -314,9 +312,7 @@ impl<'a> Distances<'a> {
 
     /// Adds a displacement. Returns the distances, with twice the working precision; `-inf` for a row without obstacle.
     pub fn moved(&mut self, by: &[f64]) -> Vec<f64> {
-        for (column, &at_column) in by.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-            self.problem.contact.column(column).for_each(|(row, b)| self.sums.add_product(row, b, at_column));
-        }
+        self.sums.add_columns(|dof| self.problem.contact.column(dof), by);
         let with_obstacle = |(sum, gap): (f64, &f64)| if gap.is_finite() { sum } else { f64::NEG_INFINITY };
         self.sums.sums().zip(&self.problem.gap).map(with_obstacle).collect()
     }

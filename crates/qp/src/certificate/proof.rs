@@ -113,9 +113,10 @@ impl ContactProblem {
         // One solve saves sweeps.
         let at_once = || compliance.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
         let reach = if norm.is_over() { None } else { at_once() }.unwrap_or_else(|| self.any_reach());
-        let mut open = self.open_by(&answer, error, &reach);
+        let distances = self.distances(&answer);
+        let mut open = self.open_by(&distances, error, &reach);
         let least = self.least_reach();
-        let limits = self.distances(&answer).into_iter().map(|distance| distance / error).enumerate();
+        let limits = distances.iter().map(|distance| distance / error).enumerate();
         let is_doubtful = |&(row, limit): &(usize, f64)| limit > least[row] && !open.contains(row);
         let doubtful: Vec<(usize, f64)> = limits.filter(is_doubtful).collect();
         self.within_reach(norm, &compliance, &doubtful).into_iter().for_each(|row| open.insert(row));
@@ -155,7 +156,7 @@ impl ContactProblem {
             Some(self.measured_reach(least, self.largest_eigenvalue(multigrid, displacement, watch)?))
         };
         let reach = reach.or_else(by_eigenvalues).unwrap_or_else(|| self.any_reach());
-        let open = self.open_by(&answer, error, &reach);
+        let open = self.open_by(&self.distances(&answer), error, &reach);
         let Unbalanced { force, is_residual } = self.unbalanced(&answer, &open);
         let of_force = match measured {
             Some(measured) if is_residual => Some(measured.of_residual),
@@ -176,9 +177,9 @@ impl ContactProblem {
         distances.map(|(violation, negligible)| -violation - negligible).collect()
     }
 
-    /// The rows that are open beyond an error of `error` in the energy norm; `reach` bounds the move of each row by it.
-    fn open_by(&self, answer: &Answer, error: f64, reach: &[f64]) -> ContactSet {
-        let distances = self.distances(answer);
+    /// The rows at these `distances` that are open beyond an error of `error` in the energy norm; `reach` bounds the move
+    /// of each row by it.
+    fn open_by(&self, distances: &[f64], error: f64, reach: &[f64]) -> ContactSet {
         ContactSet::from_fn(self.rows(), |row| {
             let distance = distances[row];
             distance > 0.0 && (distance.is_infinite() || error == 0.0 || distance > reach[row] * error)

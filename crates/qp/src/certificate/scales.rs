@@ -169,11 +169,14 @@ impl ContactProblem {
 impl ContactProblem {
     /// `true` for each dof on which a pressing row acts that acts on no other: its force takes what rounding leaves.
     fn taken_alone(&self, multiplier: &[f64]) -> Vec<bool> {
-        let entries = || self.contact.triplets().filter(|entry| entry.2 != 0.0);
-        let (mut dofs, mut is_taken) = (vec![0; self.rows()], vec![false; self.dofs()]);
-        entries().for_each(|(row, ..)| dofs[row] += 1);
-        let alone = entries().filter(|&(row, ..)| dofs[row] == 1 && multiplier[row] != 0.0);
-        alone.for_each(|(_, dof, _)| is_taken[dof] = true);
+        let (mut dofs, mut is_taken) = (vec![0_u32; self.rows()], vec![false; self.dofs()]);
+        let count = |dofs: &mut u32, b: f64| *dofs += u32::from(b != 0.0);
+        (0..self.dofs()).for_each(|dof| self.contact.with_rows(dof, &mut dofs, count));
+        let is_alone = |row: usize| dofs[row] == 1 && multiplier[row] != 0.0;
+        if (0..self.rows()).any(is_alone) {
+            let alone = self.contact.triplets().filter(|&(row, _, b)| b != 0.0 && is_alone(row));
+            alone.for_each(|(_, dof, _)| is_taken[dof] = true);
+        }
         is_taken
     }
 

@@ -28,7 +28,7 @@ impl Factored {
         let clock = Instant::now();
         watch.step("ordering", 0);
         seconds::learn(watch);
-        let selection = RowSelection::of(problem.contact(), problem.gap());
+        let selection = RowSelection::of(problem);
         let contact = selection.contact(problem.contact());
         let scaling = Scaling::of(problem.stiffness(), &contact)?;
         let stiffest = largest(&problem.stiffness().diagonal());

@@ -65,6 +65,39 @@ impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Product<'
     }
 }
 
+/// The product of a matrix with x, or of the transposed matrix, added to `sums`.
+struct Columns<'a, C> {
+    /// The entries `(row, value)` of a column.
+    column: C,
+    x: &'a [f64],
+    sums: &'a mut [Sum],
+    is_transposed: bool,
+}
+
+impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Columns<'_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Columns { column, x, sums, is_transposed } = self;
+        if is_transposed {
+            for (index, own) in sums.iter_mut().enumerate() {
+                for (row, value) in column(index) {
+                    if x[row] != 0.0 {
+                        own.add_product(value, x[row]);
+                    }
+                }
+            }
+            return;
+        }
+        for (index, &at_column) in x.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+            for (row, value) in column(index) {
+                sums[row].add_product(value, at_column);
+            }
+        }
+    }
+}
+
 impl Accumulator {
     /// Sums that start from `values`.
     pub fn new(values: &[f64]) -> Self {
@@ -87,6 +120,16 @@ impl Accumulator {
         let mut terms = vec![0.0; x.len()];
         Arch::new().dispatch(Product { column, x, sums: &mut self.sums, terms: &mut terms });
         terms
+    }
+
+    /// Adds `A x` to as many sums as A has rows; `column` gives the entries `(row, value)` of its columns.
+    pub fn add_columns<I: Iterator<Item = (usize, f64)>>(&mut self, column: impl Fn(usize) -> I, x: &[f64]) {
+        Arch::new().dispatch(Columns { column, x, sums: &mut self.sums, is_transposed: false });
+    }
+
+    /// Adds `A' x` to as many sums as A has columns, without the terms of entries of x that are zero.
+    pub fn add_transposed<I: Iterator<Item = (usize, f64)>>(&mut self, column: impl Fn(usize) -> I, x: &[f64]) {
+        Arch::new().dispatch(Columns { column, x, sums: &mut self.sums, is_transposed: true });
     }
 
     /// The sums, each rounded once; not finite if a term overflows.

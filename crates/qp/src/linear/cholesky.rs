@@ -159,16 +159,15 @@ impl Analysis {
     /// # Errors
     /// As [`Analysis::factor`].
     pub fn factor_last(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
-        let value = |_, _, value| value;
         if let Structure::Dense(order) = &self.structure {
-            return self.factorised_densely(order, matrix.lower(), value);
+            return self.factorised_densely(order, matrix.lower());
         }
-        let permuted = self.permuted(matrix.lower(), value);
+        let permuted = self.permuted(matrix.lower(), |_, _, value| value);
         drop(matrix);
         self.factorised(permuted)
     }
 
-    /// Factorises the equilibrated `c D A D` of `matrix` without building it.
+    /// Factorises the equilibrated `c D A D` of `matrix`, which is not built for a factor in block columns.
     ///
     /// # Errors
     /// As [`Analysis::factor`].
@@ -177,31 +176,32 @@ impl Analysis {
         matrix: &SymmetricMatrix,
         equilibration: &Equilibration,
     ) -> Result<Cholesky, FactorError> {
+        if let Structure::Dense(_) = &self.structure {
+            return self.factor(&equilibration.apply(matrix));
+        }
         let scale = &equilibration.diagonal;
         let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
-        if let Structure::Dense(order) = &self.structure {
-            return self.factorised_densely(order, matrix.lower(), entry);
-        }
         self.factorised(self.permuted(matrix.lower(), entry))
     }
 
-    /// The dense factor of the matrix with this lower triangle, of which `entry(row, column, value)` makes the entries.
-    fn factorised_densely(
-        &self,
-        order: &[usize],
-        lower: &SparseMatrix,
-        entry: impl Fn(usize, usize, f64) -> f64,
-    ) -> Result<Cholesky, FactorError> {
+    /// The dense factor of the matrix with this lower triangle.
+    fn factorised_densely(&self, order: &[usize], lower: &SparseMatrix) -> Result<Cholesky, FactorError> {
         let dim = order.len();
         let mut place = vec![0; dim];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let is_in_order = place.is_sorted();
         let mut values: Vec<f64> = Vec::new();
         values.try_reserve_exact(dim * dim).map_err(|_| FactorError::Failed("out of memory".into()))?;
         values.resize(dim * dim, 0.0);
         for (column, &to) in place.iter().enumerate() {
-            for (row, value) in lower.column(column) {
-                let (first, second) = (to.min(place[row]), to.max(place[row]));
-                values[first * dim + second] = entry(row, column, value);
+            let (rows, own) = lower.column_slices(column);
+            if is_in_order && rows.len() + column == dim {
+                values[column * dim + column..][..own.len()].copy_from_slice(own);
+                continue;
+            }
+            for (&row, &value) in rows.iter().zip(own) {
+                let row = place[row as usize];
+                values[to.min(row) * dim + to.max(row)] = value;
             }
         }
         let triangle = dense_factor::factorise(dim, values, self.threads)?;

@@ -58,7 +58,7 @@ impl Compliance {
         let (size, count) = (rows.columns() as f64, rows.rows() as f64);
         let own = size * size * count / 2.0 + size * count * count / 2.0;
         let mut lengths = vec![0.0; rows.rows()];
-        rows.row_indices().for_each(|row| lengths[row as usize] += 1.0);
+        (0..rows.columns()).for_each(|dof| rows.with_rows(dof, &mut lengths, |length, _| *length += 1.0));
         let products: f64 = lengths.iter().map(|length| length * length / 2.0).sum();
         let pays = own <= OF_PRODUCT * products + SETS * cholesky.multiplications();
         let is_last = !last.is_empty() || rows.entries() == 0;
@@ -93,7 +93,9 @@ impl Compliance {
         self.halves.get_or_init(|| {
             let (size, count) = (self.by_row.rows(), self.by_row.columns());
             let mut columns = vec![0.0; size * count];
-            self.by_row.triplets().for_each(|(place, row, value)| columns[row * size + place] = value);
+            for (row, column) in columns.chunks_mut(size.max(1)).enumerate() {
+                self.by_row.with_rows(row, column, |entry, value| *entry = value);
+            }
             let columns = dense_factor::forward_all(&self.block, columns);
             Halves { products: dense_factor::products(size, &columns), columns }
         })

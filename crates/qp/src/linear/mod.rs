@@ -325,6 +325,14 @@ impl SparseMatrix {
 
     /// The transposed matrix: its columns are the rows of this one.
     pub fn transposed(&self) -> Self {
+        if self.entries() > 0 && self.entries() == self.rows * self.columns() {
+            let of_row = |row: usize| self.values[row..].iter().step_by(self.rows).copied();
+            let (columns, rows) = (self.columns(), 0..self.columns() as u32);
+            let column_starts = (0..=self.rows).map(|row| row * columns).collect();
+            let pattern = Pattern { column_starts, row_starts: vec![0; self.rows], rows: rows.collect() };
+            let values = (0..self.rows).flat_map(of_row).collect();
+            return SparseMatrix { rows: columns, pattern: Arc::new(pattern), values: Arc::new(values) };
+        }
         let starts = group_starts(self.rows, self.row_indices().map(|row| row as usize));
         let mut place = starts.clone();
         let mut row_indices = vec![0; self.entries()];

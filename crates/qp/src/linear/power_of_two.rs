@@ -1,6 +1,6 @@
 //! Exact scaling: exponents of two as integers, so that no intermediate product rounds or overflows.
 
-use super::SymmetricMatrix;
+use super::{SparseMatrix, SymmetricMatrix};
 
 /// `floor(log2 |x|)` for a finite x other than zero; zero for x = 0.
 pub fn exponent(x: f64) -> i32 {
@@ -17,11 +17,38 @@ pub fn exponent(x: f64) -> i32 {
 
 /// `x 2^e`, exact unless the result itself leaves the range of double precision.
 pub fn ldexp(x: f64, e: i32) -> f64 {
-    const STEP: i32 = 1000;
     let step = e.clamp(-STEP, STEP);
-    // The bits of the power of two, because this is called once for each entry of the stiffness.
-    let result = x * f64::from_bits(((1023 + step) as u64) << 52);
+    let result = times_power(x, step);
     if step == e { result } else { ldexp(result, (e - step).clamp(-3 * STEP, 3 * STEP)) }
+}
+
+/// Exponents up to this size are those of a double.
+const STEP: i32 = 1000;
+
+/// `x 2^e` for an exponent of a double, by the bits of the power.
+#[inline]
+fn times_power(x: f64, e: i32) -> f64 {
+    x * f64::from_bits(((1023 + e) as u64) << 52)
+}
+
+impl SparseMatrix {
+    /// The matrix with every entry multiplied by `2^(r + c)`, with the exponents r of its row and c of its column.
+    pub fn times_powers(&self, of_rows: &[i32], of_columns: impl Fn(usize) -> i32) -> Self {
+        let most = of_rows.iter().fold(0, |most, e| e.saturating_abs().max(most));
+        let mut values = Vec::with_capacity(self.entries());
+        for column in 0..self.columns() {
+            let ((rows, own), of_column) = (self.column_slices(column), of_columns(column));
+            match rows.first().map(|&first| &of_rows[first as usize..]) {
+                // A run of rows with exponents of doubles is walked without a branch.
+                Some(run) if run.len() == own.len() && most <= STEP - of_column.saturating_abs() => {
+                    values.extend(own.iter().zip(run).map(|(&value, r)| times_power(value, r + of_column)));
+                }
+                _ => values
+                    .extend(rows.iter().zip(own).map(|(&row, &value)| ldexp(value, of_rows[row as usize] + of_column))),
+            }
+        }
+        self.with_values(values)
+    }
 }
 
 /// The exponents of a dimensionless diagonal D and a factor c that give `c D A D` a diagonal between 1 and 4.
@@ -53,13 +80,7 @@ impl Equilibration {
 
     /// The matrix `c D A D`.
     pub fn apply(&self, matrix: &SymmetricMatrix) -> SymmetricMatrix {
-        let scale = &self.diagonal;
-        let lower = matrix.lower();
-        let mut values = Vec::with_capacity(lower.entries());
-        for column in 0..lower.columns() {
-            let factor = self.factor + scale[column];
-            values.extend(lower.column(column).map(|(row, value)| ldexp(value, factor + scale[row])));
-        }
-        SymmetricMatrix::from_sorted_lower(lower.with_values(values))
+        let lower = matrix.lower().times_powers(&self.diagonal, |column| self.factor + self.diagonal[column]);
+        SymmetricMatrix::from_sorted_lower(lower)
     }
 }

@@ -22,11 +22,14 @@ use super::equilibrium::{Equilibrium, WEIGHT, by_compliance, equilibrium, reach}
 use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::linear::largest;
-use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
 /// Rounding of a multiplier, in units of the last place of the forces that balance it.
 const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// No diagonal entry of a scaled stiffness, and no entry of a scaled row, is larger.
+const MOST_ENTRY: f64 = 4.0;
+const MOST_OF_ROW: f64 = 2.0;
 
 /// A row that is wrong by this share of the largest displacement or multiplier is wrong whatever corrections follow.
 const CLEARLY: f64 = 1e-6;
@@ -72,7 +75,7 @@ impl Solver for ActiveSet<'_> {
             if !balance.consistent {
                 break;
             }
-            let wrong = wrong_rows(scaled.problem, &balance, &closed, SIGN_TOLERANCE);
+            let wrong = wrong_rows(scaled, &balance, &closed, SIGN_TOLERANCE);
             (displacement, multiplier) = (balance.displacement, balance.multiplier);
             if wrong.is_empty() {
                 ending = Ending::Settled;
@@ -122,7 +125,7 @@ fn balance(
     if let Some(balance) = earlier.as_mut().and_then(|earlier| earlier.balance(closed, near)) {
         return Ok(Ok(balance));
     }
-    let is_near = |balance: &Equilibrium| wrong_rows(scaled.problem, balance, closed, CLEARLY).is_empty();
+    let is_near = |balance: &Equilibrium| wrong_rows(scaled, balance, closed, CLEARLY).is_empty();
     let by_compliance = |compliance| by_compliance(scaled.problem, compliance, closed, is_near);
     if let Some(balance) = scaled.compliance.and_then(by_compliance) {
         return Ok(Ok(balance));
@@ -196,7 +199,8 @@ impl Rule {
 
 /// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding and beyond a share of the
 /// largest displacement or multiplier.
-fn wrong_rows(problem: &ContactProblem, balance: &Equilibrium, closed: &ContactSet, share: f64) -> Vec<usize> {
+fn wrong_rows(scaled: &ScaledProblem, balance: &Equilibrium, closed: &ContactSet, share: f64) -> Vec<usize> {
+    let problem = scaled.problem;
     let Equilibrium { displacement: u, multiplier, along_rows: along, .. } = balance;
     let (gap, reach, strongest) = (problem.gap(), reach(problem, along), share * largest(multiplier));
     let forces = LazyCell::new(|| {
@@ -204,10 +208,23 @@ fn wrong_rows(problem: &ContactProblem, balance: &Equilibrium, closed: &ContactS
         forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
         problem.contact().mul_abs(&forces)
     });
+    // No entry of a definite matrix is larger than its largest diagonal entry: few rows pull so little that the forces
+    // themselves must be known.
+    let most = if scaled.is_definite() { MOST_ENTRY * sum_of(u) } else { f64::INFINITY };
+    let most_on_rows = MOST_OF_ROW * (u.len() as f64 * most + sum_of(problem.load()));
+    let pulls = |row: usize| {
+        let is_beyond = |forces: f64| multiplier[row] > strongest + FORCE_ROUNDING * forces;
+        is_beyond(most_on_rows) || is_beyond(0.0) && is_beyond(forces[row])
+    };
     (0..problem.rows())
         .filter(|&row| match closed.contains(row) {
             false => along[row] - gap[row] > share * (reach + gap[row].abs()),
-            true => multiplier[row] > strongest && multiplier[row] > strongest + FORCE_ROUNDING * forces[row],
+            true => pulls(row),
         })
         .collect()
+}
+
+/// The sum of the magnitudes.
+fn sum_of(values: &[f64]) -> f64 {
+    values.iter().map(|value| value.abs()).sum()
 }

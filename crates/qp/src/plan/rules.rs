@@ -32,13 +32,10 @@ pub(crate) struct Size {
 pub(super) fn is_crowded(problem: &ContactProblem) -> bool {
     let mut bounded: Vec<bool> = problem.gap().iter().map(|gap| gap.is_finite()).collect();
     problem.equalities().iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| bounded[row] = false);
-    let (mut entries, mut dofs) = (0, 0);
-    for dof in 0..problem.dofs() {
-        let own = problem.contact().column(dof).filter(|&(row, b)| b != 0.0 && bounded[row]).count();
-        (entries, dofs) = (entries + own, dofs + usize::from(own > 0));
-    }
-    let rows = bounded.into_iter().filter(|&bounded| bounded).count();
-    let has_long_rows = rows > dofs && entries > LONG_ROWS * rows;
+    let of_dof = |dof: usize| problem.contact().column(dof).filter(|&(row, b)| b != 0.0 && bounded[row]);
+    let dofs = (0..problem.dofs()).filter(|&dof| of_dof(dof).next().is_some()).count();
+    let rows = bounded.iter().filter(|bounded| **bounded).count();
+    let has_long_rows = rows > dofs && (0..problem.dofs()).flat_map(of_dof).count() > LONG_ROWS * rows;
     has_long_rows || (rows > 0 && 2 * problem.without_stiffness().len() > problem.dofs())
 }
 

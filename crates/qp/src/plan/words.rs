@@ -171,7 +171,7 @@ impl Ladder {
     pub fn in_words(&self, problem: &ContactProblem, settings: &Settings) -> Result<String, Error> {
         let words = self.to_string();
         let Some((first, with)) = self.factors().next() else { return Ok(words) };
-        let selection = RowSelection::of(problem.contact(), problem.gap());
+        let selection = RowSelection::of(problem);
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
         let layout = match Layout::within(problem, &scaling, &with, settings) {
             Ok(layout) => layout.in_words(),

@@ -8,7 +8,7 @@ const OF_LARGEST: f64 = 16.0 * f64::EPSILON;
 /// The rows of a matrix without an entry.
 pub(super) fn without_entries(contact: &SparseMatrix) -> Vec<usize> {
     let mut has_entry = vec![false; contact.rows()];
-    contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, ..)| has_entry[row] = true);
+    (0..contact.columns()).for_each(|dof| contact.with_rows(dof, &mut has_entry, |has, b| *has |= b != 0.0));
     (0..contact.rows()).filter(|&row| !has_entry[row]).collect()
 }
 

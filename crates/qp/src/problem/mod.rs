@@ -264,6 +264,11 @@ impl ContactProblem {
         Ok(*self.semidefinite.get_or_init(|| found))
     }
 
+    /// The rows without an entry, in increasing order.
+    pub(crate) fn without_entries(&self) -> &[usize] {
+        &self.without_entries
+    }
+
     /// The dofs without stiffness, in increasing order.
     pub(crate) fn without_stiffness(&self) -> Vec<usize> {
         (0..self.dofs()).filter(|&dof| self.diagonal().values[dof] == 0.0).collect()

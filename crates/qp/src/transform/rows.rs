@@ -1,6 +1,7 @@
 //! Rows that can never close are removed.
 
 use crate::linear::SparseMatrix;
+use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
 
 /// The rows that can close: those with an obstacle (finite gap) and with a dof to move.
@@ -11,10 +12,10 @@ pub struct RowSelection {
 }
 
 impl RowSelection {
-    /// Selects the rows of `contact` (m x n) that can close under `gap` (m).
-    pub fn of(contact: &SparseMatrix, gap: &[f64]) -> Self {
-        let mut acts = vec![false; gap.len()];
-        contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, ..)| acts[row] = true);
+    /// Selects the rows of a problem that can close.
+    pub fn of(problem: &ContactProblem) -> Self {
+        let (gap, mut acts) = (problem.gap(), vec![true; problem.rows()]);
+        problem.without_entries().iter().for_each(|&row| acts[row] = false);
         RowSelection {
             rows: gap.len(),
             kept: (0..gap.len()).filter(|&row| gap[row].is_finite() && acts[row]).collect(),

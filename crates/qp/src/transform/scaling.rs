@@ -37,19 +37,18 @@ impl Scaling {
         let d = &equilibration.diagonal;
         let mut largest = vec![i32::MIN; contact.rows()];
         for (dof, &of_dof) in d.iter().enumerate() {
-            let entries = contact.column(dof).filter(|entry| entry.1 != 0.0);
-            entries.for_each(|(row, value)| largest[row] = largest[row].max(exponent(value) + of_dof));
+            contact.with_rows(dof, &mut largest, |largest, value| {
+                if value != 0.0 {
+                    *largest = exponent(value).saturating_add(of_dof).max(*largest);
+                }
+            });
         }
         let rows: Vec<i32> = largest.iter().map(|&e| if e == i32::MIN { 0 } else { -e }).collect();
-        let mut values = Vec::with_capacity(contact.entries());
-        for (dof, &of_dof) in d.iter().enumerate() {
-            values.extend(contact.column(dof).map(|(row, value)| ldexp(value, rows[row] + of_dof)));
-        }
-        if let Some((place, &value)) = values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+        let contact = contact.times_powers(&rows, |dof| d[dof]);
+        if let Some((place, &value)) = contact.values().iter().enumerate().find(|entry| !entry.1.is_finite()) {
             let at = contact.triplets().nth(place).map_or_else(String::new, |(row, dof, _)| format!("({row}, {dof})"));
             return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
         }
-        let contact = contact.with_values(values);
         Ok(Scaling { equilibration, rows, unscaled: stiffness.clone(), stiffness: OnceLock::new(), contact })
     }
 
