@@ -153,10 +153,15 @@ impl ContactProblem {
 
         let balanced = self.balanced_forces(terms.iter().zip(&forces).map(|(terms, forces)| terms + forces).collect());
         let share = |dof: usize, force: f64| relative(force.abs(), balanced[dof]);
-        let mut shares_of_rows = vec![0.0; self.rows()];
-        self.contact.triplets().filter(|entry| lambda[entry.0] != 0.0).for_each(|(row, dof, b)| {
-            shares_of_rows[row] = larger(share(dof, b * lambda[row]), shares_of_rows[row]);
-        });
+        // With the multiplier of each row.
+        let mut shares_of_rows: Vec<(f64, f64)> = lambda.iter().map(|&lambda| (lambda, 0.0)).collect();
+        for dof in 0..self.dofs() {
+            self.contact.with_rows(dof, &mut shares_of_rows, |(lambda, most), b| {
+                if *lambda != 0.0 {
+                    *most = larger(share(dof, b * *lambda), *most);
+                }
+            });
+        }
         let own_length = |row: usize| {
             let of_part = scales.of_parts[self.parts().of_row(row)].strain.max(0.0).sqrt() * scales.reach[row];
             let gap = if self.gap[row].is_finite() { self.gap[row].abs() } else { 0.0 };
@@ -175,7 +180,7 @@ impl ContactProblem {
         };
         let distance = |row: usize| if is_rounding(row) { 0.0 } else { relative(violation[row], length(row)) };
         let penetration = worst(rows().map(|row| distance(row).max(0.0)));
-        let adhesion = worst(rows().filter(|&row| lambda[row] > 0.0).map(|row| shares_of_rows[row]));
+        let adhesion = worst(rows().filter(|&row| lambda[row] > 0.0).map(|row| shares_of_rows[row].1));
         let gap = u.iter().zip(&residual).map(|(u, r)| -u * r).chain(rows().map(work)).sum::<f64>();
         let mut certificate = Certificate {
             stationarity,
@@ -185,7 +190,7 @@ impl ContactProblem {
             duality_gap: relative(gap.abs(), strain.max(0.0)),
             imbalance: self.imbalance(&residual, |dof| balanced[dof]),
             loose_dofs: if let Bounding::Factor(norm) = bounding { norm.loose_dofs() } else { 0 },
-            open_force: worst(rows().map(|row| shares_of_rows[row].min((-distance(row)).max(0.0)))),
+            open_force: worst(rows().map(|row| shares_of_rows[row].1.min((-distance(row)).max(0.0)))),
             parts: self.parts().count(),
             bound_is_measured: matches!(bounding, Bounding::Cycles(..)),
             ..Certificate::unknown()

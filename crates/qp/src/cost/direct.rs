@@ -115,5 +115,7 @@ impl Direct {
 /// Returns `true` if the direct path starts from a few cycles of multigrid, which cost less than the sets on the way
 /// there.
 pub(crate) fn starts_near(problem: &ContactProblem) -> bool {
-    is_everywhere(problem) && Direct::of(problem, Smooth::of(problem), BodyFactor::by_size(problem)).starts_near
+    let near =
+        |smooth: Smooth| smooth.starts_sets() && Direct::of(problem, smooth, BodyFactor::by_size(problem)).starts_near;
+    is_everywhere(problem) && near(Smooth::of(problem))
 }

@@ -120,7 +120,8 @@ impl Estimate {
 
 /// Bytes of the iterative path at its peak, the problem itself included.
 fn multigrid_bytes(problem: &ContactProblem) -> f64 {
-    let times = if Smooth::of(problem) == Smooth::GivenStiff { STIFF_BYTES } else { 1.0 };
+    let is_stiff = problem.near_null().is_some() && Smooth::of(problem) == Smooth::GivenStiff;
+    let times = if is_stiff { STIFF_BYTES } else { 1.0 };
     bytes::START + times * bytes::of_hierarchy(problem.dofs() as f64, problem.stiffness().entries() as f64)
 }
 

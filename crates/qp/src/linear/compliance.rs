@@ -101,6 +101,11 @@ impl Compliance {
         })
     }
 
+    /// `L^-1 r` of a force r, length n.
+    pub fn swept(&self, force: &[f64]) -> Vec<f64> {
+        self.cholesky.forward(force)
+    }
+
     /// The column of W of a row.
     pub fn half(&self, row: usize) -> &[f64] {
         let size = self.by_row.rows();
@@ -112,12 +117,15 @@ impl Compliance {
         self.halves().products[a.min(b) * self.by_row.columns() + a.max(b)]
     }
 
-    /// These rows, held; `None` if some follow from others to a good part of the digits.
+    /// These rows, increasing, held; `None` if some follow from others to a good part of the digits.
     pub fn held(&self, rows: Vec<usize>) -> Option<Held<'_>> {
         let count = rows.len();
         let mut products = vec![0.0; count * count];
+        let all = self.by_row.columns();
         for (j, &column) in rows.iter().enumerate() {
-            rows[j..].iter().enumerate().for_each(|(i, &row)| products[j * count + j + i] = self.product(column, row));
+            let of_column = &self.halves().products[column * all..(column + 1) * all];
+            let own = &mut products[j * count + j..(j + 1) * count];
+            own.iter_mut().zip(&rows[j..]).for_each(|(product, &row)| *product = of_column[row]);
         }
         let own: Vec<f64> = (0..count).map(|row| products[row * count + row]).collect();
         let triangle = dense_factor::factorise(count, products, 1).ok()?;
@@ -127,11 +135,10 @@ impl Compliance {
 }
 
 impl Held<'_> {
-    /// The displacement, length n, and the force on each held row, that take up the `force`, length n, and put the held
-    /// rows at these `distances`.
-    pub fn solve(&self, force: &[f64], distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// The displacement, length n, and the force on each held row, that take up the force with this
+    /// [sweep](Compliance::swept), and put the held rows at these `distances`.
+    pub fn solve(&self, mut swept: Vec<f64>, distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let cholesky = &self.compliance.cholesky;
-        let mut swept = cholesky.forward(force);
         if self.rows.is_empty() {
             return (cholesky.backward(swept), Vec::new());
         }

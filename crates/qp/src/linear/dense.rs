@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::error::Error;
 
 /// The maximum norm: the entry farthest from zero, by its magnitude; 0 for an empty slice. For the crates of this
@@ -16,12 +18,13 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The same for long vectors: in sums side by side, which a processor forms at once.
+#[inline(always)]
 pub(super) fn wide_dot(a: &[f64], b: &[f64]) -> f64 {
     wide_product(a, b, |value| value)
 }
 
 /// The same, of which `entry` makes the entries of `a`.
-#[inline]
+#[inline(always)]
 pub(super) fn wide_product(a: &[f64], b: &[f64], entry: impl Fn(f64) -> f64) -> f64 {
     let (of_a, rest_of_a) = a.as_chunks::<WIDTH>();
     let (of_b, rest_of_b) = b.as_chunks::<WIDTH>();
@@ -42,6 +45,7 @@ pub fn norm(x: &[f64]) -> f64 {
 }
 
 /// Subtracts `share y` from x, entry by entry.
+#[inline(always)]
 pub fn subtract(x: &mut [f64], share: f64, y: &[f64]) {
     x.iter_mut().zip(y).for_each(|(entry, y)| *entry -= share * y);
 }
@@ -113,6 +117,7 @@ impl LowerTriangle {
     }
 
     /// A column from its diagonal entry down.
+    #[inline(always)]
     fn column(&self, column: usize) -> &[f64] {
         &self.values[column * self.size + column..(column + 1) * self.size]
     }
@@ -125,21 +130,12 @@ impl LowerTriangle {
 
     /// Replaces b by `L^-1 b`, from its first entry that is not zero.
     pub(super) fn sweep(&self, b: &mut [f64]) {
-        let first = b.iter().position(|&value| value != 0.0).unwrap_or(self.size);
-        for j in first..self.size {
-            let column = self.column(j);
-            b[j] /= column[0];
-            let value = b[j];
-            subtract(&mut b[j + 1..], value, &column[1..]);
-        }
+        Arch::new().dispatch(Sweep { triangle: self, vector: b, is_backward: false });
     }
 
     /// `L'^-1 y`.
     pub fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
-        for j in (0..self.size).rev() {
-            let column = self.column(j);
-            y[j] = (y[j] - wide_dot(&column[1..], &y[j + 1..])) / column[0];
-        }
+        Arch::new().dispatch(Sweep { triangle: self, vector: &mut y, is_backward: true });
         y
     }
 
@@ -185,6 +181,36 @@ impl LowerTriangle {
             }
         }
         product
+    }
+}
+
+/// A sweep through a triangle, or through its transpose, in place.
+struct Sweep<'a> {
+    triangle: &'a LowerTriangle,
+    vector: &'a mut [f64],
+    is_backward: bool,
+}
+
+impl WithSimd for Sweep<'_> {
+    type Output = ();
+
+    // A plain closure would be a call to code that is not compiled for the processor.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Sweep { triangle, vector, is_backward } = self;
+        if is_backward {
+            for j in (0..triangle.size).rev() {
+                let column = triangle.column(j);
+                vector[j] = (vector[j] - wide_dot(&column[1..], &vector[j + 1..])) / column[0];
+            }
+            return;
+        }
+        let first = vector.iter().position(|&value| value != 0.0).unwrap_or(triangle.size);
+        for j in first..triangle.size {
+            let (column, [value, below @ ..]) = (triangle.column(j), &mut vector[j..]) else { return };
+            *value /= column[0];
+            subtract(below, *value, &column[1..]);
+        }
     }
 }
 

@@ -7,6 +7,8 @@ use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
+use pulp::{Arch, Simd, WithSimd};
+
 use super::dense::{LowerTriangle, subtract, wide_dot};
 use super::factor::{FactorError, call, memory};
 
@@ -23,7 +25,7 @@ const SMALL: usize = 32;
 /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for lack of memory.
 pub(super) fn factorise(size: usize, mut values: Vec<f64>, threads: usize) -> Result<LowerTriangle, FactorError> {
     if size <= SMALL {
-        column_by_column(size, &mut values)?;
+        Arch::new().dispatch(ColumnByColumn { size, values: &mut values })?;
     } else {
         let par = par(threads);
         call(|| {
@@ -43,6 +45,21 @@ pub fn par(threads: usize) -> Par {
 }
 
 /// The factor in place of the matrix, by pairs of columns: all others are fetched half as often.
+struct ColumnByColumn<'a> {
+    size: usize,
+    values: &'a mut [f64],
+}
+
+impl WithSimd for ColumnByColumn<'_> {
+    type Output = Result<(), FactorError>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        column_by_column(self.size, self.values)
+    }
+}
+
+#[inline(always)]
 fn column_by_column(size: usize, values: &mut [f64]) -> Result<(), FactorError> {
     for j in (0..size).step_by(2) {
         let (left, right) = values.split_at_mut((j + 2).min(size) * size);
@@ -64,6 +81,7 @@ fn column_by_column(size: usize, values: &mut [f64]) -> Result<(), FactorError> 
 }
 
 /// Divides a column of the factor, from its diagonal entry down, by the root of that.
+#[inline(always)]
 fn divide_by_pivot(column: &mut [f64]) -> Result<(), FactorError> {
     let root = column[0].sqrt();
     if root.is_nan() || root == 0.0 {

@@ -263,7 +263,7 @@ impl SparseMatrix {
     }
 
     /// Rows and values of one column.
-    #[inline]
+    #[inline(always)]
     fn column_slices(&self, column: usize) -> (&[u32], &[f64]) {
         let Pattern { column_starts, row_starts, rows } = &*self.pattern;
         let values = &self.values[column_starts[column]..column_starts[column + 1]];

@@ -3,14 +3,14 @@
 use super::{SparseMatrix, SymmetricMatrix};
 
 /// `floor(log2 |x|)` for a finite x other than zero; zero for x = 0.
+#[inline]
 pub fn exponent(x: f64) -> i32 {
     const DENORMAL_SHIFT: i32 = 64;
-    if x == 0.0 || !x.is_finite() {
-        return 0;
-    }
     let biased = |value: f64| ((value.to_bits() >> 52) & 0x7ff) as i32;
     match biased(x) {
+        0 if x == 0.0 => 0,
         0 => biased(x * 2.0_f64.powi(DENORMAL_SHIFT)) - 1023 - DENORMAL_SHIFT,
+        0x7ff => 0,
         bits => bits - 1023,
     }
 }

@@ -126,7 +126,7 @@ fn balance(
         return Ok(Ok(balance));
     }
     let is_near = |balance: &Equilibrium| wrong_rows(scaled, balance, closed, CLEARLY).is_empty();
-    let by_compliance = |compliance| by_compliance(scaled.problem, compliance, closed, is_near);
+    let by_compliance = |compliance| by_compliance(scaled, compliance, closed, is_near);
     if let Some(balance) = scaled.compliance.and_then(by_compliance) {
         return Ok(Ok(balance));
     }
@@ -145,7 +145,7 @@ fn balance(
 /// # Errors
 /// [`Error::Numerical`] for lack of memory.
 pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
-    let by_compliance = |compliance| by_compliance(scaled.problem, compliance, closed, |_| true);
+    let by_compliance = |compliance| by_compliance(scaled, compliance, closed, |_| true);
     let balance = match scaled.compliance.and_then(by_compliance) {
         Some(balance) => balance,
         None => {

@@ -1,5 +1,8 @@
 //! Balance of forces with the rows of a contact set held at their gaps.
 
+use std::cell::Cell;
+
+use super::ScaledProblem;
 use crate::linear::{Cholesky, Compliance, largest};
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
@@ -61,20 +64,22 @@ pub fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &Conta
 /// from others. A balance that is not the one sought, because it `is_near` no answer, is left as it is after the first
 /// correction.
 pub fn by_compliance(
-    problem: &ContactProblem,
+    scaled: &ScaledProblem,
     compliance: &Compliance,
     closed: &ContactSet,
     is_near: impl Fn(&Equilibrium) -> bool,
 ) -> Option<Equilibrium> {
     let held = compliance.held(closed.iter().collect())?;
+    // The first force is the load.
+    let first = Cell::new(Some(scaled.swept_load(compliance)));
     let correct = |force: &[f64], distance: &[f64]| {
         let on_closed: Vec<f64> = closed.iter().map(|row| distance[row]).collect();
-        let (du, forces) = held.solve(force, &on_closed);
+        let (du, forces) = held.solve(first.take().unwrap_or_else(|| compliance.swept(force)), &on_closed);
         let mut dl = vec![0.0; distance.len()];
         closed.iter().zip(forces).for_each(|(row, force)| dl[row] = force);
         (du, dl)
     };
-    let balance = corrected(problem, closed, Correcting { weight: 0.0, enough: SQUARED, correct, is_near });
+    let balance = corrected(scaled.problem, closed, Correcting { weight: 0.0, enough: SQUARED, correct, is_near });
     balance.consistent.then_some(balance)
 }
 

@@ -1,6 +1,6 @@
 //! The problem that every method works on, and the outcome that it returns.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 use std::time::Instant;
 
 use super::start::Start;
@@ -42,6 +42,7 @@ pub struct ScaledProblem<'a> {
     /// The compliance of the rows, by which a method balances forces; `None` if factors of the augmented matrix cost
     /// less.
     pub(super) compliance: Option<&'a Compliance>,
+    swept_load: OnceCell<Vec<f64>>,
     factor_seconds: Cell<f64>,
     watch: Watch,
 }
@@ -49,8 +50,8 @@ pub struct ScaledProblem<'a> {
 impl<'a> ScaledProblem<'a> {
     /// The problem with its K + B'B.
     pub fn new(problem: &'a ContactProblem, augmented: &'a Augmented, definiteness: Definiteness) -> Self {
-        let (factor_seconds, watch) = (Cell::new(0.0), Watch::default());
-        ScaledProblem { problem, definiteness, augmented, compliance: None, factor_seconds, watch }
+        let (swept_load, factor_seconds, watch) = (OnceCell::new(), Cell::new(0.0), Watch::default());
+        ScaledProblem { problem, definiteness, augmented, compliance: None, swept_load, factor_seconds, watch }
     }
 
     /// The same problem, balanced by the compliance of its rows.
@@ -61,6 +62,11 @@ impl<'a> ScaledProblem<'a> {
     /// The same problem, with loops that end with the answer so far when `watch` says so.
     pub fn watched(self, watch: &Watch) -> Self {
         ScaledProblem { watch: watch.clone(), ..self }
+    }
+
+    /// The load, swept through the factor of a compliance once for all sets.
+    pub(super) fn swept_load(&self, compliance: &Compliance) -> Vec<f64> {
+        self.swept_load.get_or_init(|| compliance.swept(self.problem.load())).clone()
     }
 
     /// Returns `true` if K is positive definite by itself.
