@@ -46,6 +46,8 @@ pub(crate) struct Evidence {
     pub(super) residual: Vec<f64>,
     /// `B u - g`.
     pub(super) violation: Vec<f64>,
+    /// The least reach of each row.
+    pub(super) reach: Vec<f64>,
     /// An upper bound on `|u - u*|_K`; infinite if none is known.
     pub(super) error: f64,
     /// Numbers that cycles have measured, if the bound comes from cycles.
@@ -216,8 +218,9 @@ impl ContactProblem {
         certificate.cancellation = self.cancellation(&forces, &elastic, part);
         let Answer { residual, violation, .. } = answer;
         let has_bound = !matches!(bounding, Bounding::Nothing);
-        let evidence = has_bound.then_some(Evidence { residual, violation, error: bound.whole, measured, norm: None });
-        Examined { certificate, evidence, may_rest: scales.may_rest(&bound) }
+        let (may_rest, reach, error) = (scales.may_rest(&bound), scales.reach, bound.whole);
+        let evidence = has_bound.then_some(Evidence { residual, violation, reach, error, measured, norm: None });
+        Examined { certificate, evidence, may_rest }
     }
 
     /// The largest imbalance of forces above rounding, relative to the largest of the forces that balance on the part;

@@ -119,8 +119,7 @@ impl EnergyNorm {
     /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or
     /// none if that is most of the body and the factor is not a whole triangle anyway.
     pub fn last_dofs(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Vec<usize> {
-        let dofs: Vec<usize> =
-            (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect();
+        let dofs = contact.columns_with_entries();
         let most = FEW_DOFS.max((LARGEST_SHARE * contact.columns() as f64) as usize);
         if dofs.len() > most && !Analysis::is_dense_for(stiffness) { Vec::new() } else { dofs }
     }

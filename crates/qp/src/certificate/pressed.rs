@@ -57,7 +57,8 @@ impl ContactProblem {
             travel.bring_near(&body, &norm, error, &mut violation);
         }
         let residual = of_body(&evidence.residual);
-        let evidence = Evidence { residual, violation, error: evidence.error, measured: None, norm: None };
+        let (reach, error) = (body.least_reach(), evidence.error);
+        let evidence = Evidence { residual, violation, reach, error, measured: None, norm: None };
         let of_rows =
             WithEvidence { displacement: &displacement, multiplier: answer.multiplier, evidence: Some(evidence) };
         // Rows that are opposite in the body alone are no equalities of the problem.

@@ -107,7 +107,7 @@ impl ContactProblem {
             return None;
         }
         let found = || self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier).evidence;
-        let Evidence { residual, violation, error, .. } = evidence.or_else(found)?.bounded()?;
+        let Evidence { residual, violation, reach: least, error, .. } = evidence.or_else(found)?.bounded()?;
         let answer = Answer { displacement, multiplier, residual, violation, rounding: 0.0 };
         let compliance = ComplianceFactor::of(self, norm);
         // One solve saves sweeps.
@@ -115,7 +115,6 @@ impl ContactProblem {
         let reach = if norm.is_over() { None } else { at_once() }.unwrap_or_else(|| self.any_reach());
         let distances = self.distances(&answer);
         let mut open = self.open_by(&distances, error, &reach);
-        let least = self.least_reach();
         let limits = distances.iter().map(|distance| distance / error).enumerate();
         let is_doubtful = |&(row, limit): &(usize, f64)| limit > least[row] && !open.contains(row);
         let doubtful: Vec<(usize, f64)> = limits.filter(is_doubtful).collect();
@@ -190,9 +189,11 @@ impl ContactProblem {
     fn unbalanced(&self, answer: &Answer, open: &ContactSet) -> Unbalanced {
         let dropped: Vec<f64> =
             (0..self.rows()).map(|row| if open.contains(row) { -answer.multiplier[row] } else { 0.0 }).collect();
-        let force =
-            answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
-        Unbalanced { force, is_residual: dropped.iter().all(|&force| force == 0.0) }
+        let (mut force, is_residual) = (answer.residual.clone(), dropped.iter().all(|&force| force == 0.0));
+        if !is_residual {
+            force.iter_mut().zip(self.contact.mul_transposed(&dropped)).for_each(|(r, part)| *r += part);
+        }
+        Unbalanced { force, is_residual }
     }
 
     /// The rows that are closed, proven by one dof each: the shift of that dof moves no other row that is not `open`.

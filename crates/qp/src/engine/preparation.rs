@@ -46,7 +46,7 @@ impl Factored {
         let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
         let set_seconds = seconds::factorisation(&analysis);
         let norm_seconds = seconds::ordering(problem) + set_seconds;
-        let (cholesky, least_pivot) = definite(problem, &scaling, &analysis, settings)?;
+        let (cholesky, least_pivot) = definite(problem, &scaling, (&analysis, size.is_condensed), settings)?;
         // If no columns come last, the contact sets have the order of the stiffness.
         let analysis = last.is_empty().then_some(analysis);
         let condensation = match size.is_condensed {
@@ -85,7 +85,7 @@ impl Factored {
     }
 }
 
-/// The factor of a stiffness with an analysed pattern, `None` if it is not definite to working precision, and its
+/// The factor of a stiffness with an analysed pattern, which may be condensed by it, `None` if it is not definite to working precision, and its
 /// smallest pivot, zero without a factor.
 ///
 /// # Errors
@@ -93,13 +93,17 @@ impl Factored {
 fn definite(
     problem: &ContactProblem,
     scaling: &Scaling,
-    analysis: &Analysis,
+    (analysis, is_condensed): (&Analysis, bool),
     settings: &Settings,
 ) -> Result<(Option<Cholesky>, f64), Error> {
     if problem.stiffness().diagonal().contains(&0.0) {
         return Ok((None, 0.0));
     }
-    let factor = || analysis.factor_equilibrated(problem.stiffness(), scaling.equilibration());
+    let factor = || match analysis.is_dense() && !is_condensed {
+        // Its method takes the scaled stiffness too.
+        true => analysis.factor(scaling.stiffness()),
+        false => analysis.factor_equilibrated(problem.stiffness(), scaling.equilibration()),
+    };
     match settings.watch.timed(seconds::factorisation(analysis), factor) {
         Ok(cholesky) => {
             let pivot = cholesky.smallest_pivot();

@@ -50,6 +50,8 @@ impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Product<'
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Product { column, x, sums, terms } = self;
+        // One length for all: an index is then checked once.
+        let (sums, terms) = (&mut sums[..x.len()], &mut terms[..x.len()]);
         for (index, &at_column) in x.iter().enumerate() {
             let (mut own, mut own_terms) = (sums[index], terms[index]);
             for (row, value) in column(index) {

@@ -121,6 +121,11 @@ impl Analysis {
         Analysis { threads, ..self }
     }
 
+    /// Returns `true` if the factor is stored as a whole triangle.
+    pub fn is_dense(&self) -> bool {
+        matches!(self.structure, Structure::Dense(_))
+    }
+
     /// Number of values that a factor with this analysis has, zeros inside supernodes included.
     pub fn factor_entries(&self) -> usize {
         match &self.structure {
@@ -176,7 +181,7 @@ impl Analysis {
         matrix: &SymmetricMatrix,
         equilibration: &Equilibration,
     ) -> Result<Cholesky, FactorError> {
-        if let Structure::Dense(_) = &self.structure {
+        if self.is_dense() {
             return self.factor(&equilibration.apply(matrix));
         }
         let scale = &equilibration.diagonal;
@@ -290,7 +295,7 @@ impl Cholesky {
 
     /// Returns `true` if it is stored as a whole triangle.
     pub fn is_dense(&self) -> bool {
-        matches!(self.values, Values::Dense(_))
+        self.analysis.is_dense()
     }
 
     /// Number of values of this factor, zeros inside supernodes included.
@@ -328,6 +333,9 @@ impl Cholesky {
             Values::Dense(triangle) => triangle.backward(y),
             Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::backward(own, &y)),
         };
+        if self.order().is_sorted() {
+            return ordered;
+        }
         let mut x = vec![0.0; ordered.len()];
         self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
         x

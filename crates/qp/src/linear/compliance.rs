@@ -127,28 +127,30 @@ impl Compliance {
             let own = &mut products[j * count + j..(j + 1) * count];
             own.iter_mut().zip(&rows[j..]).for_each(|(product, &row)| *product = of_column[row]);
         }
-        let own: Vec<f64> = (0..count).map(|row| products[row * count + row]).collect();
         let triangle = dense_factor::factorise(count, products, 1).ok()?;
-        let is_kept = |(row, own): (usize, &f64)| triangle.diagonal(row).powi(2) > DEPENDENT * own;
-        own.iter().enumerate().all(is_kept).then_some(Held { compliance: self, rows, triangle })
+        let is_kept =
+            |(place, &row): (usize, &usize)| triangle.diagonal(place).powi(2) > DEPENDENT * self.product(row, row);
+        rows.iter().enumerate().all(is_kept).then_some(Held { compliance: self, rows, triangle })
     }
 }
 
 impl Held<'_> {
-    /// The displacement, length n, and the force on each held row, that take up the force with this
-    /// [sweep](Compliance::swept), and put the held rows at these `distances`.
+    /// The displacement, length n, and the force on each row, zero on rows that are not held, that take up the force
+    /// with this [sweep](Compliance::swept), and put the held rows at their `distances`.
     pub fn solve(&self, mut swept: Vec<f64>, distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let cholesky = &self.compliance.cholesky;
+        let (cholesky, mut forces) = (&self.compliance.cholesky, vec![0.0; distances.len()]);
         if self.rows.is_empty() {
-            return (cholesky.backward(swept), Vec::new());
+            return (cholesky.backward(swept), forces);
         }
         let half = |row: usize| self.compliance.half(row);
         let first = swept.len() - self.compliance.by_row.rows();
         let last = &mut swept[first..];
-        let missing =
-            self.rows.iter().zip(distances).map(|(&row, distance)| distance - wide_dot(half(row), last)).collect();
+        let missing = self.rows.iter().map(|&row| distances[row] - wide_dot(half(row), last)).collect();
         let on_rows = self.triangle.backward(self.triangle.forward(missing));
-        self.rows.iter().zip(&on_rows).for_each(|(&row, &force)| subtract(last, -force, half(row)));
-        (cholesky.backward(swept), on_rows)
+        for (&row, force) in self.rows.iter().zip(on_rows) {
+            subtract(last, -force, half(row));
+            forces[row] = force;
+        }
+        (cholesky.backward(swept), forces)
     }
 }

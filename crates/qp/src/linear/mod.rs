@@ -62,6 +62,8 @@ pub use twice::Twice;
 
 use std::sync::Arc;
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::error::Error;
 use columns::{Columns, Taken};
 use grouped::group_starts;
@@ -247,8 +249,17 @@ impl SparseMatrix {
         rows.iter().map(|&row| row as usize).zip(values.iter().copied())
     }
 
+    /// The columns with an entry other than zero, increasing.
+    pub(crate) fn columns_with_entries(&self) -> Vec<usize> {
+        let has_entry = |&column: &usize| self.column_slices(column).1.iter().any(|&value| value != 0.0);
+        let mut columns = Vec::with_capacity(self.columns());
+        columns.extend((0..self.columns()).filter(has_entry));
+        columns
+    }
+
     /// Calls `take(of_row, value)` for each entry of a column, with the item of its row: a column of all rows is walked
     /// as one run.
+    #[inline(always)]
     pub(crate) fn with_rows<T>(&self, column: usize, of_rows: &mut [T], mut take: impl FnMut(&mut T, f64)) {
         let (rows, values) = self.column_slices(column);
         match rows.len() == of_rows.len() {
@@ -311,9 +322,7 @@ impl SparseMatrix {
     /// The product A x, of which `entry` makes the entries of A.
     fn product(&self, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut y = vec![0.0; self.rows];
-        for (column, &at_column) in x.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-            self.with_rows(column, &mut y, |y, value| *y += entry(value) * at_column);
-        }
+        Arch::new().dispatch(Product { matrix: self, x, y: &mut y, entry });
         y
     }
 
@@ -326,11 +335,11 @@ impl SparseMatrix {
     /// The transposed matrix: its columns are the rows of this one.
     pub fn transposed(&self) -> Self {
         if self.entries() > 0 && self.entries() == self.rows * self.columns() {
-            let of_row = |row: usize| self.values[row..].iter().step_by(self.rows).copied();
             let (columns, rows) = (self.columns(), 0..self.columns() as u32);
             let column_starts = (0..=self.rows).map(|row| row * columns).collect();
             let pattern = Pattern { column_starts, row_starts: vec![0; self.rows], rows: rows.collect() };
-            let values = (0..self.rows).flat_map(of_row).collect();
+            let mut values = Vec::with_capacity(self.entries());
+            (0..self.rows).for_each(|row| values.extend(self.values.chunks_exact(self.rows).map(|column| column[row])));
             return SparseMatrix { rows: columns, pattern: Arc::new(pattern), values: Arc::new(values) };
         }
         let starts = group_starts(self.rows, self.row_indices().map(|row| row as usize));
@@ -387,6 +396,27 @@ impl SparseMatrix {
             let below = self.column(column).filter(move |entry| entry.0 >= first);
             below.map(move |(second, b)| (second, first, a * b))
         })
+    }
+}
+
+/// The product A x, added to y, of which `entry` makes the entries of A.
+struct Product<'a, E> {
+    matrix: &'a SparseMatrix,
+    x: &'a [f64],
+    y: &'a mut [f64],
+    entry: E,
+}
+
+impl<E: Fn(f64) -> f64> WithSimd for Product<'_, E> {
+    type Output = ();
+
+    // A plain closure would be a call to code that is not compiled for the processor.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Product { matrix, x, y, entry } = self;
+        for (column, &at_column) in x.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+            matrix.with_rows(column, y, |y, value| *y += entry(value) * at_column);
+        }
     }
 }
 

@@ -72,13 +72,8 @@ pub fn by_compliance(
     let held = compliance.held(closed.iter().collect())?;
     // The first force is the load.
     let first = Cell::new(Some(scaled.swept_load(compliance)));
-    let correct = |force: &[f64], distance: &[f64]| {
-        let on_closed: Vec<f64> = closed.iter().map(|row| distance[row]).collect();
-        let (du, forces) = held.solve(first.take().unwrap_or_else(|| compliance.swept(force)), &on_closed);
-        let mut dl = vec![0.0; distance.len()];
-        closed.iter().zip(forces).for_each(|(row, force)| dl[row] = force);
-        (du, dl)
-    };
+    let correct =
+        |force: &[f64], distance: &[f64]| held.solve(first.take().unwrap_or_else(|| compliance.swept(force)), distance);
     let balance = corrected(scaled.problem, closed, Correcting { weight: 0.0, enough: SQUARED, correct, is_near });
     balance.consistent.then_some(balance)
 }
@@ -106,16 +101,16 @@ where
     let (mut unbalanced, displacement) = (problem.load().to_vec(), vec![0.0; problem.dofs()]);
     let [multiplier, along_rows] = [(); 2].map(|()| vec![0.0; problem.rows()]);
     let mut balance = Equilibrium { displacement, multiplier, along_rows, consistent: true };
-    let on_closed = |values: Vec<f64>| -> Vec<f64> {
-        values.into_iter().enumerate().map(|(row, value)| if closed.contains(row) { value } else { 0.0 }).collect()
+    let missing = |along: &[f64]| -> Vec<f64> {
+        let of_row = |(row, (b, g)): (usize, (&f64, &f64))| if closed.contains(row) { g - b } else { 0.0 };
+        along.iter().zip(gap).enumerate().map(of_row).collect()
     };
-    let missing = |along: &[f64]| on_closed(along.iter().zip(gap).map(|(b, g)| g - b).collect());
     let load = largest(problem.load());
     let mut last_step = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let distance = missing(&balance.along_rows);
-        let push: Vec<f64> = balance.multiplier.iter().zip(&distance).map(|(l, d)| l + weight * d).collect();
-        if largest(&push) > 0.0 {
+        if weight > 0.0 || largest(&balance.multiplier) > 0.0 {
+            let push: Vec<f64> = balance.multiplier.iter().zip(&distance).map(|(l, d)| l + weight * d).collect();
             unbalanced.iter_mut().zip(contact.mul_transposed(&push)).for_each(|(force, push)| *force += push);
         }
         let (du, dl) = correct(&unbalanced, &distance);
@@ -128,10 +123,10 @@ where
             break;
         }
         last_step = step;
-        let elastic = problem.stiffness().mul(&balance.displacement);
-        unbalanced = problem.load().iter().zip(elastic).map(|(load, elastic)| load - elastic).collect();
+        unbalanced = problem.stiffness().mul(&balance.displacement);
+        unbalanced.iter_mut().zip(problem.load()).for_each(|(force, load)| *force = load - *force);
     }
-    let reach = reach(problem, &balance.along_rows).max(largest(&on_closed(gap.to_vec())));
+    let reach = closed.iter().fold(reach(problem, &balance.along_rows), |most, row| gap[row].abs().max(most));
     let consistent = largest(&missing(&balance.along_rows)) <= CONTRADICTION * reach;
     Equilibrium { consistent, ..balance }
 }

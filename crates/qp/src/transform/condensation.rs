@@ -36,7 +36,7 @@ pub struct Condensation {
 impl Condensation {
     /// The dofs that appear in the rows B, in increasing order.
     pub fn contact_dofs(contact: &SparseMatrix) -> Vec<usize> {
-        (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect()
+        contact.columns_with_entries()
     }
 
     /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does

@@ -113,7 +113,11 @@ impl<'a> Repair<'a> {
         &self.rows.by_row
     }
 
+    /// The sweep of forces along the rows, on the boundary.
     pub fn spread(&self, weights: &[f64]) -> Vec<f64> {
+        if weights.iter().all(|&weight| weight == 0.0) {
+            return vec![0.0; self.boundary.block.size()];
+        }
         self.boundary.block.forward(self.rows.by_row.mul(weights))
     }
 
