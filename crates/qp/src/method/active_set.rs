@@ -75,7 +75,7 @@ impl Solver for ActiveSet<'_> {
             if !balance.consistent {
                 break;
             }
-            let wrong = wrong_rows(scaled, &balance, &closed, SIGN_TOLERANCE);
+            let wrong: Vec<usize> = wrong_rows(scaled, &balance, &closed, SIGN_TOLERANCE).collect();
             (displacement, multiplier) = (balance.displacement, balance.multiplier);
             if wrong.is_empty() {
                 ending = Ending::Settled;
@@ -125,7 +125,7 @@ fn balance(
     if let Some(balance) = earlier.as_mut().and_then(|earlier| earlier.balance(closed, near)) {
         return Ok(Ok(balance));
     }
-    let is_near = |balance: &Equilibrium| wrong_rows(scaled, balance, closed, CLEARLY).is_empty();
+    let is_near = |balance: &Equilibrium| wrong_rows(scaled, balance, closed, CLEARLY).next().is_none();
     let by_compliance = |compliance| by_compliance(scaled, compliance, closed, is_near);
     if let Some(balance) = scaled.compliance.and_then(by_compliance) {
         return Ok(Ok(balance));
@@ -199,11 +199,16 @@ impl Rule {
 
 /// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding and beyond a share of the
 /// largest displacement or multiplier.
-fn wrong_rows(scaled: &ScaledProblem, balance: &Equilibrium, closed: &ContactSet, share: f64) -> Vec<usize> {
+fn wrong_rows(
+    scaled: &ScaledProblem,
+    balance: &Equilibrium,
+    closed: &ContactSet,
+    share: f64,
+) -> impl Iterator<Item = usize> {
     let problem = scaled.problem;
     let Equilibrium { displacement: u, multiplier, along_rows: along, .. } = balance;
     let (gap, reach, strongest) = (problem.gap(), reach(problem, along), share * largest(multiplier));
-    let forces = LazyCell::new(|| {
+    let forces = LazyCell::new(move || {
         let mut forces = problem.stiffness().mul_abs(u);
         forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
         problem.contact().mul_abs(&forces)
@@ -212,16 +217,14 @@ fn wrong_rows(scaled: &ScaledProblem, balance: &Equilibrium, closed: &ContactSet
     // themselves must be known.
     let most = if scaled.is_definite() { MOST_ENTRY * sum_of(u) } else { f64::INFINITY };
     let most_on_rows = MOST_OF_ROW * (u.len() as f64 * most + sum_of(problem.load()));
-    let pulls = |row: usize| {
+    let pulls = move |row: usize| {
         let is_beyond = |forces: f64| multiplier[row] > strongest + FORCE_ROUNDING * forces;
         is_beyond(most_on_rows) || is_beyond(0.0) && is_beyond(forces[row])
     };
-    (0..problem.rows())
-        .filter(|&row| match closed.contains(row) {
-            false => along[row] - gap[row] > share * (reach + gap[row].abs()),
-            true => pulls(row),
-        })
-        .collect()
+    (0..problem.rows()).filter(move |&row| match closed.contains(row) {
+        false => along[row] - gap[row] > share * (reach + gap[row].abs()),
+        true => pulls(row),
+    })
 }
 
 /// The sum of the magnitudes.

@@ -132,7 +132,8 @@ pub struct History {
 impl History {
     /// Nothing was tried yet.
     pub fn new(goal: Goal) -> Self {
-        History { goal, first: 0, records: Vec::new(), best: None }
+        // Most runs end with their first step.
+        History { goal, first: 0, records: Vec::with_capacity(1), best: None }
     }
 
     /// Returns `true` if an answer meets the goal.

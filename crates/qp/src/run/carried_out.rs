@@ -212,8 +212,10 @@ impl<'a> Run<'a> {
                 if let Some((_, before)) = self.last.take().filter(|last| last.0 == attempt) {
                     outcome = outcome.after(before);
                 }
-                let sets = Outcome { displacement: Vec::new(), multiplier: Vec::new(), ..outcome.clone() };
-                self.last = Some((attempt, sets));
+                let [displacement, multiplier] =
+                    [&mut outcome.displacement, &mut outcome.multiplier].map(std::mem::take);
+                self.last = Some((attempt, outcome.clone()));
+                let outcome = Outcome { displacement, multiplier, ..outcome };
                 let condensed_dofs = tried.condensed_dofs.unwrap_or(outcome.displacement.len());
                 let solution = without_certificate(outcome, tried.method.name());
                 Solution { condensed_dofs, lost_pivot: tried.lost_pivot, ..solution }

@@ -15,6 +15,9 @@ use std::sync::OnceLock;
 use crate::error::Error;
 use crate::linear::{Equilibration, SparseMatrix, SymmetricMatrix, exponent, ldexp};
 
+/// Powers of two with exponents up to this size are doubles that lose no digit.
+const SURE: i32 = 1000;
+
 /// The scaling of a body and its contact rows, with its inverse.
 #[derive(Clone, Debug)]
 pub struct Scaling {
@@ -27,6 +30,27 @@ pub struct Scaling {
     contact: SparseMatrix,
 }
 
+/// The exponent of the largest entry of each row of B D, with the exponents `d` of D; zero for a row of zeros.
+fn largest_exponents(contact: &SparseMatrix, d: &[i32]) -> Vec<i32> {
+    let mut sizes = vec![0.0_f64; contact.rows()];
+    for (dof, &of_dof) in d.iter().enumerate() {
+        let power = ldexp(1.0, of_dof);
+        contact.with_rows(dof, &mut sizes, |size, value| {
+            *size = if value.abs() * power > *size { value.abs() * power } else { *size }
+        });
+    }
+    if sizes.iter().all(|size| size.is_normal()) && d.iter().all(|d| d.abs() <= SURE) {
+        return sizes.into_iter().map(exponent).collect();
+    }
+    // A product may have left the range of doubles.
+    let mut largest = vec![None; contact.rows()];
+    for (dof, &of_dof) in d.iter().enumerate() {
+        let entries = contact.column(dof).filter(|entry| entry.1 != 0.0);
+        entries.for_each(|(row, value)| largest[row] = largest[row].max(Some(exponent(value) + of_dof)));
+    }
+    largest.into_iter().map(|exponent| exponent.unwrap_or(0)).collect()
+}
+
 impl Scaling {
     /// Scales the stiffness K (n x n) and the contact rows B (m x n).
     ///
@@ -35,15 +59,7 @@ impl Scaling {
     pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Self, Error> {
         let equilibration = Equilibration::of(stiffness);
         let d = &equilibration.diagonal;
-        let mut largest = vec![i32::MIN; contact.rows()];
-        for (dof, &of_dof) in d.iter().enumerate() {
-            contact.with_rows(dof, &mut largest, |largest, value| {
-                if value != 0.0 {
-                    *largest = exponent(value).saturating_add(of_dof).max(*largest);
-                }
-            });
-        }
-        let rows: Vec<i32> = largest.iter().map(|&e| if e == i32::MIN { 0 } else { -e }).collect();
+        let rows: Vec<i32> = largest_exponents(contact, d).into_iter().map(|e| -e).collect();
         let contact = contact.times_powers(&rows, |dof| d[dof]);
         if let Some((place, &value)) = contact.values().iter().enumerate().find(|entry| !entry.1.is_finite()) {
             let at = contact.triplets().nth(place).map_or_else(String::new, |(row, dof, _)| format!("({row}, {dof})"));
