@@ -176,8 +176,8 @@ impl ContactProblem {
         distances.map(|(violation, negligible)| -violation - negligible).collect()
     }
 
-    /// The rows at these `distances` that are open beyond an error of `error` in the energy norm; `reach` bounds the move
-    /// of each row by it.
+    /// The rows at these `distances` that are open beyond an error of `error` in the energy norm; `reach` bounds the
+    /// move of each row by it.
     fn open_by(&self, distances: &[f64], error: f64, reach: &[f64]) -> ContactSet {
         ContactSet::from_fn(self.rows(), |row| {
             let distance = distances[row];

@@ -85,8 +85,8 @@ impl Factored {
     }
 }
 
-/// The factor of a stiffness with an analysed pattern, which may be condensed by it, `None` if it is not definite to working precision, and its
-/// smallest pivot, zero without a factor.
+/// The factor of a stiffness with an analysed pattern, `None` if it is not definite to working precision, and its
+/// smallest pivot, zero without a factor. It may serve to condense the problem.
 ///
 /// # Errors
 /// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.

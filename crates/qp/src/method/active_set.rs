@@ -27,8 +27,10 @@ use crate::solution::{ContactSet, Iteration};
 /// Rounding of a multiplier, in units of the last place of the forces that balance it.
 const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// No diagonal entry of a scaled stiffness, and no entry of a scaled row, is larger.
+/// No diagonal entry of a scaled stiffness is larger.
 const MOST_ENTRY: f64 = 4.0;
+
+/// No entry of a scaled row is larger.
 const MOST_OF_ROW: f64 = 2.0;
 
 /// A row that is wrong by this share of the largest displacement or multiplier is wrong whatever corrections follow.
@@ -213,8 +215,8 @@ fn wrong_rows(
         forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
         problem.contact().mul_abs(&forces)
     });
-    // No entry of a definite matrix is larger than its largest diagonal entry: few rows pull so little that the forces
-    // themselves must be known.
+    // No entry of a definite matrix is larger than its largest diagonal entry. This bounds the forces without a product
+    // of K: few rows pull so little that the forces themselves must be known.
     let most = if scaled.is_definite() { MOST_ENTRY * sum_of(u) } else { f64::INFINITY };
     let most_on_rows = MOST_OF_ROW * (u.len() as f64 * most + sum_of(problem.load()));
     let pulls = move |row: usize| {
