@@ -8,11 +8,13 @@ use crate::linear::{Analysis, SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
 use crate::watch::Watch;
 
-/// Seconds of a factorisation: of the call, for a multiplication, and for a value of the factor. A multiplication takes
-/// what the products of large matrices take on one processor; the rest of a measured time is that of the values.
-const CALL: f64 = 5e-5;
+/// Seconds of a factorisation for a multiplication, and for a value of the factor. A multiplication takes what the
+/// products of large matrices take on one processor; the rest of a measured time is that of the values.
 const MULTIPLICATION: f64 = 3.4e-11;
 const VALUE: f64 = 1.46e-8;
+
+/// About as many values stay in the cache of a processor, and take little.
+const IN_CACHE: f64 = 5e5;
 
 /// Seconds of meshing and assembly for an entry of the stiffness, both triangles.
 const ASSEMBLY: f64 = 3e-8;
@@ -47,7 +49,7 @@ const LATTICE: usize = 64;
 
 /// Seconds of a factorisation with this number of multiplications and values.
 pub(crate) fn factor_seconds(multiplications: f64, values: f64) -> f64 {
-    CALL + MULTIPLICATION * multiplications + VALUE * values
+    MULTIPLICATION * multiplications + VALUE * values * (values / (values + IN_CACHE))
 }
 
 /// Seconds of meshing a scene and assembling this number of entries of its stiffness, both triangles.
@@ -65,9 +67,9 @@ pub(crate) fn minimum_degree(problem: &ContactProblem) -> f64 {
     MINIMUM_DEGREE * problem.stiffness().lower().entries() as f64
 }
 
-/// Seconds of a hierarchy of this number of unknowns and entries of the lower triangle; its coarsest level has a factor.
+/// Seconds of a hierarchy of this number of unknowns and entries of the lower triangle.
 pub(crate) fn hierarchy(dofs: f64, entries: f64) -> f64 {
-    CALL + HIERARCHY[0] * dofs + HIERARCHY[1] * entries
+    HIERARCHY[0] * dofs + HIERARCHY[1] * entries
 }
 
 /// Seconds of an iteration with one cycle of that hierarchy.

@@ -35,7 +35,7 @@ pub(crate) struct Factored {
     pub(super) method: ByFactor,
     pub(super) is_chosen: bool,
     pub(super) multiplications: f64,
-    /// Estimated seconds of a set of closed rows, if each has a factor of its own; zero if not.
+    /// As that of [`Tried`].
     pub(super) set_seconds: f64,
     /// Estimated seconds of the proof of the open and closed rows.
     pub(super) proof_seconds: f64,

@@ -371,7 +371,7 @@ impl ElasticBody {
 
     /// The deformation at a tabulated point of an element with these displacements of its nodes.
     #[inline]
-    pub fn displaced(&self, cell: &Cell, at: &TabulatedPoint, displacement: &PerNode<[f64; 3]>) -> Displaced {
+    pub(crate) fn displaced(&self, cell: &Cell, at: &TabulatedPoint, displacement: &PerNode<[f64; 3]>) -> Displaced {
         let (slope, determinant) = cell.slope(&at.derivative, displacement);
         let (mut hoop, mut radius) = (0.0, 0.0);
         if self.formulation().is_axisymmetric() {

@@ -20,7 +20,7 @@ pub struct LocalPoint {
 
 /// The deformation at a point of a displaced element.
 #[derive(Clone, Copy, Debug)]
-pub struct Displaced {
+pub(crate) struct Displaced {
     /// `[i][k]`: the derivative of component i along axis k.
     pub slope: [[f64; 3]; 3],
     /// Radial displacement over radius; zero except in bodies of revolution.
