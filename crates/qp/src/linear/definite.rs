@@ -36,7 +36,10 @@ impl Cholesky {
 
     /// The vector with the least energy, largest entry one, by inverse iteration.
     pub fn softest_vector(&self) -> Vec<f64> {
-        power_iteration(self.dim(), 0.5, STEPS, |x| Some(self.solve(x)))
+        power_iteration(self.dim(), 0.5, STEPS, |x| {
+            *x = self.solve(x);
+            true
+        })
     }
 }
 

@@ -66,16 +66,18 @@ pub fn aggregate(graph: &Graph) -> (Vec<u32>, usize) {
 
 /// The strong connections of a block matrix.
 pub fn strong_connections<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> Graph {
-    let square = |block: &[T]| block.iter().map(|value| value.double() * value.double()).sum::<f64>();
-    let diagonal: Vec<f64> = (0..matrix.rows())
-        .map(|node| matrix.diagonal_place(node).map_or(0.0, |place| square(matrix.block(place)).sqrt()))
-        .collect();
+    let square = |place: usize| matrix.block(place).iter().map(|value| value.double() * value.double()).sum::<f64>();
+    // Shared rows have few blocks.
+    let squares: Vec<f64> = (0..matrix.indices.len()).take_while(|_| matrix.is_shared()).map(square).collect();
+    let square = |place: usize| squares.get(place).copied().unwrap_or_else(|| square(place));
+    let diagonal: Vec<f64> =
+        (0..matrix.rows()).map(|node| matrix.diagonal_place(node).map_or(0.0, |place| square(place).sqrt())).collect();
     let mut graph = Graph { starts: vec![0], neighbours: Vec::new(), strengths: Vec::new() };
     for node in 0..matrix.rows() {
-        for (other, block) in matrix.row(node).filter(|entry| entry.0 != node) {
-            let (strength, own) = (square(block), diagonal[node] * diagonal[other]);
-            if strength > threshold * threshold * own {
-                graph.neighbours.push(other as u32);
+        for (other, place) in matrix.columns_of(node).zip(matrix.places(node).0) {
+            let (strength, own) = (square(place), diagonal[node] * diagonal[other as usize]);
+            if other as usize != node && strength > threshold * threshold * own {
+                graph.neighbours.push(other);
                 graph.strengths.push((strength / own) as f32);
             }
         }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::firsts::Firsts;
 use crate::linear::Spare;
 use crate::linear::grouped::group_starts;
 use crate::linear::real::Real;
@@ -9,12 +10,6 @@ use crate::linear::threads::{SharedRows, in_order};
 
 /// Largest number of parts of a product with the transposed matrix: each has its own vector.
 const MOST_PARTS: usize = 8;
-
-/// Least number of blocks of a matrix in a slab of a Galerkin product.
-const SLAB: usize = 500_000;
-
-/// Largest number of slabs: the sum of the products of all slabs is copied with each.
-const MOST_SLABS: usize = 16;
 
 /// A sparse matrix of blocks of `height` x `width` values, row by row, each block row by row.
 ///
@@ -29,14 +24,16 @@ pub struct BlockMatrix<T> {
     pub columns: usize,
     /// Start of each block row in `indices`, length block rows + 1; if rows are shared, only the differences count.
     pub starts: Vec<usize>,
-    /// Block column of each block, increasing within a row; if rows are shared, how far it lies after its row, modulo
-    /// 2^32.
+    /// Block column of each block, increasing within a row; if rows are shared, how far it lies after the shift of its
+    /// row, modulo 2^32.
     pub indices: Vec<u32>,
     /// Values, `height * width` for each block.
     pub values: Vec<T>,
     /// The first block of each row among `indices`, if rows are shared: several rows then have the same. Empty
     /// otherwise.
     pub shared_rows: Vec<u32>,
+    /// The shift of each row, if rows are shared; empty if it is the number of the row.
+    pub shifts: Vec<u32>,
     /// `true` if only the blocks up to the diagonal of a symmetric matrix are stored: see [`BlockMatrix::keep_half`].
     pub is_half: bool,
 }
@@ -78,6 +75,8 @@ macro_rules! with_block_size {
     };
 }
 
+pub(super) use with_block_size;
+
 impl<T: Real> BlockMatrix<T> {
     /// Number of block rows.
     pub fn rows(&self) -> usize {
@@ -97,14 +96,19 @@ impl<T: Real> BlockMatrix<T> {
 
     /// The places of the blocks of a row, and what their indices lack.
     #[inline]
-    fn places(&self, row: usize) -> (Range<usize>, u32) {
+    pub(super) fn places(&self, row: usize) -> (Range<usize>, u32) {
         match self.shared_rows.get(row) {
             None => (self.starts[row]..self.starts[row + 1], 0),
             Some(&first) => {
-                let first = first as usize;
-                (first..first + self.starts[row + 1] - self.starts[row], row as u32)
+                let (first, shift) = (first as usize, self.shifts.get(row).copied().unwrap_or(row as u32));
+                (first..first + self.starts[row + 1] - self.starts[row], shift)
             }
         }
+    }
+
+    /// Returns `true` if several rows have the same blocks.
+    pub fn is_shared(&self) -> bool {
+        !self.shared_rows.is_empty()
     }
 
     /// The columns of the blocks of a row.
@@ -134,6 +138,7 @@ impl<T: Real> BlockMatrix<T> {
             + size_of_val(&self.indices[..])
             + size_of_val(&self.values[..])
             + size_of_val(&self.shared_rows[..])
+            + size_of_val(&self.shifts[..])
     }
 
     /// The rows, to be shared out among threads.
@@ -176,8 +181,27 @@ impl<T: Real> BlockMatrix<T> {
 
     /// A matrix without entries, of `rows` by `columns` blocks.
     pub fn empty(rows: usize, columns: usize, (height, width): (usize, usize)) -> Self {
-        let (starts, indices, values, shared_rows) = (vec![0; rows + 1], Vec::new(), Vec::new(), Vec::new());
-        BlockMatrix { height, width, columns, starts, indices, values, shared_rows, is_half: false }
+        let (starts, indices, values) = (vec![0; rows + 1], Vec::new(), Vec::new());
+        let (shared_rows, shifts) = (Vec::new(), Vec::new());
+        BlockMatrix { height, width, columns, starts, indices, values, shared_rows, shifts, is_half: false }
+    }
+
+    /// The same matrix with each row stored by itself.
+    pub fn unshared(&self) -> Self {
+        let mut whole = Self::empty(0, self.columns, (self.height, self.width));
+        whole.indices.reserve_exact(self.starts[self.rows()]);
+        whole.values.reserve_exact(self.starts[self.rows()] * self.block_size());
+        for row in 0..self.rows() {
+            whole.indices.extend(self.columns_of(row));
+            whole.values.extend_from_slice(&self.values[self.block_range(self.places(row).0)]);
+        }
+        whole.starts.clone_from(&self.starts);
+        whole
+    }
+
+    /// Where the values of some blocks lie.
+    fn block_range(&self, places: Range<usize>) -> Range<usize> {
+        places.start * self.block_size()..places.end * self.block_size()
     }
 
     /// Adds a row of `A x` to `sums`.
@@ -290,27 +314,51 @@ impl<T: Real> BlockMatrix<T> {
         self.transposed_rows(0..self.rows())
     }
 
-    /// The transposed matrix, of some rows alone.
-    fn transposed_rows(&self, rows: impl Iterator<Item = usize> + Clone) -> Self {
-        let starts = group_starts(self.columns, rows.clone().flat_map(|row| self.row(row).map(|entry| entry.0)));
+    /// The transposed matrix, of some rows alone. If rows are shared, those of the transposed matrix are too.
+    pub(super) fn transposed_rows(&self, rows: impl Iterator<Item = usize> + Clone) -> Self {
+        let starts = group_starts(self.columns, rows.clone().flat_map(|row| self.columns_of(row).map(|c| c as usize)));
         let mut next = starts.clone();
-        let size = self.block_size();
-        let mut indices = vec![0; starts[self.columns]];
-        let mut values = vec![T::default(); indices.len() * size];
+        let (mut indices, mut places) = (vec![0; starts[self.columns]], vec![0; starts[self.columns]]);
         for row in rows {
-            for (column, block) in self.row(row) {
-                let place = next[column];
-                next[column] += 1;
-                indices[place] = row as u32;
-                let target = &mut values[place * size..(place + 1) * size];
-                for i in 0..self.height {
-                    for j in 0..self.width {
-                        target[j * self.height + i] = block[i * self.width + j];
-                    }
-                }
+            for (column, place) in self.columns_of(row).zip(self.places(row).0) {
+                let target = next[column as usize];
+                next[column as usize] += 1;
+                (indices[target], places[target]) = (row as u32, place as u32);
             }
         }
-        BlockMatrix { starts, indices, values, ..Self::empty(0, self.rows(), (self.width, self.height)) }
+        let mut transposed = Self::empty(0, self.rows(), (self.width, self.height));
+        transposed.values.reserve_exact(if self.is_shared() { 0 } else { places.len() * self.block_size() });
+        let mut stored = |places: &[u32]| {
+            for &place in places {
+                let block = self.block(place as usize);
+                for j in 0..self.width {
+                    transposed.values.extend((0..self.height).map(|i| block[i * self.width + j]));
+                }
+            }
+        };
+        if !self.is_shared() {
+            stored(&places);
+            return BlockMatrix { starts, indices, ..transposed };
+        }
+        let (mut firsts, mut key, mut relative) = (Firsts::default(), Vec::new(), Vec::new());
+        let (mut shared_rows, mut shifts) = (Vec::with_capacity(self.columns), Vec::with_capacity(self.columns));
+        for (column, pair) in starts.windows(2).enumerate() {
+            let rows = &indices[pair[0]..pair[1]];
+            let shift = rows.first().copied().unwrap_or(0);
+            key.clear();
+            key.extend(rows.iter().map(|row| row - shift));
+            key.extend_from_slice(&places[pair[0]..pair[1]]);
+            let first = firsts.of(&key, column) as usize;
+            shifts.push(shift);
+            if first == column {
+                shared_rows.push(relative.len() as u32);
+                relative.extend_from_slice(&key[..rows.len()]);
+                stored(&places[pair[0]..pair[1]]);
+            } else {
+                shared_rows.push(shared_rows[first]);
+            }
+        }
+        BlockMatrix { starts, indices: relative, shared_rows, shifts, ..transposed }
     }
 
     /// `y = A' x`. The sums run over parts of the rows that depend on the matrix alone, so that the result does not
@@ -331,60 +379,6 @@ impl<T: Real> BlockMatrix<T> {
             spare.give(sum);
         }
         y
-    }
-
-    /// The product P' M of this matrix P; rows of M may be empty.
-    pub fn transposed_product(&self, other: &Self, threads: usize) -> Self {
-        self.transposed_rows(other.filled_rows()).product(other, threads)
-    }
-
-    /// The product P' A P of this matrix P and a symmetric one, `A = H + H'` with half of the diagonal blocks in H:
-    /// `P' H P` and its transposed. By slabs of rows, so that H P is never there as a whole.
-    pub fn galerkin_product(&self, matrix: &Self, threads: usize) -> Self {
-        let slabs = SharedRows { starts: &matrix.starts, threads: MOST_SLABS }.runs_of(SLAB);
-        let mut sum: Option<Self> = None;
-        for rows in slabs {
-            let mut moved = matrix.product_rows(Part::Half, self, rows.clone(), threads);
-            // Rows before and after the slab are empty.
-            let (before, last) = (rows.start, moved.indices.len());
-            moved.starts.splice(0..0, vec![0; before]);
-            moved.starts.resize(matrix.rows() + 1, last);
-            let part = self.transposed_rows(rows).product(&moved, threads);
-            sum = Some(match sum {
-                None => part,
-                Some(sum) => sum.plus(1.0, &part),
-            });
-        }
-        match sum {
-            Some(sum) => sum.plus(1.0, &sum.transposed()),
-            None => Self::empty(self.columns, self.columns, (self.width, self.width)),
-        }
-    }
-
-    /// The product A B, row by row: a row of the product is a sum of rows of B, one for each entry in the row of A.
-    pub fn product(&self, other: &Self, threads: usize) -> Self {
-        self.product_rows(Part::Whole, other, 0..self.rows(), threads)
-    }
-
-    /// Some rows of the product of a part of A with B, numbered from 0.
-    fn product_rows(&self, of: Part, other: &Self, rows: Range<usize>, threads: usize) -> Self {
-        let starts = &self.starts[rows.start..=rows.end];
-        let parts = SharedRows { starts, threads }.map(|part| {
-            let rows = rows.start + part.start..rows.start + part.end;
-            with_block_size!(product_rows, (self.height, self.width), ((self, of), other, rows))
-        });
-        let mut product = Self::empty(0, other.columns, (self.height, other.width));
-        for (starts, indices, values) in parts {
-            let before = product.indices.len();
-            product.starts.extend(starts.iter().map(|start| before + start));
-            if before == 0 {
-                (product.indices, product.values) = (indices, values);
-            } else {
-                product.indices.extend(indices);
-                product.values.extend(values);
-            }
-        }
-        product
     }
 }
 
@@ -459,103 +453,5 @@ fn add_transposed_product<T: Real, const H: usize, const W: usize>(
                 }
             }
         }
-    }
-}
-
-/// The part of a matrix that is multiplied.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Part {
-    Whole,
-    /// The blocks before the diagonal, and half of those on it.
-    Half,
-}
-
-type Rows<T> = (Vec<usize>, Vec<u32>, Vec<T>);
-
-/// The rows of a product: the ends of the rows, columns and values.
-fn product_rows<T: Real, const H: usize, const W: usize>(
-    (left, part): (&BlockMatrix<T>, Part),
-    right: &BlockMatrix<T>,
-    rows: Range<usize>,
-) -> Rows<T> {
-    let (height, inner, width) = (left.height, left.width, right.width);
-    let size = height * width;
-    let (mut ends, mut indices, mut values) = (Vec::with_capacity(rows.len()), Vec::new(), Vec::new());
-    let mut place_of = vec![u32::MAX; right.columns];
-    let (mut found, mut sums): (Vec<u32>, Vec<T>) = (Vec::new(), Vec::new());
-    let (mut order, mut half): (Vec<u32>, Vec<T>) = (Vec::new(), Vec::new());
-    for row in rows {
-        found.clear();
-        sums.clear();
-        for (k, mut a) in left.row(row) {
-            if part == Part::Half && k > row {
-                break;
-            }
-            if part == Part::Half && k == row {
-                half.clear();
-                half.extend(a.iter().map(|&value| T::of(0.5) * value));
-                a = &half;
-            }
-            for (column, b) in right.row(k) {
-                let mut place = place_of[column] as usize;
-                if place == u32::MAX as usize {
-                    place = found.len();
-                    place_of[column] = place as u32;
-                    found.push(column as u32);
-                    sums.resize(sums.len() + size, T::default());
-                }
-                let sum = &mut sums[place * size..(place + 1) * size];
-                match width {
-                    1 => add_product::<T, H, W, 1>(a, b, sum, (height, inner, width)),
-                    2 => add_product::<T, H, W, 2>(a, b, sum, (height, inner, width)),
-                    3 => add_product::<T, H, W, 3>(a, b, sum, (height, inner, width)),
-                    6 => add_product::<T, H, W, 6>(a, b, sum, (height, inner, width)),
-                    _ => add_product::<T, 0, 0, 0>(a, b, sum, (height, inner, width)),
-                }
-            }
-        }
-        order.clear();
-        order.extend_from_slice(&found);
-        order.sort_unstable();
-        for &column in &order {
-            let place = place_of[column as usize] as usize;
-            indices.push(column);
-            values.extend_from_slice(&sums[place * size..(place + 1) * size]);
-        }
-        found.iter().for_each(|&column| place_of[column as usize] = u32::MAX);
-        ends.push(indices.len());
-    }
-    (ends, indices, values)
-}
-
-#[inline]
-fn add_product<T: Real, const H: usize, const W: usize, const C: usize>(
-    a: &[T],
-    b: &[T],
-    sum: &mut [T],
-    (height, inner, width): (usize, usize, usize),
-) {
-    if H == 0 || C == 0 {
-        for i in 0..height {
-            for k in 0..inner {
-                for j in 0..width {
-                    sum[i * width + j] += a[i * inner + k] * b[k * width + j];
-                }
-            }
-        }
-        return;
-    }
-    let (a, b, sum) = (a.as_chunks::<W>().0, b.as_chunks::<C>().0, sum.as_chunks_mut::<C>().0);
-    let (Some(a), Some(b), Some(sum)) = (a.first_chunk::<H>(), b.first_chunk::<W>(), sum.first_chunk_mut::<H>()) else {
-        return;
-    };
-    for i in 0..H {
-        let mut of_row = sum[i];
-        for k in 0..W {
-            for j in 0..C {
-                of_row[j] += a[i][k] * b[k][j];
-            }
-        }
-        sum[i] = of_row;
     }
 }

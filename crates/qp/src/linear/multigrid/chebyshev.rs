@@ -142,15 +142,15 @@ impl<T: Real> Chebyshev<T> {
         let mut estimate = 1.0;
         power_iteration(operator.dim(), -0.5, POWER_STEPS, |x| {
             operator.mul_into(x, &mut moved);
-            let mut next = vec![T::default(); x.len()];
-            self.precondition(operator, &moved, &mut next);
-            let (energy, dual) = (product(x, &moved), product(&next, &moved));
+            let energy = product(x, &moved);
+            self.precondition(operator, &moved, x);
+            let dual = product(x, &moved);
             if energy.is_nan() || energy <= 0.0 || !dual.is_finite() {
-                return None;
+                return false;
             }
             // The Rayleigh quotient of D^-1 A in the energy product, in which it is symmetric.
             estimate = dual / energy;
-            Some(next)
+            true
         });
         estimate
     }
@@ -162,6 +162,10 @@ fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
     let mut inverse = RowByRow::new(size, matrix.rows());
     let (mut work, mut result, mut values) = (vec![0.0; size * size], vec![0.0; size * size], Vec::new());
     for node in 0..matrix.rows() {
+        if node > 0 && matrix.is_shared() && matrix.shared_rows[node - 1] == matrix.shared_rows[node] {
+            inverse.repeat(node - 1);
+            continue;
+        }
         match matrix.diagonal_place(node) {
             Some(place) => work.iter_mut().zip(matrix.block(place)).for_each(|(work, value)| *work = value.double()),
             None => work.fill(0.0),

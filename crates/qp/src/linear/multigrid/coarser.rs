@@ -55,14 +55,15 @@ fn coarser_of<T: Real>(hierarchy: &Hierarchy<T>, levels: fn(Hierarchy<T>) -> Lev
     }
     let matrix = below.levels.first().map_or(&*below.coarsest_matrix, |level| &level.matrix);
     let matrix = lower_part(matrix);
+    let prolongator = first.prolongator.unshared();
     Some(Coarser {
         matrix: matrix.clone(),
         multigrid: Multigrid { matrix, levels: levels(below), work: Spare::default() },
         place: hierarchy.nodes.place.clone(),
         shift: hierarchy.shift,
-        starts: first.prolongator.starts.clone(),
-        columns: first.prolongator.indices.clone(),
-        values: first.prolongator.values.iter().map(|value| value.double()).collect(),
+        values: prolongator.values.iter().map(|value| value.double()).collect(),
+        starts: prolongator.starts,
+        columns: prolongator.indices,
         near_null: first.near_null.values.clone(),
     })
 }

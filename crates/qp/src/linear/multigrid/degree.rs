@@ -52,10 +52,11 @@ impl<T: Real> Hierarchy<T> {
             let taken = self.descend(0, self.spare.copy(&force), None);
             let (energy, of_taken) = (product(error, &force), product(&taken, &force));
             if energy.is_nan() || energy <= 0.0 || !of_taken.is_finite() {
-                return None;
+                return false;
             }
             share = of_taken / energy;
-            Some(error.iter().zip(&taken).map(|(&error, &taken)| error - taken).collect())
+            error.iter_mut().zip(&taken).for_each(|(error, &taken)| *error -= taken);
+            true
         });
         share
     }

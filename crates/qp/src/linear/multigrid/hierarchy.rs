@@ -144,7 +144,7 @@ impl<T: Real> Hierarchy<T> {
                 None => gathered(&blocks, count, &mut threshold),
             };
             let Some((of_node, aggregates)) = gathered else { break };
-            let (flat, coarse) = tentative::<T>(&candidates, blocks.height, &of_node, aggregates);
+            let (flat, coarse) = tentative(&blocks, &candidates, &of_node, aggregates);
             drop(of_node);
             let moved = match lines {
                 Some(lines) => lines.product(&blocks, &flat, &candidates, &coarse),
@@ -155,7 +155,7 @@ impl<T: Real> Hierarchy<T> {
                 false => smoothed(&flat, moved, &smoother, threads),
             };
             candidates = coarse;
-            if levels.is_empty() && blocks.shared_rows.is_empty() {
+            if levels.is_empty() && !blocks.is_shared() {
                 blocks.keep_half();
             }
             let mut next = prolongator.galerkin_product(&blocks, threads);

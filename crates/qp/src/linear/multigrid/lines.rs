@@ -146,7 +146,7 @@ mod tests {
         let line_of = |node: usize| node / nx;
         // Constants, and vectors that grow along the lines.
         let fine = Candidates { count: 2, values: (0..nx * ny).flat_map(|node| [1.0, (node % nx) as f64]).collect() };
-        let (flat, coarse) = tentative::<f64>(&fine, 1, &lines.of_node, lines.aggregates);
+        let (flat, coarse) = tentative(&matrix, &fine, &lines.of_node, lines.aggregates);
         let product = lines.product(&matrix, &flat, &fine, &coarse);
         let line_of_aggregate: Vec<usize> = (0..lines.aggregates)
             .map(|aggregate| line_of(lines.of_node.iter().position(|&of| of as usize == aggregate).unwrap()))

@@ -20,6 +20,7 @@ mod degree;
 mod dual_norm;
 mod face;
 mod filling;
+mod firsts;
 mod half;
 mod held;
 mod hierarchy;
@@ -29,6 +30,7 @@ mod near_null;
 mod nodes;
 mod operator;
 mod patches;
+mod products;
 mod prolongator;
 mod repeated;
 
@@ -244,6 +246,10 @@ fn located(error: FactorError) -> Error {
 
 #[cfg(test)]
 mod tests {
+    use super::blocks::BlockMatrix;
+    use super::chebyshev::Chebyshev;
+    use super::nodes::Nodes;
+    use super::prolongator::{Candidates, smoothed, tentative};
     use super::*;
     use crate::linear::{SparseMatrix, generic};
 
@@ -282,6 +288,33 @@ mod tests {
     fn is_by_blocks(multigrid: &Multigrid) -> bool {
         by_precision!(multigrid.levels, levels => levels.product(&vec![0.0; multigrid.matrix.dim()], &Spare::default()))
             .is_some()
+    }
+
+    /// GOAL: the products of the few rows of a lattice are those of all rows, bit by bit.
+    #[test]
+    fn levels_of_a_lattice_are_made_of_its_few_rows() {
+        let nodes = 90;
+        let (_, few, _, _) = Nodes::of::<f32>(&lattice(nodes, |_| 1.0), 1);
+        let smoother = Chebyshev::new(&few, 3, 1);
+        // Constants, in squares of nine nodes; each dof is a node of the hierarchy.
+        let values = [1.0, 0.0, 0.0, 1.0].repeat(nodes * nodes);
+        let square_of = |node: usize| (node / nodes / 3 * (nodes / 3) + node % nodes / 3) as u32;
+        let of_dof: Vec<u32> = (0..few.rows()).map(|dof| square_of(dof / 2)).collect();
+        let (flat, coarse) = tentative(&few, &Candidates { count: 2, values }, &of_dof, nodes * nodes / 9);
+        // The vectors of a square have the length 3.
+        let lengths = [3.0, 0.0, 0.0, 3.0];
+        assert!(coarse.values.iter().zip(lengths.iter().cycle()).all(|(r, length)| (r - length).abs() < 1e-14));
+        let levels = |matrix: &BlockMatrix<f32>, flat: &BlockMatrix<f32>| {
+            let prolongator = smoothed(flat, matrix.product(flat, 1), &smoother, 1);
+            let coarse = prolongator.galerkin_product(matrix, 1);
+            [prolongator.transposed(), prolongator, coarse]
+        };
+        let (found, expected) = (levels(&few, &flat), levels(&few.unshared(), &flat.unshared()));
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((0..expected.rows()).all(|row| found.row(row).eq(expected.row(row))));
+        }
+        assert!(found[..2].iter().all(|matrix| 5 * matrix.indices.len() < matrix.starts[matrix.rows()]));
+        assert!(expected.iter().all(|matrix| !matrix.is_shared()));
     }
 
     #[test]

@@ -47,7 +47,7 @@ impl<'a, T: Real> Operator<'a, T> {
     fn multiply(&self, x: &[T], y: &mut [T], product: Product) {
         if self.matrix.is_half {
             half::multiply(self.matrix, x, y, product, self.threads, self.spare);
-        } else if self.matrix.shared_rows.is_empty() {
+        } else if !self.matrix.is_shared() {
             self.matrix.multiply(x, y, product, self.threads);
         } else {
             repeated::multiply(self.matrix, x, y, product, self.threads, self.spare);

@@ -1,5 +1,7 @@
 //! The prolongator of a level: near-null vectors cut into aggregates, made orthonormal, smoothed.
 
+use std::collections::HashMap;
+
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use crate::linear::grouped::grouped;
@@ -9,6 +11,10 @@ use crate::linear::threads::SharedRows;
 /// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after
 /// those before it are removed: two nodes do not turn about the line through them.
 const DEPENDENT_IN_AGGREGATE: f64 = 1e-8;
+
+/// Columns span a near-null vector if they leave this share of its largest entry: rounding, and far less than single
+/// precision resolves.
+const SPANNED: f64 = 1e-12;
 
 /// Factor on the inverse of the largest eigenvalue in the smoothing of the prolongator.
 const STEP: f64 = 4.0 / 3.0;
@@ -30,36 +36,70 @@ impl Candidates {
 }
 
 /// The tentative prolongator and the near-null space in its columns. The columns are the vectors of `fine` within each
-/// aggregate, made orthonormal. `size` is the number of places of a node.
+/// aggregate, made orthonormal.
 ///
-/// Columns that follow from others stay empty.
+/// Columns that follow from others stay empty. If rows of `matrix` are shared, aggregates of one shape have the same
+/// columns where these span their vectors: they are then stored once.
 pub fn tentative<T: Real>(
+    matrix: &BlockMatrix<T>,
     fine: &Candidates,
-    size: usize,
     of_node: &[u32],
     aggregates: usize,
 ) -> (BlockMatrix<T>, Candidates) {
-    let count = fine.count;
+    let (size, count) = (matrix.height, fine.count);
     let (starts, members) = grouped(aggregates, of_node);
-    let mut values = vec![T::default(); of_node.len() * size * count];
+    let mut flat = BlockMatrix::empty(0, aggregates, (size, count));
+    flat.shared_rows = vec![0; of_node.len()];
     let mut coarse = Candidates { count, values: vec![0.0; aggregates * count * count] };
+    // The last aggregate of each shape: its first row, and its columns.
+    let mut known: HashMap<Vec<u32>, (usize, Vec<f64>)> = HashMap::new();
     let mut local: Vec<f64> = Vec::new();
     for aggregate in 0..aggregates {
         let nodes = &members[starts[aggregate]..starts[aggregate + 1]];
         local.clear();
-        for &node in nodes {
-            local.extend_from_slice(&fine.values[node * size * count..(node + 1) * size * count]);
-        }
+        nodes.iter().for_each(|&node| local.extend_from_slice(fine.of_node(node, size)));
+        let shape = nodes.iter().map(|node| (node - nodes[0]) as u32).collect();
         let triangle = &mut coarse.values[aggregate * count * count..(aggregate + 1) * count * count];
-        orthonormalise(&mut local, count, triangle);
-        for (&node, of_node) in nodes.iter().zip(local.chunks_exact(size * count)) {
-            let target = &mut values[node * size * count..(node + 1) * size * count];
-            target.iter_mut().zip(of_node).for_each(|(target, &value)| *target = T::of(value));
-        }
+        let first = match known.get(&shape).filter(|known| is_spanned(&local, &known.1, count, triangle)) {
+            Some(known) => known.0,
+            None => {
+                let first = flat.indices.len();
+                triangle.fill(0.0);
+                orthonormalise(&mut local, count, triangle);
+                flat.indices.resize(first + nodes.len(), 0);
+                flat.values.extend(local.iter().map(|&value| T::of(value)));
+                if matrix.is_shared() {
+                    known.insert(shape, (first, local.clone()));
+                }
+                first
+            }
+        };
+        nodes.iter().zip(first..).for_each(|(&node, place)| flat.shared_rows[node] = place as u32);
     }
-    let starts = (0..=of_node.len()).collect();
-    let indices = of_node.to_vec();
-    (BlockMatrix { starts, indices, values, ..BlockMatrix::empty(0, aggregates, (size, count)) }, coarse)
+    flat.starts = (0..=of_node.len()).collect();
+    flat.shifts = of_node.to_vec();
+    let is_few = 2 * flat.indices.len() <= of_node.len();
+    (if is_few { flat } else { flat.unshared() }, coarse)
+}
+
+/// Writes `R = Q'B` into the upper `triangle`, for the orthonormal columns Q and the vectors B of an aggregate, `count`
+/// values in each row. Returns `false` if Q R is not B.
+fn is_spanned(vectors: &[f64], columns: &[f64], count: usize, triangle: &mut [f64]) -> bool {
+    let rows = || vectors.chunks_exact(count).zip(columns.chunks_exact(count));
+    triangle.fill(0.0);
+    let mut sizes = vec![0.0_f64; count];
+    for (vector, column) in rows() {
+        for (i, &q) in column.iter().enumerate() {
+            triangle[i * count + i..(i + 1) * count].iter_mut().zip(&vector[i..]).for_each(|(sum, &b)| *sum += q * b);
+        }
+        sizes.iter_mut().zip(vector).for_each(|(size, b)| *size = size.max(b.abs()));
+    }
+    rows().all(|(vector, column)| {
+        (0..count).all(|j| {
+            let product: f64 = (0..=j).map(|i| column[i] * triangle[i * count + j]).sum();
+            (vector[j] - product).abs() <= SPANNED * sizes[j]
+        })
+    })
 }
 
 /// Q R of the rows of `local`, `count` values each, in place: modified Gram-Schmidt, done twice. `triangle` is R, row
@@ -114,29 +154,45 @@ pub fn smoothed<T: Real>(
 ) -> BlockMatrix<T> {
     let (height, width) = (moved.height, moved.width);
     let (inverse, step) = (&smoother.inverse, T::of(STEP / smoother.largest));
-    let BlockMatrix { starts, indices, values, .. } = &mut moved;
     let size = height * width;
-    SharedRows { starts, threads }.with_blocks(size, values, |rows, values| {
-        let mut column = vec![T::default(); height];
-        let first = starts[rows.start];
-        for node in rows {
-            let Some((_, of_node)) = inverse.row(node).next() else { continue };
-            let own = tentative.indices[node];
-            for place in starts[node]..starts[node + 1] {
-                let is_own = indices[place] == own;
-                let block = &mut values[(place - first) * size..(place - first + 1) * size];
-                for j in 0..width {
-                    column.iter_mut().enumerate().for_each(|(i, entry)| *entry = block[i * width + j]);
-                    for i in 0..height {
-                        let mut sum = T::default();
-                        for (k, &entry) in column.iter().enumerate() {
-                            sum += of_node[i * height + k] * entry;
-                        }
-                        let before = if is_own { tentative.block(node)[i * width + j] } else { T::default() };
-                        block[i * width + j] = before - step * sum;
+    let of_node = |node: usize, columns: &[u32], values: &mut [T], column: &mut [T]| {
+        let Some((_, of_node)) = inverse.row(node).next() else { return };
+        let Some((own, before)) = tentative.row(node).next() else { return };
+        for (&of_block, block) in columns.iter().zip(values.chunks_exact_mut(size)) {
+            for j in 0..width {
+                column.iter_mut().enumerate().for_each(|(i, entry)| *entry = block[i * width + j]);
+                for i in 0..height {
+                    let mut sum = T::default();
+                    for (k, &entry) in column.iter().enumerate() {
+                        sum += of_node[i * height + k] * entry;
                     }
+                    let before = if of_block as usize == own { before[i * width + j] } else { T::default() };
+                    block[i * width + j] = before - step * sum;
                 }
             }
+        }
+    };
+    let mut column = vec![T::default(); height];
+    if moved.is_shared() {
+        let mut done = 0;
+        for node in 0..moved.rows() {
+            let (places, _) = moved.places(node);
+            // Rows are stored in the order in which they come first.
+            if places.start == done {
+                done = places.end;
+                let columns: Vec<u32> = moved.columns_of(node).collect();
+                of_node(node, &columns, &mut moved.values[places.start * size..places.end * size], &mut column);
+            }
+        }
+        return moved;
+    }
+    let BlockMatrix { starts, indices, values, .. } = &mut moved;
+    SharedRows { starts, threads }.with_blocks(size, values, |rows, mut values| {
+        let mut column = vec![T::default(); height];
+        for node in rows {
+            let places = starts[node]..starts[node + 1];
+            let of_row = values.split_off_mut(..places.len() * size).unwrap_or_default();
+            of_node(node, &indices[places], of_row, &mut column);
         }
     });
     moved

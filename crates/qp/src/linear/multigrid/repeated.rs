@@ -40,15 +40,33 @@ impl<T: Real> RowByRow<T> {
 
     /// Takes the next row: its block columns, increasing, and the values of its blocks.
     pub fn push(&mut self, columns: &[u32], values: &[T]) {
-        let (row, blocks) = (self.matrix.rows(), self.matrix.starts[self.matrix.rows()] + columns.len());
-        if self.matrix.shared_rows.len() < row {
+        if self.matrix.shared_rows.len() < self.matrix.rows() {
             self.matrix.indices.extend_from_slice(columns);
             self.matrix.values.extend_from_slice(values);
         } else {
             let first = self.stored(columns, values);
             self.matrix.shared_rows.push(first);
         }
-        self.matrix.starts.push(blocks);
+        self.end_row(columns.len());
+    }
+
+    /// Takes an earlier row once more: the blocks of the next one are the same.
+    pub fn repeat(&mut self, row: usize) {
+        let length = self.matrix.starts[row + 1] - self.matrix.starts[row];
+        if let Some(&first) = self.matrix.shared_rows.get(row) {
+            self.matrix.shared_rows.push(first);
+            return self.end_row(length);
+        }
+        let (next, start) = (self.matrix.rows(), self.matrix.starts[row]);
+        let columns: Vec<u32> = self.matrix.columns_of(row).map(|column| column + (next - row) as u32).collect();
+        let size = self.matrix.block_size();
+        let values = self.matrix.values[start * size..(start + length) * size].to_vec();
+        self.push(&columns, &values);
+    }
+
+    fn end_row(&mut self, blocks: usize) {
+        let row = self.matrix.rows();
+        self.matrix.starts.push(self.matrix.starts[row] + blocks);
         if row == ENOUGH_ROWS {
             self.share_or_not();
         }
@@ -99,15 +117,8 @@ impl<T: Real> RowByRow<T> {
         if matrix.shared_rows.len() < rows || matrix.indices.len() as f64 <= SHARED * matrix.starts[rows] as f64 {
             return;
         }
-        let mut indices = Vec::with_capacity(matrix.starts[rows]);
-        let mut values = Vec::with_capacity(matrix.starts[rows] * matrix.block_size());
-        for row in 0..rows {
-            for (column, block) in matrix.row(row) {
-                indices.push(column as u32);
-                values.extend_from_slice(block);
-            }
-        }
-        (matrix.indices, matrix.values, matrix.shared_rows) = (indices, values, Vec::new());
+        let whole = matrix.unshared();
+        (matrix.indices, matrix.values, matrix.shared_rows) = (whole.indices, whole.values, whole.shared_rows);
         self.known.clear();
     }
 }
