@@ -52,6 +52,8 @@ pub struct SimplexMesh {
     sides: Vec<usize>,
     /// For each simplex, the element of the first mesh that contains it.
     pub origins: Vec<usize>,
+    /// For each simplex, that of the mesh before of which it is a piece; in a first mesh itself.
+    pub wholes: Vec<usize>,
     /// The number of the condition of each facet; most of those inside have none.
     pub conditions: Vec<Option<usize>>,
     /// The facets with conditions, each at its first simplex.
@@ -149,7 +151,7 @@ impl SimplexMesh {
                     let facet: [usize; OF_FACET] = filled(facet.iter().copied());
                     facets.entry(facet).or_default().push((condition, facet));
                 }
-                let parts = cells.iter().map(Vec::as_slice).zip(origins.iter().copied());
+                let parts = cells.iter().map(Vec::as_slice).zip(0..);
                 Bisection::Tetrahedra(Tetrahedra::new(nodes.clone(), parts, facets))
             }
         };
@@ -222,7 +224,7 @@ impl SimplexMesh {
             let (cell, local) = (place / (dimension + 1), place % (dimension + 1));
             Some(OuterFacet { cell, local, facet, condition: left[facet].take()? })
         });
-        let (surface, parents) = (outer.collect(), Vec::new());
+        let (surface, parents, wholes) = (outer.collect(), Vec::new(), (0..cells.len()).collect());
         SimplexMesh {
             dimension,
             nodes,
@@ -232,6 +234,7 @@ impl SimplexMesh {
             facets,
             sides,
             origins,
+            wholes,
             conditions,
             surface,
             parents,
@@ -316,11 +319,12 @@ impl SimplexMesh {
             Bisection::Tetrahedra(cells) => {
                 let mut cells = cells.clone();
                 let parents = cells.refine(marked, GENERATIONS);
-                let (nodes, origins, surface) = (cells.nodes().to_vec(), cells.parents(), cells.facets().collect());
+                let (wholes, nodes, surface) = (cells.parents(), cells.nodes().to_vec(), cells.facets().collect());
+                let origins = wholes.iter().map(|&whole| self.origins[whole]).collect();
                 let corners: Vec<_> = cells.cells().map(filled).collect();
-                let next = Bisection::Tetrahedra(cells);
+                let next = Bisection::Tetrahedra(cells.numbered());
                 let mesh = Self::of(self.dimension, nodes, corners.into_iter(), origins, &surface, next);
-                SimplexMesh { parents, ..mesh }
+                SimplexMesh { wholes, parents, ..mesh }
             }
         }
     }
@@ -368,31 +372,31 @@ impl SimplexMesh {
             }
             surface.extend(condition.into_iter().flat_map(|condition| ends.iter().map(move |&end| (end, condition))));
         }
-        let (mut pieces, mut origins) = (Vec::with_capacity(2 * triangles.len()), Vec::new());
-        let mut left: Vec<([usize; 3], usize)> =
-            triangles.iter().copied().zip(self.origins.iter().copied()).rev().collect();
-        while let Some(([newest, a, b], origin)) = left.pop() {
+        let (mut pieces, mut wholes) = (Vec::with_capacity(2 * triangles.len()), Vec::new());
+        let mut left: Vec<([usize; 3], usize)> = triangles.iter().copied().zip(0..triangles.len()).rev().collect();
+        while let Some(([newest, a, b], whole)) = left.pop() {
             match halved.get(&key(a, b)).copied().flatten() {
-                Some(middle) => left.extend([([middle, b, newest], origin), ([middle, newest, a], origin)]),
+                Some(middle) => left.extend([([middle, b, newest], whole), ([middle, newest, a], whole)]),
                 None => {
                     pieces.push([newest, a, b]);
-                    origins.push(origin);
+                    wholes.push(whole);
                 }
             }
         }
         let middle = |edge: [usize; 2]| halved.get(&edge).copied().flatten();
         let opposites = self.opposites.iter().flat_map(|opposite| opposite.halved(middle)).collect();
         let cells = pieces.clone().into_iter().map(filled);
+        let origins = wholes.iter().map(|&whole| self.origins[whole]).collect();
         let mesh = Self::of(2, nodes, cells, origins, &surface, Bisection::Triangles(pieces));
-        let mesh = SimplexMesh { parents, ..mesh };
+        let mesh = SimplexMesh { wholes, parents, ..mesh };
         if self.opposites.is_empty() { mesh } else { mesh.with_opposites(opposites) }
     }
 
-    /// A property of nodes of the previous mesh, carried to this one: a new node has it if both ends of its edge have
-    /// it.
-    pub fn carried(&self, mut of_nodes: Vec<bool>) -> Vec<bool> {
-        for ends in &self.parents {
-            of_nodes.push(ends.iter().all(|&end| of_nodes[end]));
+    /// A property of nodes of the previous mesh, carried to this one: that of a new node comes of those at both ends of
+    /// its edge.
+    pub fn carried<T: Copy>(&self, mut of_nodes: Vec<T>, joined: impl Fn(T, T) -> T) -> Vec<T> {
+        for &[a, b] in &self.parents {
+            of_nodes.push(joined(of_nodes[a], of_nodes[b]));
         }
         of_nodes
     }
@@ -464,7 +468,7 @@ mod tests {
                 }
                 let at_bottom = vec![true, true, false, false];
                 if mesh.dimension == 2 && step == 0 {
-                    let carried = mesh.carried(at_bottom);
+                    let carried = mesh.carried(at_bottom, |one, other| one && other);
                     carried.iter().zip(&mesh.nodes).for_each(|(&has, node)| assert_eq!(has, node[1] == 0.0));
                 }
             }

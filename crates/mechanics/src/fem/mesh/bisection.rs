@@ -90,6 +90,12 @@ impl Tetrahedra {
         self.cells.iter().map(|cell| cell.parent).collect()
     }
 
+    /// The same tetrahedra, each a part of itself.
+    pub fn numbered(mut self) -> Self {
+        self.cells.iter_mut().enumerate().for_each(|(number, cell)| cell.parent = number);
+        self
+    }
+
     /// The mesh of quadratic tetrahedra with straight edges, in the order of the cells; its boundaries keep their
     /// names.
     ///

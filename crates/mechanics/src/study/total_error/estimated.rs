@@ -6,7 +6,7 @@ use std::sync::Arc;
 use signorini_qp as qp;
 
 use super::found::{Bound, Level, LevelKind, Search as Given, TotalError};
-use super::goal::{Answering, Ended, marked, shortage};
+use super::goal::{Answering, Ended, PER_UNKNOWN, marked, shortage};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::bisection::Tetrahedra;
@@ -18,9 +18,6 @@ use signorini_qp::{Settings, solve};
 /// The share of the total error allowed for the algebraic error: the errors are nearly orthogonal, so that it adds half
 /// a hundredth.
 const OF_ALGEBRA: f64 = 0.1;
-
-/// The seconds of a mesh grow with this power of its unknowns.
-const PER_UNKNOWN: f64 = 1.3;
 
 /// Number of times that a marked tetrahedron of the estimate is halved. Measured on a block under a sphere: with 1 more
 /// meshes are needed, and 3 refine too much.

@@ -50,6 +50,9 @@ impl From<f64> for TotalErrorGoal {
     }
 }
 
+/// The seconds of a mesh grow with this power of its unknowns.
+pub(super) const PER_UNKNOWN: f64 = 1.3;
+
 /// The reason for which no finer mesh was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -101,7 +104,7 @@ pub(super) fn shortage(error: &Error) -> Option<Ended> {
 const AIM: f64 = 0.95;
 
 /// The smallest share that is refined: a smaller one would take too many meshes.
-const LEAST: f64 = 0.1;
+pub(super) const LEAST: f64 = 0.1;
 
 /// The smallest set of elements whose shares make up `share` of the whole.
 pub(super) fn marked(shares: &[f64], share: f64) -> Vec<bool> {

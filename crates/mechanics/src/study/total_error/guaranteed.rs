@@ -6,8 +6,9 @@ use std::sync::Arc;
 use signorini_qp as qp;
 use signorini_qp::{Settings, Solution, dot, solve};
 
+use super::foresight::Foresight;
 use super::found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, Search as Given, TotalError};
-use super::goal::{Answering, Ended, marked, shortage};
+use super::goal::{Ended, PER_UNKNOWN, shortage};
 use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use crate::error::Error;
 use crate::fem::ElementKind;
@@ -15,9 +16,6 @@ use crate::fem::assembly::internal_force;
 use crate::scene::Answer;
 use crate::study::warnings::{check_motion, of_refined};
 use crate::study::{AnswerWarning, ModelSize, Status};
-
-/// The seconds of the next mesh over those of this one, approximately.
-const GROWTH: f64 = 2.2;
 
 /// Times that the simplices at obstacles are refined before a body counts as held by nothing. On a coarse mesh the rows
 /// of the stress problem, whose gaps are means, may stay open where the body touches.
@@ -101,13 +99,14 @@ impl Search<'_> {
     fn run(&self, first: SimplexMesh) -> Result<TotalError, Error> {
         let mut found: Option<TotalError> = None;
         let (mut next, mut own, mut touching) = (first, None, None);
-        let (mut before, mut displacement_seconds) = (0.0, 0.0);
-        let (mut answering, mut coarse) = (Answering::new(), 0);
+        let (mut before, mut last_seconds) = (0.0, 0.0);
+        let (mut foresight, mut coarse) = (Foresight::default(), 0);
         let goal = self.given.goal;
         loop {
             let mesh = next;
             self.settings.watch.step("mesh", found.as_ref().map_or(0, |found| found.levels.len()));
-            let settings = self.keeping(displacement_seconds);
+            // The answer on the last mesh takes as long as its displacement.
+            let settings = self.settings.clone().watched(&self.settings.watch.keeping(last_seconds));
             let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &settings) {
                 Ok(bracket) => bracket,
                 Err(Error::Qp(qp::Error::UnderHeld { .. }))
@@ -126,10 +125,15 @@ impl Search<'_> {
                 }
             };
             let level = self.level(&bracket)?;
-            displacement_seconds = bracket.primal.seconds;
-            let is_late = !self.settings.watch.allows(GROWTH * (level.seconds - before + displacement_seconds));
-            before = level.seconds;
             let (is_first, is_met) = (found.is_none(), level.meets(goal));
+            // The force converges at its own rate.
+            let wanted = if goal.force_error.is_some() { 0.0 } else { goal.total_error };
+            let finer = (!is_met).then(|| foresight.finer(&bracket, wanted));
+            let elements = finer.as_ref().map(|(finer, _)| finer.count());
+            let growth = (elements.unwrap_or(0) as f64 / mesh.count() as f64).powf(PER_UNKNOWN);
+            last_seconds = growth * bracket.primal.seconds;
+            let is_late = !self.settings.watch.allows(growth * (level.seconds - before) + last_seconds);
+            before = level.seconds;
             let (earlier, mut levels, mut meshes) =
                 found.map_or_else(Default::default, |found| (found.guarantee, found.levels, found.meshes));
             let mut guarantee = self.guarantee(&bracket, &level, earlier);
@@ -147,11 +151,7 @@ impl Search<'_> {
                 };
                 guarantee.own_mesh = own.as_ref().map(judged_by).transpose()?;
             }
-            // The force converges at its own rate.
-            let share =
-                answering.share(bracket.bound(), if goal.force_error.is_some() { 0.0 } else { goal.total_error });
-            let finer = (!is_met).then(|| self.problem.refined(&mesh, &marked(&bracket.shares, share)));
-            guarantee.next_elements = finer.as_ref().map(SimplexMesh::count);
+            guarantee.next_elements = elements;
             meshes.push(self.seen(&mesh));
             let total_error = Bound { bound: level.total_error, guaranteed: true };
             levels.push(level);
@@ -169,8 +169,7 @@ impl Search<'_> {
                 last: Err("it is not computed yet".into()),
             };
             let Some(finer) = finer.filter(|_| !is_late) else { return Ok(now) };
-            touching = Some(finer.carried(bracket.touching()));
-            next = finer;
+            (next, touching) = (finer.0, Some(finer.1));
             (self.given.keep)(&now);
             found = Some(now);
         }
@@ -189,12 +188,6 @@ impl Search<'_> {
             along(&mesh.corners_of_facet(outer.facet), across(steepest(self.problem.obstacles[obstacle].normal)))
         });
         seen.collect()
-    }
-
-    /// The settings with a deadline that leaves the time for the answer on the last mesh, which takes as long as its
-    /// displacement.
-    fn keeping(&self, displacement_seconds: f64) -> Settings {
-        self.settings.clone().watched(&self.settings.watch.keeping(GROWTH * displacement_seconds))
     }
 
     /// What is proven on one more mesh; what earlier meshes say of the scene's own mesh stays.

@@ -3,6 +3,7 @@
 
 mod estimated;
 mod examined;
+mod foresight;
 mod found;
 mod goal;
 mod guaranteed;
