@@ -22,10 +22,8 @@ impl<T: Real> BlockMatrix<T> {
     /// The product P' A P of this matrix P and a symmetric one, `A = H + H'` with half of the diagonal blocks in H:
     /// `P' H P` and its transposed. By slabs of rows, so that H P is never there as a whole.
     pub fn galerkin_product(&self, matrix: &Self, threads: usize) -> Self {
-        let slabs = match matrix.is_shared() && self.is_shared() {
-            true => vec![0..matrix.rows()],
-            false => SharedRows { starts: &matrix.starts, threads: MOST_SLABS }.runs_of(SLAB),
-        };
+        let most = if matrix.is_shared() && self.is_shared() { 1 } else { MOST_SLABS };
+        let slabs = SharedRows { starts: &matrix.starts, threads: most }.runs_of(SLAB);
         let mut sum: Option<Self> = None;
         for rows in slabs {
             let mut moved = matrix.product_rows(Part::Half, self, rows.clone(), threads);
