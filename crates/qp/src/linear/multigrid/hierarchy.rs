@@ -42,7 +42,7 @@ const MOST_IN_PATCH: usize = 120;
 const PATCHES: f64 = 0.5;
 
 /// Largest number of unknowns that are factorised directly.
-const COARSEST: usize = 600;
+const COARSEST: usize = 1500;
 
 /// A level with more than this share of the nodes above it is not worth its work: the matrix is factorised there.
 const LEAST_COARSENING: f64 = 0.4;
