@@ -459,7 +459,7 @@ pub(crate) struct Strained<'a> {
 /// A displacement at a point of an element.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Elastic {
-    /// `[i][k]`: the derivative of component i along axis k.
+    /// As that of [`Displaced`].
     pub slope: [[f64; 3]; 3],
     pub strain: Symmetric,
     /// The stress of the strain, without own stress; with the mean dilatation if the integration takes it.

@@ -65,8 +65,8 @@ impl Foresight {
         }
     }
 
-    /// Takes the powers at the nodes of the simplices that were refined last from the shares of their pieces. A node has
-    /// the largest: at a singularity all of them are small.
+    /// Takes the powers at the nodes of the simplices that were refined last from the shares of their pieces. A node
+    /// has the largest: at a singularity all of them are small.
     fn learn(&mut self, mesh: &SimplexMesh, shares: &[f64]) {
         let (smooth, mut found) = (smooth(mesh), vec![-1.0_f64; mesh.nodes.len()]);
         for (cell, [share, size]) in self.wholes.iter().enumerate() {

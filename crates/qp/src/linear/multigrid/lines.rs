@@ -61,7 +61,7 @@ impl Lines {
                 let column = if is_continued { own } else { self.of_node[other] };
                 if !is_continued {
                     moved.clear();
-                    moved.extend(tentative.block(other).iter().map(|&value| value.double()));
+                    moved.extend(tentative.block(tentative.places(other).0.start).iter().map(|&value| value.double()));
                 }
                 let place = columns.iter().position(|&known| known == column).unwrap_or_else(|| {
                     columns.push(column);
