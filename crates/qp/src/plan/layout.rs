@@ -54,8 +54,7 @@ impl Layout {
                 Arrangement::AnyOrder => (Vec::new(), Kept::Nothing),
             };
             // The dense matrices on the boundary alone may be too large: the analysis would then waste memory.
-            if let Err(error) = check_memory(problem, dense, settings.memory) {
-                keep_least(&mut refused, error);
+            if check_memory(problem, dense, settings.memory).is_err() {
                 continue;
             }
             let is_condensed = *arrangement == Arrangement::Condensed;
