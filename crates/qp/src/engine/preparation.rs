@@ -47,6 +47,10 @@ impl Factored {
         let set_seconds = seconds::factorisation(&analysis);
         let norm_seconds = seconds::ordering(problem) + set_seconds;
         let (cholesky, least_pivot) = definite(problem, &scaling, (&analysis, size.is_condensed), settings)?;
+        // A factorisation does not notice a request to stop, and no answer is there yet.
+        if watch.acknowledge() {
+            return Err(Error::Interrupted);
+        }
         // If no columns come last, the contact sets have the order of the stiffness.
         let analysis = last.is_empty().then_some(analysis);
         let condensation = match size.is_condensed {

@@ -54,7 +54,8 @@ impl Layout {
                 Arrangement::AnyOrder => (Vec::new(), Kept::Nothing),
             };
             // The dense matrices on the boundary alone may be too large: the analysis would then waste memory.
-            if check_memory(problem, dense, settings.memory).is_err() {
+            if let Err(error) = check_memory(problem, dense, settings.memory) {
+                keep_least(&mut refused, error);
                 continue;
             }
             let is_condensed = *arrangement == Arrangement::Condensed;
@@ -138,10 +139,15 @@ impl Layout {
 fn check_room_to_order(problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<(), Error> {
     match check_memory(problem, Kept::Nothing, settings.memory) {
         Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
-            let estimate = Estimate::of(problem);
-            let factors = if with.arrangements.contains(&Arrangement::Condensed) { 1.0 } else { FACTORS };
-            let bytes = bytes + factors * bytes::of_factor(estimate.factor_entries);
-            Err(Error::TooLarge { dofs, stiffness_entries, factor_entries: estimate.factor_entries, bytes, allowed })
+            let factor_entries = Estimate::of(problem).factor_entries;
+            let factor = bytes::of_factor(factor_entries);
+            let contact_dofs = Condensation::contact_dofs(problem.contact()).len() as f64;
+            let factors = match with.arrangements.contains(&Arrangement::Condensed) {
+                // Instead of large dense matrices one factor after the other is made.
+                true => (factor + bytes::of_dense(contact_dofs)).min(bytes::of_next_factor(factor_entries)),
+                false => FACTORS * factor,
+            };
+            Err(Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes: bytes + factors, allowed })
         }
         checked => checked,
     }
