@@ -364,7 +364,6 @@ impl ElasticBody {
         LocalPoint {
             gradients: map.gradients,
             hoop,
-            nodes: cell.nodes(),
             weight: map.determinant * at.weight * self.formulation().measure(radius),
         }
     }
@@ -498,8 +497,8 @@ impl Strained<'_> {
     /// The strain at a tabulated point, and the stress there: tensor components `[xx, yy, zz, xy, yz, zx]`. In plane
     /// stress the strain across the plane is that of the stress and the temperature.
     pub fn strain_and_stress(&self, at: &TabulatedPoint) -> [Symmetric; 2] {
-        let (_, stress) = self.at(at);
         let mut strain = self.displaced(at).strain();
+        let stress = self.element.stress(at, &strain, self.mean_dilatation);
         if let Formulation::PlaneStress { .. } = self.body.formulation {
             strain[2] = self.element.phase.strain_across(&stress, self.element.cell.place(&at.shape));
         }

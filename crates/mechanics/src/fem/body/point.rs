@@ -11,8 +11,6 @@ pub struct LocalPoint {
     /// Shape function over radius, per unit: the hoop strain of a unit radial displacement. Zero except in bodies of
     /// revolution.
     pub hoop: PerNode<f64>,
-    /// Number of nodes of the element.
-    pub nodes: usize,
     /// Quadrature weight times determinant times area, thickness or circumference; the determinant in powers of the
     /// unit.
     pub weight: f64,
