@@ -87,16 +87,21 @@ fn native<T: Element>(array: &Bound<'_, PyAny>) -> Option<PyBuffer<T>> {
     (!is_swapped).then_some(buffer)
 }
 
+/// Returns `true` for an array of numpy; an object of a derived class, such as a masked array, is none.
+pub fn is_array(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(object.get_type().is(&numpy!(object.py(), "ndarray")?))
+}
+
+/// Returns the buffer of an array of numpy that consists of doubles in C order, and `None` for any other object.
+fn in_place(object: &Bound<'_, PyAny>) -> PyResult<Option<PyBuffer<f64>>> {
+    Ok(is_array(object)?.then(|| native::<f64>(object)).flatten().filter(|buffer| buffer.is_c_contiguous()))
+}
+
 /// Passes a one-dimensional array of real numbers to `take`, in place if it consists of contiguous doubles.
 pub fn with_reals<T>(name: &str, object: &Bound<'_, PyAny>, take: impl FnOnce(&[f64]) -> PyResult<T>) -> PyResult<T> {
     let py = object.py();
-    let is_array = object.is_instance(&numpy!(py, "ndarray")?)?;
-    let is_plain = is_array && !object.hasattr("mask")?;
-    if let Some(buffer) = is_plain.then(|| native::<f64>(object)).flatten()
-        && buffer.dimensions() == 1
-        && let Some(values) = slice(&buffer, py)
-    {
-        return take(values);
+    if let Some(buffer) = in_place(object)?.filter(|buffer| buffer.dimensions() == 1) {
+        return take(slice(&buffer, py).unwrap_or(&[]));
     }
     let array = array_of(name, object, "fiub", "an array of real numbers in one dimension, preferably float64")?;
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
@@ -131,6 +136,11 @@ pub fn with_table<T>(
     take: impl FnOnce(&[f64], [usize; 2]) -> PyResult<T>,
 ) -> PyResult<T> {
     let py = object.py();
+    if let Some(buffer) = in_place(object)?
+        && let &[rows, columns] = buffer.shape()
+    {
+        return take(slice(&buffer, py).unwrap_or(&[]), [rows, columns]);
+    }
     let array = array_of(name, object, "fiub", "a matrix of real numbers")?;
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
     let &[rows, columns] = shape.as_slice() else {

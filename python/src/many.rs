@@ -8,7 +8,6 @@ use signorini::{ContactProblem, ContactSet, SparseMatrix, SymmetricMatrix, Watch
 use crate::arrays::{block, of_reals, of_table, of_truths};
 use crate::errors::bad_input;
 use crate::exceptions::{plain_exception, signalled};
-use crate::matrices::{by_columns, symmetric};
 use crate::options::Options;
 use crate::work::{End, Place, run};
 
@@ -79,11 +78,11 @@ impl Family {
     fn problem(&self, number: usize) -> Result<ContactProblem, qp::Error> {
         let stiffness = match &self.shared.0 {
             Some(stiffness) => stiffness.clone(),
-            None => symmetric(self.stiffness.of(number), self.dofs)?,
+            None => SymmetricMatrix::from_table(self.dofs, self.stiffness.of(number))?,
         };
         let contact = match &self.shared.1 {
             Some(contact) => contact.clone(),
-            None => by_columns(self.contact.of(number), [self.rows, self.dofs])?,
+            None => SparseMatrix::from_table(self.rows, self.dofs, self.contact.of(number))?,
         };
         ContactProblem::new(stiffness, self.load.of(number).to_vec(), contact, self.gap.of(number).to_vec())
     }
@@ -153,8 +152,12 @@ pub fn solve_many<'py>(
     let count = count.map_or(1, |count| count.0);
     let failed = |error| plain_exception(py, error);
     let shared = (
-        stiffness.is_shared.then(|| symmetric(&stiffness.values, dofs)).transpose().map_err(failed)?,
-        contact.is_shared.then(|| by_columns(&contact.values, [rows, dofs])).transpose().map_err(failed)?,
+        stiffness
+            .is_shared
+            .then(|| SymmetricMatrix::from_table(dofs, &stiffness.values))
+            .transpose()
+            .map_err(failed)?,
+        contact.is_shared.then(|| SparseMatrix::from_table(rows, dofs, &contact.values)).transpose().map_err(failed)?,
     );
     let condense = Some(true);
     let options =

@@ -5,7 +5,7 @@ use pyo3::types::PyDict;
 use signorini::qp::Error;
 use signorini::{SparseMatrix, SymmetricMatrix};
 
-use crate::arrays::{Indices, kind_of, room, slice, with_reals, with_table};
+use crate::arrays::{Indices, is_array, kind_of, room, slice, with_reals, with_table};
 use crate::errors::{bad_input, bad_type};
 use crate::exceptions::plain_exception;
 
@@ -68,6 +68,9 @@ fn look<'py>(name: &str, matrix: &Bound<'py, PyAny>, dofs: usize) -> PyResult<Se
     let py = matrix.py();
     if matrix.is_none() {
         return Err(bad_type(py, format!("{name} is None; it must be a sparse matrix of scipy or an array of numpy")));
+    }
+    if is_array(matrix)? {
+        return Ok(Seen { source: Source::Table(matrix.clone()), shape: None });
     }
     let converted;
     let matrix = if converts_itself(matrix)? {
@@ -191,8 +194,16 @@ impl Lines<'_> {
 pub fn stiffness(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<SymmetricMatrix> {
     let py = matrix.py();
     let seen = look(name, matrix, 0)?;
-    if let Some([rows, columns]) = seen.shape.filter(|shape| shape[0] != shape[1]) {
-        return Err(bad_input(py, format!("{name} is {rows} x {columns}; it must be square")));
+    let check_square = |[rows, columns]: [usize; 2]| match rows == columns {
+        true => Ok(()),
+        false => Err(bad_input(py, format!("{name} is {rows} x {columns}; it must be square"))),
+    };
+    seen.shape.map_or(Ok(()), check_square)?;
+    if let Source::Table(table) = &seen.source {
+        return with_table(name, table, |values, shape| {
+            check_square(shape)?;
+            SymmetricMatrix::from_table(shape[0], values).map_err(|error| plain_exception(py, error))
+        });
     }
     if let (Source::Columns(lines), Some([dim, _])) | (Source::Rows(lines), Some([dim, _])) = (&seen.source, seen.shape)
     {
@@ -278,7 +289,9 @@ fn general(name: &str, seen: Seen<'_>) -> PyResult<SparseMatrix> {
                 triplets(py, name, [rows, columns], entries)
             })
         }
-        Source::Table(table) => of_table(name, table),
+        Source::Table(table) => with_table(name, table, |values, [rows, columns]| {
+            SparseMatrix::from_table(rows, columns, values).map_err(|error| plain_exception(table.py(), error))
+        }),
     }
 }
 
@@ -310,43 +323,6 @@ fn triplets(
         return Err(bad_input(py, sentence));
     }
     SparseMatrix::from_triplets(rows, columns, &entries).map_err(|error| plain_exception(py, error))
-}
-
-/// Reads a dense array; zeros are left out.
-fn of_table(name: &str, table: &Bound<'_, PyAny>) -> PyResult<SparseMatrix> {
-    let py = table.py();
-    with_table(name, table, |values, shape| by_columns(values, shape).map_err(|error| plain_exception(py, error)))
-}
-
-/// The matrix of this shape with these values, row by row; zeros are left out.
-pub fn by_columns(values: &[f64], [rows, columns]: [usize; 2]) -> Result<SparseMatrix, Error> {
-    let mut starts = Vec::with_capacity(columns + 1);
-    let (mut of_entries, mut kept) = (Vec::with_capacity(values.len()), Vec::with_capacity(values.len()));
-    starts.push(0);
-    for column in 0..columns {
-        let in_column = values.iter().skip(column).step_by(columns).enumerate().filter(|entry| *entry.1 != 0.0);
-        for (row, &value) in in_column {
-            of_entries.push(row);
-            kept.push(value);
-        }
-        starts.push(kept.len());
-    }
-    SparseMatrix::from_csc(rows, starts, of_entries, kept)
-}
-
-/// The symmetric matrix with these rows, both triangles; zeros are left out.
-pub fn symmetric(values: &[f64], dim: usize) -> Result<SymmetricMatrix, Error> {
-    let mut starts = Vec::with_capacity(dim + 1);
-    let (mut of_entries, mut kept) = (Vec::with_capacity(values.len()), Vec::with_capacity(values.len()));
-    starts.push(0);
-    for row in values.chunks(dim.max(1)) {
-        for (column, &value) in row.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-            of_entries.push(column);
-            kept.push(value);
-        }
-        starts.push(kept.len());
-    }
-    SymmetricMatrix::from_csr(&starts, &of_entries, &kept)
 }
 
 /// Returns the arrays `(data, indices, indptr)` of compressed columns, as scipy expects them.

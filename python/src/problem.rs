@@ -107,8 +107,9 @@ impl Problem {
             (Some(_), None) => return Err(bad_input(py, "E is given without e; every row of E needs a value")),
             (None, Some(_)) => return Err(bad_input(py, "e is given without E; every value needs a row of E")),
         }
-        let warn = py.import("warnings")?.getattr("warn")?;
-        problem.warnings().into_iter().try_for_each(|(_, sentence)| warn.call1((sentence,)).map(|_| ()))?;
+        for (_, sentence) in problem.warnings() {
+            py.import("warnings")?.call_method1("warn", (sentence,))?;
+        }
         let near_null = match (near_null, coordinates) {
             (None, None) => return Ok(problem.into()),
             (Some(_), Some(_)) => {

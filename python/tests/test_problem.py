@@ -51,7 +51,7 @@ def test_every_format_takes_the_lower_triangle_if_the_triangles_differ_by_roundi
         assert sg.Problem(given, [0.0, 0.0]).K.toarray()[0, 1] == -1.0 * (1 + 1e-13)
     one_sided = np.array([[2.0, 0.0], [1e-14, 2.0]])
     for matrix, kept in ((one_sided, 1e-14), (one_sided.T, 0.0)):
-        for given in (sparse.csc_matrix(matrix), sparse.csr_matrix(matrix), sparse.coo_matrix(matrix)):
+        for given in (matrix, sparse.csc_matrix(matrix), sparse.csr_matrix(matrix), sparse.coo_matrix(matrix)):
             assert sg.Problem(given, [0.0, 0.0]).K.toarray()[1, 0] == kept
 
 
@@ -65,6 +65,26 @@ def test_vectors_of_every_type_give_the_same_load() -> None:
     unaligned = np.frombuffer(b"-" + f.tobytes(), dtype=np.uint8)[1:].view(np.float64)
     for load in (f, f.tolist(), tuple(f), f.astype(np.float32), f.astype(int), strided[::2], frozen, swapped, unaligned):
         assert np.array_equal(sg.Problem(K, load, B, g).f, f)
+
+
+def test_tables_of_every_type_give_the_same_matrices() -> None:
+    class Derived(np.ndarray):
+        """An array that is no plain one."""
+
+    def forms(table: np.ndarray) -> list[object]:
+        strided = np.zeros((2 * table.shape[0], 2 * table.shape[1]))
+        strided[::2, ::2] = table
+        frozen = table.copy()
+        frozen.flags.writeable = False
+        unaligned = np.frombuffer(b"-" + table.tobytes(), dtype=np.uint8)[1:].view(np.float64).reshape(table.shape)
+        kinds = [table, table.tolist(), table.astype(np.float32), table.astype(">f8"), np.asfortranarray(table)]
+        return [*kinds, strided[::2, ::2], frozen, unaligned, table.view(Derived)]
+
+    K, f, B, g = bar(4)
+    for table, rows in zip(forms(K.toarray()), forms(B.toarray()), strict=True):
+        problem = sg.Problem(table, f, rows, g)
+        assert abs(problem.K - K).max() == 0.0 and abs(problem.B - B).max() == 0.0
+    assert sg.Problem(np.zeros((0, 0)), [], np.zeros((0, 0)), []).dofs == 0
 
 
 def test_an_object_with_to_scipy_is_accepted_as_a_matrix() -> None:

@@ -99,7 +99,10 @@ fn both_triangles_give_the_same_matrix_from_columns_and_from_rows() {
             let rows = full.transposed();
             let by_rows = (short(rows.column_starts()), rows.row_indices().map(|row| row as i32).collect::<Vec<_>>());
             let of_rows = SymmetricMatrix::from_csr(&by_rows.0, &by_rows.1, rows.values()).unwrap();
-            for of in [of_columns, of_rows, SymmetricMatrix::from_full(&full).unwrap()] {
+            let mut table = vec![0.0; dim * dim];
+            full.triplets().for_each(|(row, column, value)| table[row * dim + column] = value);
+            let of_table = SymmetricMatrix::from_table(dim, &table).unwrap();
+            for of in [of_columns, of_rows, of_table, SymmetricMatrix::from_full(&full).unwrap()] {
                 assert_eq!(of.lower(), &expected, "{dim} {rounding}");
             }
         }

@@ -190,6 +190,58 @@ impl SparseMatrix {
         Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
+    /// The matrix of this shape with these values, row by row. Zeros are left out.
+    ///
+    /// ```
+    /// use signorini_qp::SparseMatrix;
+    ///
+    /// let matrix = SparseMatrix::from_table(2, 2, &[1.0, 0.0, 2.0, 3.0])?;
+    /// assert_eq!(matrix, SparseMatrix::from_csc(2, vec![0, 2, 3], vec![0, 1, 1], vec![1.0, 2.0, 3.0])?);
+    /// # Ok::<(), signorini_qp::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Length`] for another number of values, [`Error::Pattern`] for 2^32 rows or more, [`Error::NotFinite`].
+    pub fn from_table(rows: usize, columns: usize, values: &[f64]) -> Result<Self, Error> {
+        Error::check_length("matrix", values.len(), rows.saturating_mul(columns), "entries of its shape")?;
+        let of_column = |column| (0..rows).map(move |row| (row, values[row * columns + column]));
+        Self::of_columns(rows, columns, values.len(), of_column)
+    }
+
+    /// The matrix of these columns, each with its entries `(row, value)` by increasing row, at most `most` in all.
+    /// Zeros are left out.
+    fn of_columns<I>(rows: usize, columns: usize, most: usize, column: impl Fn(usize) -> I) -> Result<Self, Error>
+    where
+        I: Iterator<Item = (usize, f64)>,
+    {
+        check_rows(rows)?;
+        let (mut starts, mut end) = (Vec::with_capacity(columns + 1), 0);
+        let (mut row_indices, mut values) = (vec![0; most], vec![0.0; most]);
+        starts.push(0);
+        for number in 0..columns {
+            for (row, value) in column(number) {
+                // The next entry takes the place of a zero.
+                (row_indices[end], values[end]) = (row as u32, value);
+                end += usize::from(value != 0.0);
+            }
+            starts.push(end);
+        }
+        row_indices.truncate(end);
+        values.truncate(end);
+        Self::from_parts(rows, starts, row_indices, values).finite()
+    }
+
+    /// The matrix if all values are finite.
+    fn finite(self) -> Result<Self, Error> {
+        if self.values.iter().all(|value| value.is_finite()) {
+            return Ok(self);
+        }
+        let beyond = self.triplets().find(|entry| !entry.2.is_finite());
+        beyond.map_or(Ok(self.clone()), |(row, column, value)| {
+            Err(Error::NotFinite { name: "matrix", at: format!("({row}, {column})"), value, allowed: "finite" })
+        })
+    }
+
     /// The matrix with given compressed columns, which must be sorted and in range: `column_starts` has one entry per
     /// column and one more, the others one entry per value. For the crates of this workspace, which know that; others
     /// take [`from_csc`](Self::from_csc).

@@ -46,6 +46,21 @@ impl SymmetricMatrix {
         Ok(SymmetricMatrix { lower: Columns { starts, rows: &rows, values }.lower()? })
     }
 
+    /// From the values of both triangles, row by row, which must be alike as in [`SymmetricMatrix::from_full`]. Zeros
+    /// are left out.
+    ///
+    /// # Errors
+    /// Those of [`SparseMatrix::from_table`] and [`SymmetricMatrix::from_full`].
+    pub fn from_table(dim: usize, values: &[f64]) -> Result<Self, Error> {
+        let is_same = |row: usize| (0..row).all(|column| values[row * dim + column] == values[column * dim + row]);
+        if Some(values.len()) != dim.checked_mul(dim) || !(0..dim).all(is_same) {
+            return Self::from_full(&SparseMatrix::from_table(dim, dim, values)?);
+        }
+        // A column of the lower triangle is the end of a row.
+        let end_of = |row: usize| (row..dim).zip(values[row * dim + row..(row + 1) * dim].iter().copied());
+        Ok(SymmetricMatrix { lower: SparseMatrix::of_columns(dim, dim, dim * (dim + 1) / 2, end_of)? })
+    }
+
     /// From the compressed columns of both triangles, which must be alike as in [`SymmetricMatrix::from_full`]:
     /// `column_starts` of length `dim + 1`, and for each entry its row, from 0 and increasing within a column, and its
     /// value. The indices have any type. One pass; only the lower triangle is copied.
@@ -190,7 +205,8 @@ impl SymmetricMatrix {
             others.for_each(|(row, entry)| push(row, factor * entry));
             starts.push(rows.len());
         }
-        finite(SparseMatrix::from_parts(self.dim(), starts, rows, values))
+        let lower = SparseMatrix::from_parts(self.dim(), starts, rows, values).finite()?;
+        Ok(SymmetricMatrix { lower })
     }
 
     /// Every entry multiplied by a number, which may have a unit.
@@ -198,7 +214,8 @@ impl SymmetricMatrix {
     /// # Errors
     /// [`Error::NotFinite`] if entries overflow.
     pub fn times(&self, factor: f64) -> Result<Self, Error> {
-        finite(self.lower.with_values(self.lower.values().iter().map(|value| factor * value).collect()))
+        let values = self.lower.values().iter().map(|value| factor * value).collect();
+        Ok(SymmetricMatrix { lower: self.lower.with_values(values).finite()? })
     }
 
     /// The matrix P A P' with its columns in another order: column `order[k]` of A becomes column k.
@@ -316,17 +333,6 @@ impl SymmetricMatrix {
             y[column - first] += sum;
         }
         y
-    }
-}
-
-/// The matrix of a sorted lower triangle without entries that overflow.
-fn finite(lower: SparseMatrix) -> Result<SymmetricMatrix, Error> {
-    let beyond = lower.triplets().find(|entry| !entry.2.is_finite());
-    match beyond {
-        Some((row, column, value)) => {
-            Err(Error::NotFinite { name: "matrix", at: format!("({row}, {column})"), value, allowed: "finite" })
-        }
-        None => Ok(SymmetricMatrix { lower }),
     }
 }
 
