@@ -190,7 +190,7 @@ impl SparseMatrix {
         Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
-    /// The matrix of this shape with these values, row by row. Zeros are left out.
+    /// The matrix of this shape with these values, length `rows * columns`, row by row. Zeros are left out.
     ///
     /// ```
     /// use signorini_qp::SparseMatrix;

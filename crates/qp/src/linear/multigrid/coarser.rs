@@ -54,7 +54,7 @@ fn coarser_of<T: Real>(hierarchy: &Hierarchy<T>, levels: fn(Hierarchy<T>) -> Lev
         return None;
     }
     let matrix = below.levels.first().map_or(&*below.coarsest_matrix, |level| &level.matrix);
-    let matrix = lower_part(matrix);
+    let matrix = lower_part(matrix, |value| value != 0.0);
     let prolongator = first.prolongator.unshared();
     Some(Coarser {
         matrix: matrix.clone(),

@@ -2,7 +2,7 @@
 
 use super::blocks::BlockMatrix;
 use crate::linear::real::Real;
-use crate::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, ldexp};
+use crate::linear::{Analysis, Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, ldexp};
 
 /// Pivots of the coarsest matrix below this many units in the last place are rounding: the body is not supported. The
 /// diagonal of the matrix is of order one.
@@ -18,6 +18,7 @@ const SHIFT: f64 = 1e-3;
 /// The factor of a coarsest matrix.
 #[derive(Debug)]
 pub(super) struct Coarsest {
+    analysis: Analysis,
     cholesky: Cholesky,
     equilibration: Equilibration,
     /// The matrix was singular to the precision of its entries.
@@ -30,27 +31,32 @@ impl Coarsest {
     /// # Errors
     /// [`FactorError`] if it has a negative eigenvalue, or if memory does not suffice.
     pub fn of<T: Real>(blocks: &BlockMatrix<T>) -> Result<Self, FactorError> {
-        let matrix = lower_part(blocks);
-        let equilibration = Equilibration::of(&matrix);
-        let matrix = equilibration.apply(&matrix);
-        match Cholesky::factorised(&matrix) {
+        let matrix = lower_part(blocks, |_| true);
+        let analysis = Analysis::of(&matrix)?;
+        Self::factorised::<T>(&matrix, analysis)
+    }
+
+    fn factorised<T: Real>(matrix: &SymmetricMatrix, analysis: Analysis) -> Result<Self, FactorError> {
+        let equilibration = Equilibration::of(matrix);
+        match analysis.factor_equilibrated(matrix, &equilibration) {
             Ok(cholesky) if cholesky.smallest_pivot() > LEAST_PIVOT * T::EPSILON => {
-                Ok(Coarsest { cholesky, equilibration, is_shifted: false })
+                Ok(Coarsest { analysis, cholesky, equilibration, is_shifted: false })
             }
             Ok(_) | Err(FactorError::NotPositiveDefinite) => {
-                let cholesky = matrix.shifted_factor(SHIFT)?.ok_or(FactorError::NotPositiveDefinite)?;
-                Ok(Coarsest { cholesky, equilibration, is_shifted: true })
+                let shifted = equilibration.apply(matrix).shifted_factor(SHIFT)?;
+                let cholesky = shifted.ok_or(FactorError::NotPositiveDefinite)?;
+                Ok(Coarsest { analysis, cholesky, equilibration, is_shifted: true })
             }
             Err(error) => Err(error),
         }
     }
 
-    /// Factorises a coarsest `matrix` minus `change`, the reduction by a face. Unknowns with a diagonal entry that is
-    /// only rounding do not move.
+    /// Factorises the coarsest `matrix`, of which this is the factor, minus `change`, the reduction by a face. Unknowns
+    /// with a diagonal entry that is only rounding do not move.
     ///
     /// # Errors
     /// As [`Coarsest::of`].
-    pub fn in_face<T: Real>(matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Result<Self, FactorError> {
+    pub fn in_face<T: Real>(&self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Result<Self, FactorError> {
         let mut rest = matrix.plus(-1.0, change);
         let size = rest.height;
         let diagonal = |blocks: &BlockMatrix<T>, unknown: usize| {
@@ -70,7 +76,10 @@ impl Coarsest {
                 }
             }
         }
-        Self::of(&rest)
+        match rest.indices.len() == matrix.indices.len() {
+            true => Self::factorised::<T>(&lower_part(&rest, |_| true), self.analysis.clone()),
+            false => Self::of(&rest),
+        }
     }
 
     /// Number of values of the factor of the coarsest matrix.
@@ -87,8 +96,8 @@ impl Coarsest {
     }
 }
 
-/// The matrix of the blocks, one unknown after another.
-pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>) -> SymmetricMatrix {
+/// The matrix of the blocks, one unknown after another: its diagonal, and the entries that are `kept`.
+pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>, kept: fn(f64) -> bool) -> SymmetricMatrix {
     let size = blocks.height;
     let dim = blocks.rows() * size;
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -100,7 +109,7 @@ pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>) -> SymmetricMatrix {
                 for i in 0..size {
                     let row = other * size + i;
                     let value = block[j * size + i].double();
-                    if row >= column && (value != 0.0 || row == column) {
+                    if row >= column && (row == column || kept(value)) {
                         rows.push(row as u32);
                         values.push(value);
                     }

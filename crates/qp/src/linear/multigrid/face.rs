@@ -69,7 +69,7 @@ impl<T: Real> FaceLevels<T> {
         let smoothers =
             hierarchy.levels.iter().skip(1).zip(&changes).map(|(level, change)| smoother(level, change)).collect();
         let coarsest = match matrices().last() {
-            Some((matrix, change)) => Coarsest::in_face(matrix, change)?,
+            Some((matrix, change)) => hierarchy.coarsest.in_face(matrix, change)?,
             None => Coarsest::of(&held.held_matrix(&hierarchy.coarsest_matrix, &hierarchy.nodes, holds))?,
         };
         Ok(FaceLevels { held, finest, changes, smoothers, coarsest })
