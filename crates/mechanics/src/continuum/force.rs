@@ -69,11 +69,12 @@ struct Test {
 impl Bracket<'_> {
     /// Bounds on the sum of the contact forces, in force: the forces that press the obstacles, if all are pressed.
     /// `None` if obstacles come from several directions, if only some are pressed, if the boundary that touches them is
-    /// a rigid face, or if no bound was found.
+    /// a rigid face, or if no bound was found. An interval with a half-width of `enough` times the force of
+    /// the displacement is not made narrower by another pair.
     ///
     /// # Errors
     /// Those of [`signorini_qp::ContactProblem::new`].
-    pub fn force_interval(&self) -> Result<Option<[f64; 2]>, Error> {
+    pub fn force_interval(&self, enough: f64) -> Result<Option<[f64; 2]>, Error> {
         if let Some(pressed) = self.problem.pressing_force() {
             return Ok(Some([pressed; 2]));
         }
@@ -112,7 +113,11 @@ impl Bracket<'_> {
             scale = if last.is_none() { natural } else { scale };
             if found.iter().all(|bound| bound.is_finite()) {
                 let [low, high] = interval.unwrap_or([0.0, f64::INFINITY]);
-                interval = Some([low.max(found[0]), high.min(found[1])]);
+                let [low, high] = [low.max(found[0]), high.min(found[1])];
+                interval = Some([low, high]);
+                if high - low <= 2.0 * enough * self.force() {
+                    break;
+                }
             }
             last = Some(test);
         }

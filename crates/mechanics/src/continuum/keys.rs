@@ -81,7 +81,7 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
             vec![Facing { normal: COORDINATES[up], surface: Surface::Rigid(Arc::new(Flat(GAP))), pressed: None }];
         let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
         assert_exact(&bracket, stored(pressure).0);
-        let [low, high] = bracket.force_interval().unwrap().unwrap();
+        let [low, high] = bracket.force_interval(0.0).unwrap().unwrap();
         assert!(
             (low - area * pressure).abs() < 1e-5 * low && (high - area * pressure).abs() < 1e-5 * low,
             "{low} {high}"
@@ -92,7 +92,7 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
         let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
         let (energy, head) = stored(pressure / 2.0);
         assert_exact(&bracket, energy - force * (GAP - head));
-        assert_eq!(bracket.force_interval().unwrap(), Some([force; 2]));
+        assert_eq!(bracket.force_interval(0.0).unwrap(), Some([force; 2]));
         // A rigid head that the same force pushes; the plane is far away.
         let turns: &[usize] = if dimension == 2 { &[2] } else { &[0, 1, 2] };
         let shift = |axis: usize| [0, 1, 2].map(|along| Linear::constant(f64::from(u8::from(along == axis))));
@@ -119,7 +119,7 @@ fn the_intervals_of_the_force_of_a_body_on_springs_overlap() {
         problem.conditions[0] = Condition { springs, ..Condition::default() };
         let intervals: Vec<[f64; 2]> = (0..4)
             .map(|_| {
-                let interval = Bracket::new(&problem, &mesh, None, &settings()).unwrap().force_interval().unwrap();
+                let interval = Bracket::new(&problem, &mesh, None, &settings()).unwrap().force_interval(0.0).unwrap();
                 mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
                 interval.unwrap()
             })
@@ -314,7 +314,7 @@ fn a_turned_body_has_the_same_bounds() {
         let of = |problem: &ContinuumProblem, mesh: &SimplexMesh| {
             let bracket = Bracket::new(problem, mesh, None, &settings()).unwrap();
             assert!(bracket.balance.is_some() && bracket.defect < 1e-10, "{}", bracket.defect);
-            let [low, high] = bracket.force_interval().unwrap().unwrap();
+            let [low, high] = bracket.force_interval(0.0).unwrap().unwrap();
             [bracket.energy_of_stress(), bracket.energy_of_displacement(), bracket.distance(), low, high]
         };
         let (plain, turned) = (of(&problem, &mesh), of(&turned, &turned_mesh));

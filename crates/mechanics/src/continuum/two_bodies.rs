@@ -115,7 +115,7 @@ fn columns_of_two_bodies_are_exact_on_meshes_that_do_not_match_and_refined() {
             for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
                 assert!((energy / (0.01 * pressure) - 1.0).abs() < ROUNDING, "{energy}");
             }
-            let [low, high] = bracket.force_interval().unwrap().unwrap();
+            let [low, high] = bracket.force_interval(0.0).unwrap().unwrap();
             assert!((low / pressure - 1.0).abs() < 1e-9 && (high / pressure - 1.0).abs() < 1e-9, "{low} {high}");
             let marked: Vec<bool> = (0..mesh.count()).map(|cell| cell % 3 == level).collect();
             mesh = problem.refined(&mesh, &marked);
@@ -297,7 +297,7 @@ fn a_block_that_rests_on_another_one_between_guides_is_exact() {
     for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
         assert!((energy / exact - 1.0).abs() < ROUNDING, "{energy} {exact}");
     }
-    let force = bracket.force_interval().unwrap().unwrap();
+    let force = bracket.force_interval(0.0).unwrap().unwrap();
     assert!(force.iter().all(|force| (force / 0.1 - 1.0).abs() < 1e-9), "{force:?}");
 }
 
@@ -311,7 +311,7 @@ fn energies_and_forces_of_blocks_whose_meshes_do_not_match_meet() {
             let (problem, mesh) = blocks(divisions, young, 0.3, |x| (x - 0.5).abs() / 20.0);
             let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
             assert!(bracket.defect < 1e-9, "{}", bracket.defect);
-            let force = bracket.force_interval().unwrap().unwrap();
+            let force = bracket.force_interval(0.0).unwrap().unwrap();
             (bracket.bound(), [bracket.energy_of_stress(), bracket.energy_of_displacement()], force)
         };
         let (coarse, fine) = (of([4, 5]), of([8, 11]));
@@ -331,7 +331,7 @@ fn blocks_of_many_cells() {
             let divisions = cells.map(|up| [2 * up, up]);
             let (problem, mesh) = blocks(divisions, young, 0.3, |x| (x - 0.5) * (x - 0.5) / 2.0);
             let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-            let force = bracket.force_interval().unwrap().unwrap();
+            let force = bracket.force_interval(0.0).unwrap().unwrap();
             println!(
                 "{young:?} {cells:?} {} {} {:.3} % {force:?}",
                 bracket.primal.unknowns.free,

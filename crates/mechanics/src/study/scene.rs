@@ -146,7 +146,7 @@ impl SweepPoint {
         let gap = model.gap();
         let answer = Answer::of_any_size(Arc::new(model), &solution)?;
         let summary = Summary::of_answer(&answer, solution, settings.goal(), assemble_seconds)?;
-        Ok(SweepPoint { gap, force: None, summary, answer })
+        Ok(SweepPoint { gap, force: None, summary, answer: answer.without_stress() })
     }
 
     /// The displacement of the pressed obstacle, in a sweep over forces.

@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use crate::error::Error;
-use crate::fem::body::ElasticBody;
-use crate::fem::element::MAX_NODES;
+use crate::fem::body::{ElasticBody, Strained};
+use crate::fem::element::Tabulated;
+use crate::fem::geometry::Symmetric;
 use crate::fem::threads::in_order;
 
 /// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`
@@ -18,38 +19,46 @@ use crate::fem::threads::in_order;
 /// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
 pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f64>, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
-    let dimension = body.dimension();
     let tables = body.tabulated();
     let mut force = vec![0.0; displacement.len()];
-    let of_element = |index: usize| {
-        let mut forces = [[0.0; 3]; MAX_NODES];
-        let Some(element) = body.element(index) else { return forces };
-        let cell = &element.cell;
-        let strained = body.strained(&tables, displacement, &element);
-        let scale = cell.unit().powi(dimension as i32 - 1);
-        for at in &tables.at(element.kind).points {
-            let (point, (_, stress)) = (body.point(cell, at), strained.at(at));
-            let weight = point.weight * scale;
-            let [xx, yy, zz, xy, yz, zx] = stress.map(|component| component * weight);
-            let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
-            for (local, force) in forces.iter_mut().enumerate().take(element.nodes.len()) {
-                let g = point.gradients[local];
-                for (force, row) in force.iter_mut().zip(&rows[..dimension]) {
-                    *force += row[0] * g[0] + row[1] * g[1] + row[2] * g[2];
-                }
-                force[0] += zz * point.hoop[local];
-            }
+    let of_run = |run: Range<usize>| {
+        let mut forces = Vec::new();
+        for element in run.clone().filter_map(|index| body.element(index)) {
+            let first = forces.len();
+            forces.resize(first + element.nodes.len(), [0.0; 3]);
+            let strained = body.strained(&tables, displacement, &element);
+            of_cell(&strained, tables.at(element.kind), &mut forces[first..], |_| {});
         }
-        forces
+        (run, forces)
     };
-    let of_run = |run: Range<usize>| (run.start, run.map(of_element).collect::<Vec<_>>());
-    in_order(body.mesh().element_count(), of_run, |(first, of_elements)| {
-        for (index, forces) in of_elements.iter().enumerate() {
-            for (&node, of_node) in body.mesh().element(first + index).iter().zip(forces) {
-                let sum = &mut force[dimension * node..dimension * (node + 1)];
-                sum.iter_mut().zip(of_node).for_each(|(sum, force)| *sum += force);
-            }
-        }
-    });
+    in_order(body.mesh().element_count(), of_run, |(run, forces)| add_to_nodes(body, run, &forces, &mut force));
     Ok(force)
+}
+
+/// Adds the forces on the nodes of an element to `forces`; `seen` takes the stress at each quadrature point, in order.
+#[inline]
+pub(crate) fn of_cell(
+    strained: &Strained,
+    table: &Tabulated,
+    forces: &mut [[f64; 3]],
+    mut seen: impl FnMut(&Symmetric),
+) {
+    for at in &table.points {
+        let point = strained.displaced(at);
+        let stress = strained.stress(at, &point);
+        point.add_forces(at, &stress, forces);
+        seen(&stress);
+    }
+    let scale = strained.unit_of_force();
+    forces.iter_mut().flatten().for_each(|component| *component *= scale);
+}
+
+/// Adds the forces on the nodes of some elements, one element after another, to those of the body.
+pub(crate) fn add_to_nodes(body: &ElasticBody, elements: Range<usize>, forces: &[[f64; 3]], sum: &mut [f64]) {
+    let dimension = body.dimension();
+    let nodes = elements.flat_map(|index| body.mesh().element(index));
+    for (&node, force) in nodes.zip(forces) {
+        let of_node = &mut sum[dimension * node..dimension * (node + 1)];
+        of_node.iter_mut().zip(force).for_each(|(sum, component)| *sum += component);
+    }
 }

@@ -33,6 +33,7 @@ pub(crate) use facet_derivative::{Density, Points, area_and_integral, integral_b
 pub use frame::Frame;
 pub(crate) use frame::perpendicular;
 pub use internal_force::internal_force;
+pub(crate) use internal_force::{add_to_nodes, of_cell};
 pub(crate) use load::{Kinks, add_centrifugal, add_gravity, add_moment, add_traction_with_kinks, turning_traction};
 pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
 pub use mass::{MassForm, mass};

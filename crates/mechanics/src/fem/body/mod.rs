@@ -371,17 +371,21 @@ impl ElasticBody {
     /// The deformation at a tabulated point of an element with these displacements of its nodes.
     #[inline]
     pub(crate) fn displaced(&self, cell: &Cell, at: &TabulatedPoint, displacement: &PerNode<[f64; 3]>) -> Displaced {
-        let (slope, determinant) = cell.slope(&at.derivative, displacement);
-        let (mut hoop, mut radius) = (0.0, 0.0);
+        let (mut slope, inverse) = cell.slope(&at.derivative, displacement);
+        slope.iter_mut().flatten().for_each(|entry| *entry /= cell.unit());
+        let (mut hoop, mut radius, mut per_radius) = (0.0, 0.0, 0.0);
         if self.formulation().is_axisymmetric() {
             radius = cell.place(&at.shape)[0];
+            per_radius = cell.unit() / radius;
             let radial = at.shape.iter().zip(displacement).take(cell.nodes()).map(|(share, moved)| share * moved[0]);
             hoop = radial.sum::<f64>() / radius;
         }
         Displaced {
-            slope: slope.map(|row| row.map(|entry| entry / cell.unit())),
+            slope,
             hoop,
-            weight: determinant * at.weight * self.formulation().measure(radius),
+            weight: inverse.determinant * at.weight * self.formulation().measure(radius),
+            inverse,
+            per_radius,
         }
     }
 
@@ -468,7 +472,7 @@ pub(crate) struct Elastic {
 impl Strained<'_> {
     /// The deformation at a tabulated point.
     #[inline]
-    fn displaced(&self, at: &TabulatedPoint) -> Displaced {
+    pub fn displaced(&self, at: &TabulatedPoint) -> Displaced {
         self.body.displaced(&self.element.cell, at, &self.local)
     }
 
@@ -476,7 +480,18 @@ impl Strained<'_> {
     #[inline]
     pub fn at(&self, at: &TabulatedPoint) -> (f64, Symmetric) {
         let point = self.displaced(at);
-        (point.weight, self.element.stress(at, &point.strain(), self.mean_dilatation))
+        (point.weight, self.stress(at, &point))
+    }
+
+    /// The unit of forces on its nodes, by stress and by powers of the unit of its cell.
+    pub fn unit_of_force(&self) -> f64 {
+        self.element.cell.unit().powi(self.body.dimension() as i32 - 1)
+    }
+
+    /// The stress at a tabulated point with this deformation.
+    #[inline]
+    pub fn stress(&self, at: &TabulatedPoint, point: &Displaced) -> Symmetric {
+        self.element.stress(at, &point.strain(), self.mean_dilatation)
     }
 
     /// The displacement at a tabulated point: its gradient, its strain, and the stress of this strain alone.

@@ -1,7 +1,7 @@
 //! A point in an element: gradients, hoop terms, weight; the strain of a displacement there.
 
-use crate::fem::element::PerNode;
-use crate::fem::geometry::Symmetric;
+use crate::fem::element::{Inverse, PerNode, TabulatedPoint};
+use crate::fem::geometry::{Symmetric, dot};
 
 /// The shape functions at a point of an element with coordinates, in the unit of the cell.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +25,10 @@ pub(crate) struct Displaced {
     pub hoop: f64,
     /// As that of a [`LocalPoint`].
     pub weight: f64,
+    /// The inverse of the map of the cell.
+    pub inverse: Inverse,
+    /// The unit of the cell over the radius; zero except in bodies of revolution.
+    pub per_radius: f64,
 }
 
 impl Displaced {
@@ -34,6 +38,21 @@ impl Displaced {
         let slope = &self.slope;
         let shear = |i: usize, j: usize| (slope[i][j] + slope[j][i]) / 2.0;
         [slope[0][0], slope[1][1], slope[2][2] + self.hoop, shear(0, 1), shear(1, 2), shear(2, 0)]
+    }
+
+    /// Adds the force of `stress` on each of some nodes, in powers of the unit of the cell.
+    #[inline]
+    pub fn add_forces(&self, at: &TabulatedPoint, stress: &Symmetric, forces: &mut [[f64; 3]]) {
+        let Inverse { cofactors, determinant } = self.inverse;
+        let per_length = self.weight / determinant;
+        let [xx, yy, zz, xy, yz, zx] = *stress;
+        let on_cofactors = |row: [f64; 3]| cofactors.map(|column| per_length * dot(row, column));
+        let along = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]].map(on_cofactors);
+        let hoop = self.weight * zz * self.per_radius;
+        for ((force, slope), share) in forces.iter_mut().zip(&at.derivative).zip(&at.shape) {
+            force.iter_mut().zip(along).for_each(|(force, along)| *force += dot(along, *slope));
+            force[0] += hoop * share;
+        }
     }
 
     /// The rotation at the point about x, y and z, in radians if it is small.

@@ -54,6 +54,15 @@ pub struct Mapping {
     pub determinant: f64,
 }
 
+/// The inverse of the map at one point, in the unit of the cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Inverse {
+    /// The columns of J^-1 times `determinant`.
+    pub cofactors: [[f64; 3]; 3],
+    /// det J.
+    pub determinant: f64,
+}
+
 impl Cell {
     /// The cell `reference` at `coordinates` (x, y, z of its nodes, in its order).
     #[inline]
@@ -65,20 +74,23 @@ impl Cell {
     #[inline]
     pub fn at(reference: &'static ReferenceElement, coordinates: impl Fn(usize) -> [f64; 3]) -> Self {
         let origin = coordinates(0);
-        let mut relative = [[0.0; 3]; MAX_NODES];
+        let mut cell = Cell { reference, coordinates: [[0.0; 3]; MAX_NODES], origin, unit: 1.0 };
+        let relative = &mut cell.coordinates[..reference.nodes.len()];
         let mut size: f64 = 0.0;
-        for (local, at) in relative.iter_mut().enumerate().take(reference.nodes.len()) {
+        for (local, at) in relative.iter_mut().enumerate() {
             let node = coordinates(local);
             *at = [node[0] - origin[0], node[1] - origin[1], node[2] - origin[2]];
             size = size.max(at[0].abs()).max(at[1].abs()).max(at[2].abs());
         }
         // The exponent bits alone are the power of two at or below the size.
         let power = f64::from_bits(size.to_bits() & (0x7ff << 52));
-        let unit = if power.is_normal() { power } else { 1.0 };
-        for at in relative.iter_mut().take(reference.nodes.len()) {
-            *at = at.map(|value| value / unit);
+        if power.is_normal() {
+            cell.unit = power;
+            for at in relative {
+                *at = [at[0] / power, at[1] / power, at[2] / power];
+            }
         }
-        Cell { reference, coordinates: relative, origin, unit }
+        cell
     }
 
     /// Number of nodes of the cell.
@@ -181,7 +193,7 @@ impl Cell {
     #[inline]
     pub fn map(&self, derivative: &PerNode<[f64; 3]>) -> Mapping {
         let dimension = self.reference.dimension;
-        let (cofactors, determinant) = self.cofactors(derivative);
+        let Inverse { cofactors, determinant } = self.inverse(derivative);
         let mut gradients = [[0.0; 3]; MAX_NODES];
         for (gradient, slope) in gradients.iter_mut().zip(derivative).take(self.reference.nodes.len()) {
             for axis in 0..dimension {
@@ -192,32 +204,63 @@ impl Cell {
         Mapping { gradients, determinant }
     }
 
-    /// The columns of J^-1 times the determinant of J, and the determinant.
     #[inline]
-    fn cofactors(&self, derivative: &PerNode<[f64; 3]>) -> ([[f64; 3]; 3], f64) {
-        let mut j = self.jacobian(derivative);
-        // The unused directions map to themselves.
-        for (axis, row) in j.iter_mut().enumerate().skip(self.reference.dimension) {
-            row[axis] = 1.0;
+    fn inverse(&self, derivative: &PerNode<[f64; 3]>) -> Inverse {
+        match self.reference.dimension {
+            1 => self.inverse_in::<1>(derivative),
+            2 => self.inverse_in::<2>(derivative),
+            _ => self.inverse_in::<3>(derivative),
         }
-        // Cross products of the rows of J.
-        ([cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])], determinant(&j, 3))
+    }
+
+    #[inline]
+    fn inverse_in<const D: usize>(&self, derivative: &PerNode<[f64; 3]>) -> Inverse {
+        let mut j = [[0.0; 3]; 3];
+        for (slope, x) in derivative.iter().zip(&self.coordinates).take(self.reference.nodes.len()) {
+            for (row, slope) in j.iter_mut().zip(slope).take(D) {
+                row.iter_mut().zip(x).take(D).for_each(|(entry, x)| *entry += slope * x);
+            }
+        }
+        let cofactors = match D {
+            1 => [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]],
+            2 => [[j[1][1], -j[1][0], 0.0], [-j[0][1], j[0][0], 0.0], [0.0; 3]],
+            _ => [cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])],
+        };
+        Inverse { cofactors, determinant: determinant(&j, D) }
     }
 
     /// The derivative of each component of nodal `values` along each axis, per unit, `[i][k]`: component i along axis
-    /// k; and the determinant. The same for all nodes gives exactly zero.
+    /// k; and the inverse of the map there. The same for all nodes gives exactly zero.
     #[inline]
-    pub fn slope(&self, derivative: &PerNode<[f64; 3]>, values: &PerNode<[f64; 3]>) -> ([[f64; 3]; 3], f64) {
-        let (cofactors, determinant) = self.cofactors(derivative);
+    pub fn slope(&self, derivative: &PerNode<[f64; 3]>, values: &PerNode<[f64; 3]>) -> ([[f64; 3]; 3], Inverse) {
+        match self.reference.dimension {
+            1 => self.slope_in::<1>(derivative, values),
+            2 => self.slope_in::<2>(derivative, values),
+            _ => self.slope_in::<3>(derivative, values),
+        }
+    }
+
+    #[inline]
+    fn slope_in<const D: usize>(
+        &self,
+        derivative: &PerNode<[f64; 3]>,
+        values: &PerNode<[f64; 3]>,
+    ) -> ([[f64; 3]; 3], Inverse) {
+        let inverse = self.inverse_in::<D>(derivative);
         let mut along = [[0.0; 3]; 3];
         for (slope, value) in derivative.iter().zip(values).take(self.reference.nodes.len()).skip(1) {
-            for (axis, along) in along.iter_mut().enumerate() {
+            for (axis, along) in along.iter_mut().enumerate().take(D) {
                 let relative = value[axis] - values[0][axis];
-                along.iter_mut().zip(slope).for_each(|(sum, slope)| *sum += relative * slope);
+                along.iter_mut().zip(slope).take(D).for_each(|(sum, slope)| *sum += relative * slope);
             }
         }
-        let of_axis = |along: [f64; 3], k: usize| (0..3).map(|i| along[i] * cofactors[i][k]).sum::<f64>() / determinant;
-        (along.map(|along| [0, 1, 2].map(|k| of_axis(along, k))), determinant)
+        let mut slope = [[0.0; 3]; 3];
+        for (row, along) in slope.iter_mut().zip(along).take(D) {
+            for (k, entry) in row.iter_mut().enumerate().take(D) {
+                *entry = (0..D).map(|i| along[i] * inverse.cofactors[i][k]).sum::<f64>() / inverse.determinant;
+            }
+        }
+        (slope, inverse)
     }
 
     /// The area vector of a facet at the point with the given shape function derivatives: normal to the facet; its

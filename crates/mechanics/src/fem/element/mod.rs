@@ -24,7 +24,7 @@ mod tabulated;
 mod tet10;
 mod tet4;
 
-pub use cell::Cell;
+pub use cell::{Cell, Inverse};
 pub use levels::between_levels;
 pub(crate) use positive::{POSITIVE_SHARE, positive_coefficient, positive_functions};
 pub use quadrature::{Part, gauss_legendre};

@@ -5,19 +5,18 @@ pub(crate) mod along;
 pub(crate) mod discretisation;
 mod patches;
 pub(crate) mod points;
+pub(crate) mod state;
 
 pub use discretisation::discretisation_error;
+pub use state::stress;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
-use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::dense::DenseMatrix;
 use crate::fem::element::{MAX_NODES, PerNode, Tabulated, TabulatedPoint};
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, principal};
-use crate::fem::threads::{each, in_order};
 
 /// The stress at a point, in force per area; tension is positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -122,59 +121,6 @@ impl StressField {
     }
 }
 
-/// The nodes at which elements of several phases meet.
-fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
-    let mut found = BTreeSet::new();
-    if body.phases().len() > 1 {
-        let mut first = vec![None; body.mesh().nodes().len()];
-        for element in body.elements() {
-            let meets = |&&node: &&usize| *first[node].get_or_insert(element.phase_number) != element.phase_number;
-            found.extend(element.nodes.iter().filter(meets));
-        }
-    }
-    found
-}
-
-/// The stress in `body` (force per area, tension positive) at the nodal displacement `displacement` (length
-/// `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length).
-///
-/// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in
-/// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
-///
-/// # Errors
-/// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
-pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
-    body.check_nodal("nodal displacement", displacement.len())?;
-    let node_count = body.mesh().nodes().len();
-    let tables = body.tabulated();
-    let extrapolations = body.extrapolations();
-    let mut elements = Vec::with_capacity(body.mesh().element_count());
-    let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); node_count];
-    let (interfaces, mut sides) = (interfaces(body), BTreeMap::<(usize, u32), (Symmetric, usize)>::new());
-    let of_element = |index: usize| {
-        let element = body.element(index)?;
-        let strained = body.strained(&tables, displacement, &element);
-        let (table, extrapolation) = (tables.at(element.kind), extrapolations.at(element.kind));
-        let of_nodes = carried_to_nodes(table, extrapolation, |at| strained.at(at).1);
-        Some((finished(body, strained.at(&table.centroid).1), element.nodes, element.phase_number, of_nodes))
-    };
-    let of_run = |run: Range<usize>| run.filter_map(of_element).collect::<Vec<_>>();
-    in_order(body.mesh().element_count(), of_run, |of_elements| {
-        for (of_element, nodes, phase, of_nodes) in of_elements {
-            elements.push(of_element);
-            for (&node, stress) in nodes.iter().zip(&of_nodes) {
-                add(&mut sums[node], stress);
-                if interfaces.contains(&node) {
-                    add(sides.entry((node, phase)).or_default(), stress);
-                }
-            }
-        }
-    });
-    let average = |(sum, count): &(Symmetric, usize)| finished(body, sum.map(|component| component / *count as f64));
-    let nodes = each(node_count, |node| average(&sums[node]));
-    Ok(StressField { elements, nodes, sides: sides.iter().map(|(&side, sum)| (side, average(sum))).collect() })
-}
-
 /// The stresses at some nodes of a boundary, averaged over the elements around. `displacement` has `dim` entries per
 /// node.
 ///
@@ -186,7 +132,8 @@ pub(crate) fn stress_at(body: &ElasticBody, displacement: &[f64], nodes: &BTreeS
     let mut sums: BTreeMap<usize, (Symmetric, usize)> = BTreeMap::new();
     let mut is_wanted = vec![false; body.mesh().nodes().len()];
     nodes.iter().for_each(|&node| is_wanted[node] = true);
-    for element in body.elements().filter(|element| element.nodes.iter().any(|&node| is_wanted[node])) {
+    let near = |index: &usize| body.mesh().element(*index).iter().any(|&node| is_wanted[node]);
+    for element in (0..body.mesh().element_count()).filter(near).filter_map(|index| body.element(index)) {
         let (table, is_quadratic) = (tables.at(element.kind), element.kind.is_quadratic());
         let strained = body.strained(&tables, displacement, &element);
         let of_nodes = match is_quadratic {
@@ -216,12 +163,16 @@ fn carried_to_nodes(
 ) -> PerNode<Symmetric> {
     let mut of_nodes = [[0.0; 6]; MAX_NODES];
     for (at, weights) in table.points.iter().zip(extrapolation.columns()) {
-        let value = value(at);
-        for (of_node, weight) in of_nodes.iter_mut().zip(weights) {
-            of_node.iter_mut().zip(&value).for_each(|(sum, component)| *sum += weight * component);
-        }
+        carry(&value(at), weights, &mut of_nodes);
     }
     of_nodes
+}
+
+/// Adds to each node its share of a value at a quadrature point.
+fn carry(value: &Symmetric, weights: &[f64], of_nodes: &mut [Symmetric]) {
+    for (of_node, weight) in of_nodes.iter_mut().zip(weights) {
+        of_node.iter_mut().zip(value).for_each(|(sum, component)| *sum += weight * component);
+    }
 }
 
 /// Adds a value to a sum, and counts it.

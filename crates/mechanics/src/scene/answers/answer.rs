@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
-use super::deformation::Deformation;
+use super::deformation;
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
 use crate::fem::geometry::dot;
 use crate::fem::recovery::points::{at_points, nodal_strain, volume_and_energy};
+use crate::fem::recovery::state::{Deformation, State};
 use crate::fem::recovery::{self, StressField};
 use crate::scene::Model;
 use crate::scene::models::resultants::{Resultant, without_rounding};
@@ -38,8 +39,7 @@ pub struct Answer {
     of_ties: Vec<f64>,
     contact_set: ContactSet,
     pressure: Vec<f64>,
-    stress: OnceLock<StressField>,
-    deformation: OnceLock<Option<Deformation>>,
+    state: OnceLock<State>,
     beyond: OnceLock<Option<String>>,
     forces: OnceLock<Forces>,
     resultants: OnceLock<Vec<Resultant>>,
@@ -112,8 +112,7 @@ impl Answer {
             multiplier: multiplier.to_vec(),
             of_ties: of_ties.to_vec(),
             contact_set: contact_set.clone(),
-            stress: OnceLock::new(),
-            deformation: OnceLock::new(),
+            state: OnceLock::new(),
             beyond: OnceLock::new(),
             forces: OnceLock::new(),
             resultants: OnceLock::new(),
@@ -129,9 +128,8 @@ impl Answer {
     pub fn moved_by(&self, motion: &[f64], factor: f64) -> Result<Self, Error> {
         qp::Error::check_length("motion", motion.len(), self.displacement.len(), "nodal dofs")?;
         let displacement = self.displacement.iter().zip(motion).map(|(own, moved)| own + factor * moved).collect();
-        let (stress, deformation, beyond) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-        let (forces, resultants) = (OnceLock::new(), OnceLock::new());
-        Ok(Answer { displacement, stress, deformation, beyond, forces, resultants, ..self.clone() })
+        let (state, beyond, forces, resultants) = (OnceLock::new(), OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Ok(Answer { displacement, state, beyond, forces, resultants, ..self.clone() })
     }
 
     /// The discretised scene to which the answer belongs.
@@ -145,9 +143,19 @@ impl Answer {
         &self.displacement
     }
 
+    /// What the elements tell; computed at the first call.
+    fn state(&self) -> Result<&State, Error> {
+        once(&self.state, || self.model.state(&self.displacement))
+    }
+
+    /// The answer without its stresses, which take more memory than all else; they are computed anew for who asks.
+    pub(crate) fn without_stress(self) -> Self {
+        Answer { state: OnceLock::new(), ..self }
+    }
+
     /// The largest strain and rotation; `None` without elements.
     pub(crate) fn deformation(&self) -> Option<Deformation> {
-        *self.deformation.get_or_init(|| Deformation::of(&self.model, &self.displacement))
+        self.state().ok()?.deformation
     }
 
     /// A sentence on why small displacements do not describe the answer: a strain above 50 %, a rotation above 0.5 rad,
@@ -156,7 +164,7 @@ impl Answer {
     pub fn beyond_small_displacements(&self) -> Option<String> {
         let find = || {
             let moved = self.displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-            self.deformation()?.beyond_small_displacements(&self.model, moved)
+            deformation::beyond_small_displacements(self.deformation()?, &self.model, moved)
         };
         self.beyond.get_or_init(find).clone()
     }
@@ -269,7 +277,7 @@ impl Answer {
     /// # Errors
     /// As [`Model::stress`].
     pub fn stress(&self) -> Result<&StressField, Error> {
-        once(&self.stress, || self.model.stress_of_nodal(&self.displacement))
+        Ok(&self.state()?.stress)
     }
 
     /// The strain at each node, dimensionless tensor components `[xx, yy, zz, xy, yz, zx]`, extension positive, in the
@@ -304,7 +312,9 @@ impl Answer {
     /// # Errors
     /// As [`Model::reactions`].
     pub fn forces(&self) -> Result<&Forces, Error> {
-        once(&self.forces, || self.model.forces(&self.displacement, &self.multiplier, &self.of_ties))
+        once(&self.forces, || {
+            self.model.forces(&self.displacement, &self.state()?.force, &self.multiplier, &self.of_ties)
+        })
     }
 
     /// The imbalance of all forces, as [`Model::force_balance`]; `None` if all of them are rounding of stiffness times
@@ -394,8 +404,7 @@ impl Model {
     /// # Errors
     /// [`qp::Error::Length`] if `displacement` or `multiplier` do not fit.
     pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
-        let (multiplier, of_ties) = self.split(multiplier)?;
-        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier, of_ties)?.reactions)
+        Ok(self.forces_at(displacement, multiplier)?.reactions)
     }
 
     /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works on
@@ -406,8 +415,13 @@ impl Model {
     /// # Errors
     /// As [`Model::reactions`].
     pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
+        Ok(self.forces_at(displacement, multiplier)?.balance)
+    }
+
+    fn forces_at(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Forces, Error> {
         let (multiplier, of_ties) = self.split(multiplier)?;
-        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier, of_ties)?.balance)
+        let displacement = self.nodal_displacement(displacement)?;
+        self.forces(&displacement, &internal_force(self.body(), &displacement)?, multiplier, of_ties)
     }
 
     /// The stress in the displaced body, per element and per node, in force per area, tension positive.
@@ -415,24 +429,31 @@ impl Model {
     /// # Errors
     /// As [`Model::nodal_displacement`].
     pub fn stress(&self, displacement: &[f64]) -> Result<StressField, Error> {
-        self.stress_of_nodal(&self.nodal_displacement(displacement)?)
+        Ok(self.state(&self.nodal_displacement(displacement)?)?.stress)
     }
 
-    fn stress_of_nodal(&self, displacement: &[f64]) -> Result<StressField, Error> {
+    fn state(&self, displacement: &[f64]) -> Result<State, Error> {
         let nodes = self.mesh().nodes();
-        let of_part = recovery::stress(self.body(), displacement)?;
-        Ok(of_part.of_whole(self.body(), |node| self.parts.symmetry.axes_at(&nodes[node])))
+        let State { stress, force, deformation } = State::of(self.body(), displacement)?;
+        let stress = stress.of_whole(self.body(), |node| self.parts.symmetry.axes_at(&nodes[node]));
+        Ok(State { stress, force, deformation })
     }
 
-    /// The forces of a nodal displacement.
-    fn forces(&self, displacement: &[f64], multiplier: &[f64], of_ties: &[f64]) -> Result<Forces, Error> {
+    /// The forces of a nodal displacement, which the forces `internal` hold.
+    fn forces(
+        &self,
+        displacement: &[f64],
+        internal: &[f64],
+        multiplier: &[f64],
+        of_ties: &[f64],
+    ) -> Result<Forces, Error> {
         let contact = self.contact_forces(multiplier)?;
         let ties = self.parts.tie_forces(of_ties);
-        let mut forces = internal_force(self.body(), displacement)?;
-        let acting = self.nodal_load().iter().zip(&contact);
-        forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
         let springs = self.parts.spring_forces(displacement);
-        forces.iter_mut().zip(springs.iter().zip(&ties)).for_each(|(force, (spring, tie))| *force -= spring + tie);
+        let mut forces = internal.to_vec();
+        for acting in [self.nodal_load(), &contact, &springs, &ties] {
+            forces.iter_mut().zip(acting).for_each(|(force, acting)| *force -= acting);
+        }
         let mut reactions = self.dofs().supported_part(&forces)?;
         let rigid_faces = self.force_of_faces(&forces, |_| true)?;
         let motions = RigidBodyModes::of(self.body());

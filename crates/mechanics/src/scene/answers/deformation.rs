@@ -1,8 +1,9 @@
 //! The size of the deformation of an answer, and whether the equations of small displacements still describe it.
 
-use crate::fem::body::{BodyElement, Region};
-use crate::fem::geometry::{length, unit};
+use crate::fem::body::Region;
+use crate::fem::geometry::unit;
 use crate::fem::mesh::extent;
+use crate::fem::recovery::state::Deformation;
 use crate::scene::Model;
 use crate::scene::models::rows::ContactRow;
 
@@ -13,88 +14,40 @@ const BEYOND: f64 = 0.5;
 /// Depths below this share of the size of the mesh are rounding of coordinates.
 const ROUNDING: f64 = 1e-9;
 
-/// The deformation at the centres of elements.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Deformation {
-    /// The largest component of a strain, by magnitude, and its element.
-    pub strain: (f64, usize),
-    /// The largest rotation, in radians if it is small, and its element.
-    pub rotation: (f64, usize),
+/// A sentence with numbers and the likely cause if small displacements do not describe the answer of `model` that
+/// moves by at most `moved`.
+pub(super) fn beyond_small_displacements(deformation: Deformation, model: &Model, moved: f64) -> Option<String> {
+    let ((strain, element), (rotation, turned)) = (deformation.strain, deformation.rotation);
+    let fact_and_cause = if let Some(deep) = TooDeep::of(model) {
+        deep.in_words(model)
+    } else if deformation.largest() <= BEYOND {
+        return None;
+    } else {
+        let (large, element) = match strain >= rotation {
+            true => (format!("strains reach {:.1} %", 100.0 * strain), element),
+            false => (format!("rotations reach {rotation:.2} rad"), turned),
+        };
+        let corner = model.body().elements().nth(element)?.nodes.first().copied()?;
+        let (place, cause) = (model.place_in_words(corner), likely_cause(deformation, model, moved));
+        format!("{large}, in element {element} with a corner at {place}. {cause}")
+    };
+    Some(format!("small displacements do not describe this answer: {fact_and_cause}. `--linear` gives it all the same"))
 }
 
-impl Deformation {
-    /// The largest of all elements; `None` without elements.
-    pub fn of(model: &Model, displacement: &[f64]) -> Option<Self> {
-        let body = model.body();
-        let tables = body.tabulated();
-        let of_element = |(element, of): (usize, BodyElement)| {
-            let own = body.gather(displacement, of.nodes);
-            let point = body.displaced(&of.cell, &tables.at(of.kind).centroid, &own);
-            let strain = point.strain().iter().fold(0.0, |largest: f64, component| largest.max(component.abs()));
-            let rotation = length(point.rotation());
-            Deformation { strain: (strain, element), rotation: (rotation, element) }
-        };
-        let larger = |one: (f64, usize), other: (f64, usize)| if other.0 > one.0 { other } else { one };
-        body.elements().enumerate().map(of_element).reduce(|one, other| Deformation {
-            strain: larger(one.strain, other.strain),
-            rotation: larger(one.rotation, other.rotation),
-        })
+/// The likely cause of a large strain, or of a large rotation without one.
+fn likely_cause(deformation: Deformation, model: &Model, moved: f64) -> String {
+    if deformation.strain.0 <= BEYOND {
+        return "A slender body bends, or a body turns that little holds: reduce the load, or hold the body".into();
     }
-
-    /// The larger one of strain and rotation.
-    pub fn largest(&self) -> f64 {
-        self.strain.0.max(self.rotation.0)
+    let depth = model.rows().iter().map(|row| depth_at_start(model, row)).fold(0.0, f64::max);
+    if depth > BEYOND * moved {
+        let depth = format!("{depth:.3e} {}", model.units().length);
+        return format!(
+            "An obstacle that starts {} inside a body imposes it: check `gap`, `approach`, and the boundary that faces the obstacle",
+            depth.trim_end()
+        );
     }
-
-    /// A sentence with numbers and the likely cause if small displacements do not describe the answer of `model` that
-    /// moves by at most `moved`.
-    pub fn beyond_small_displacements(&self, model: &Model, moved: f64) -> Option<String> {
-        let ((strain, element), (rotation, turned)) = (self.strain, self.rotation);
-        let fact_and_cause = if let Some(deep) = TooDeep::of(model) {
-            deep.in_words(model)
-        } else if self.largest() <= BEYOND {
-            return None;
-        } else {
-            let (large, element) = match strain >= rotation {
-                true => (format!("strains reach {:.1} %", 100.0 * strain), element),
-                false => (format!("rotations reach {rotation:.2} rad"), turned),
-            };
-            let corner = model.body().elements().nth(element)?.nodes.first().copied()?;
-            let (place, cause) = (model.place_in_words(corner), self.likely_cause(model, moved));
-            format!("{large}, in element {element} with a corner at {place}. {cause}")
-        };
-        Some(format!(
-            "small displacements do not describe this answer: {fact_and_cause}. `--linear` gives it all the same"
-        ))
-    }
-
-    /// The likely cause of a large strain, or of a large rotation without one.
-    fn likely_cause(&self, model: &Model, moved: f64) -> String {
-        if self.strain.0 <= BEYOND {
-            return "A slender body bends, or a body turns that little holds: reduce the load, or hold the body".into();
-        }
-        let depth = model.rows().iter().map(|row| depth_at_start(model, row)).fold(0.0, f64::max);
-        if depth > BEYOND * moved {
-            let depth = format!("{depth:.3e} {}", model.units().length);
-            return format!(
-                "An obstacle that starts {} inside a body imposes it: check `gap`, `approach`, and the boundary that faces the obstacle",
-                depth.trim_end()
-            );
-        }
-        "Loads or prescribed displacements do not fit the stiffness: check the units of loads, lengths and `young`"
-            .into()
-    }
-}
-
-impl std::fmt::Display for Deformation {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let [strain, rotation] = [self.strain.0, self.rotation.0].map(|part| 100.0 * part);
-        let degrees = self.rotation.0.to_degrees();
-        write!(
-            f,
-            "at the centres of elements the largest strain is {strain:.2} %, the largest rotation {rotation:.2} % ({degrees:.2} degrees)"
-        )
-    }
+    "Loads or prescribed displacements do not fit the stiffness: check the units of loads, lengths and `young`".into()
 }
 
 /// A contact row that starts deeper inside an obstacle than its body is thick behind it.

@@ -58,7 +58,7 @@ impl Examined {
                 bound: (2.0 * bracket.distance().max(0.0)).sqrt(),
                 norm: bracket.energy.sqrt(),
                 force: bracket.force(),
-                force_interval: bracket.force_interval()?,
+                force_interval: bracket.force_interval(0.0)?,
                 own: [judged.bound, judged.from_displacement, judged.norm],
                 from_elements: if level == levels { Some(from_elements()?) } else { None },
                 dofs: bracket.primal.unknowns.free,

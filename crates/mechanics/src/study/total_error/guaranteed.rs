@@ -236,7 +236,9 @@ impl Search<'_> {
         let is_last = is_near || self.settings.watch.time_left().is_some();
         let parts = self.given.model.parts_of_whole();
         let of_whole = |interval: [f64; 2]| interval.map(|force| parts * force);
-        let force_interval = if is_last { bracket.force_interval()?.map(of_whole) } else { None };
+        // The force is of second order in the error.
+        let enough = goal.force_error.unwrap_or(goal.total_error.powi(2));
+        let force_interval = if is_last { bracket.force_interval(enough)?.map(of_whole) } else { None };
         Ok(Level {
             elements: bracket.mesh.count(),
             dofs: bracket.primal.unknowns.free,

@@ -254,6 +254,9 @@ impl RigidBodyModes {
                     for (axis, component) in of_node.iter().enumerate().filter(|entry| body.modes.contains(&entry.0)) {
                         force[axis] = *component;
                     }
+                    if force == [0.0; 3] {
+                        continue;
+                    }
                     for (work, part) in works.iter_mut().zip(body.along(nodes[node], force)) {
                         *work += part;
                     }

@@ -1,0 +1,148 @@
+//! What one pass over the elements of a displaced body gives: stresses, the forces that hold it, its largest strain.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use super::{Stress, StressField, add, carry, finished};
+use crate::error::Error;
+use crate::fem::assembly::{add_to_nodes, of_cell};
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::{Symmetric, length};
+use crate::fem::threads::{each, in_order};
+
+/// The stress in `body` (force per area, tension positive) at the nodal displacement `displacement` (length
+/// `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length).
+///
+/// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in
+/// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
+///
+/// # Errors
+/// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
+pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
+    Ok(State::of(body, displacement)?.stress)
+}
+
+/// The state of a displaced body.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub stress: StressField,
+    /// As [`internal_force`](crate::fem::assembly::internal_force).
+    pub force: Vec<f64>,
+    /// `None` without elements.
+    pub deformation: Option<Deformation>,
+}
+
+/// The largest deformation at the centres of elements.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deformation {
+    /// The largest component of a strain, by magnitude, and its element.
+    pub strain: (f64, usize),
+    /// The largest rotation, in radians if it is small, and its element.
+    pub rotation: (f64, usize),
+}
+
+impl Deformation {
+    /// The larger strain and the larger rotation; of equal ones the own.
+    fn or_larger(self, other: Deformation) -> Self {
+        let larger = |one: (f64, usize), other: (f64, usize)| if other.0 > one.0 { other } else { one };
+        Deformation { strain: larger(self.strain, other.strain), rotation: larger(self.rotation, other.rotation) }
+    }
+
+    /// The larger one of strain and rotation.
+    pub fn largest(&self) -> f64 {
+        self.strain.0.max(self.rotation.0)
+    }
+}
+
+impl std::fmt::Display for Deformation {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let [strain, rotation] = [self.strain.0, self.rotation.0].map(|part| 100.0 * part);
+        let degrees = self.rotation.0.to_degrees();
+        write!(
+            f,
+            "at the centres of elements the largest strain is {strain:.2} %, the largest rotation {rotation:.2} % ({degrees:.2} degrees)"
+        )
+    }
+}
+
+/// The same of some elements, and the shares of their nodes, one element after another.
+#[derive(Default)]
+struct Run {
+    stresses: Vec<Stress>,
+    of_nodes: Vec<Symmetric>,
+    forces: Vec<[f64; 3]>,
+    deformation: Option<Deformation>,
+}
+
+impl State {
+    /// The state at the nodal displacement `displacement` (length `dim * n_nodes`, in length).
+    ///
+    /// # Errors
+    /// As [`stress`].
+    pub fn of(body: &ElasticBody, displacement: &[f64]) -> Result<Self, Error> {
+        body.check_nodal("nodal displacement", displacement.len())?;
+        let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
+        let of_run = |run: Range<usize>| {
+            let mut all = Run::default();
+            for (index, element) in run.clone().filter_map(|index| Some((index, body.element(index)?))) {
+                let strained = body.strained(&tables, displacement, &element);
+                let table = tables.at(element.kind);
+                let mut weights = extrapolations.at(element.kind).columns();
+                let first = all.forces.len();
+                all.of_nodes.resize(first + element.nodes.len(), [0.0; 6]);
+                all.forces.resize(first + element.nodes.len(), [0.0; 3]);
+                let of_nodes = &mut all.of_nodes[first..];
+                of_cell(&strained, table, &mut all.forces[first..], |stress| {
+                    carry(stress, weights.next().unwrap_or_default(), of_nodes);
+                });
+                let centre = strained.displaced(&table.centroid);
+                let strain = centre.strain().iter().fold(0.0, |largest: f64, component| largest.max(component.abs()));
+                let own = Deformation { strain: (strain, index), rotation: (length(centre.rotation()), index) };
+                all.deformation = Some(all.deformation.map_or(own, |largest| largest.or_larger(own)));
+                all.stresses.push(finished(body, strained.stress(&table.centroid, &centre)));
+            }
+            (run.start, all)
+        };
+
+        let (mesh, interfaces) = (body.mesh(), interfaces(body));
+        let mut elements = Vec::with_capacity(mesh.element_count());
+        let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); mesh.nodes().len()];
+        let mut sides = BTreeMap::<(usize, u32), (Symmetric, usize)>::new();
+        let mut force = vec![0.0; displacement.len()];
+        let mut deformation: Option<Deformation> = None;
+        in_order(mesh.element_count(), of_run, |(first, run)| {
+            let numbers = first..first + run.stresses.len();
+            add_to_nodes(body, numbers.clone(), &run.forces, &mut force);
+            let nodes = numbers.flat_map(|index| mesh.element(index).iter().map(move |&node| (index, node)));
+            for ((index, node), stress) in nodes.zip(&run.of_nodes) {
+                add(&mut sums[node], stress);
+                if interfaces.contains(&node) {
+                    add(sides.entry((node, body.phase_number(index))).or_default(), stress);
+                }
+            }
+            elements.extend(run.stresses);
+            deformation = match (deformation, run.deformation) {
+                (Some(one), Some(other)) => Some(one.or_larger(other)),
+                (one, other) => one.or(other),
+            };
+        });
+        let average =
+            |(sum, count): &(Symmetric, usize)| finished(body, sum.map(|component| component / *count as f64));
+        let nodes = each(mesh.nodes().len(), |node| average(&sums[node]));
+        let sides = sides.iter().map(|(&side, sum)| (side, average(sum))).collect();
+        Ok(State { stress: StressField { elements, nodes, sides }, force, deformation })
+    }
+}
+
+/// The nodes at which elements of several phases meet.
+fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
+    if body.phases().len() > 1 {
+        let mut first = vec![None; body.mesh().nodes().len()];
+        for element in body.elements() {
+            let meets = |&&node: &&usize| *first[node].get_or_insert(element.phase_number) != element.phase_number;
+            found.extend(element.nodes.iter().filter(meets));
+        }
+    }
+    found
+}
