@@ -14,6 +14,7 @@ mod exact_path;
 mod extremes;
 mod findings;
 mod hostile;
+mod lcp;
 mod methods;
 mod modes;
 mod obstacle_problems;

@@ -57,7 +57,9 @@ pub use derivative::{Adjoint, Change, Derivative, Derivatives, Tangent};
 pub use directory::read_problem;
 pub use error::{Error, Failure};
 pub use linear::multigrid::{Multigrid, NearNullSpace};
-pub use linear::{Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest, threads_of_machine};
+pub use linear::{
+    Accumulator, Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest, threads_of_machine,
+};
 pub use matrix_market::{format_vector, read_vector};
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;

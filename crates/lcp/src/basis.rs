@@ -1,0 +1,101 @@
+//! The point of a basis: some unknowns are held at values, and w vanishes in all others. One factorisation, and
+//! corrections with residuals in twice the working precision, so that the point does not depend on the way to it.
+
+use signorini_qp::Cholesky;
+
+use crate::answer::Place;
+use crate::dense::Lu;
+use crate::error::Error;
+use crate::problem::Lcp;
+use crate::scaled::Scaled;
+
+/// Blocks of a symmetric matrix above this size are taken to a sparse factor.
+const DENSE: usize = 150;
+
+/// What is added to the unit diagonal of a sparse block, which may be singular; corrections take it out again.
+const SHIFT: f64 = 1e-10;
+
+/// Most corrections of a point.
+const CORRECTIONS: usize = 20;
+
+enum Factor {
+    Dense(Lu),
+    Sparse(Cholesky),
+}
+
+/// The value at which an unknown is held; `None` between its bounds.
+pub fn held(place: Place, lower: f64, upper: f64) -> Option<f64> {
+    match place {
+        Place::Lower => Some(lower),
+        Place::Upper => Some(upper),
+        Place::Between => None,
+    }
+}
+
+/// The point with each unknown at its place, in units of z; it may lie outside the bounds. `None` if the basis is
+/// singular to rounding.
+///
+/// # Errors
+/// Those of a factorisation for lack of memory, and [`Error::TooLarge`].
+pub fn settled(lcp: &Lcp, scaled: &Scaled, places: &[Place], allowed: f64) -> Result<Option<Vec<f64>>, Error> {
+    let n = places.len();
+    let at = |i: usize| held(places[i], lcp.lower()[i], lcp.upper()[i]);
+    let free: Vec<usize> = (0..n).filter(|&i| at(i).is_none()).collect();
+    let mut z: Vec<f64> = (0..n).map(|i| at(i).unwrap_or(0.0)).collect();
+    let Some(factor) = factor(scaled, &free, allowed)? else { return Ok(None) };
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for _ in 0..CORRECTIONS {
+        let [w, terms, _] = lcp.image(&z);
+        let left = free.iter().map(|&i| if w[i] == 0.0 { 0.0 } else { w[i].abs() / terms[i] }).fold(0.0, f64::max);
+        if left.is_nan() || best.as_ref().is_some_and(|(least, _)| left > 0.5 * least) {
+            break;
+        }
+        let right: Vec<f64> = free.iter().map(|&i| -scaled.row[i] * w[i]).collect();
+        best = Some((left, z.clone()));
+        if left == 0.0 {
+            break;
+        }
+        let step = match &factor {
+            Factor::Dense(lu) => lu.solve(&right),
+            Factor::Sparse(cholesky) => cholesky.solve(&right),
+        };
+        free.iter().zip(step).for_each(|(&i, step)| z[i] += scaled.column[i] * step);
+    }
+    Ok(best.map(|(_, z)| z).filter(|z| z.iter().all(|value| value.is_finite())))
+}
+
+fn factor(scaled: &Scaled, free: &[usize], allowed: f64) -> Result<Option<Factor>, Error> {
+    let mut place = vec![usize::MAX; scaled.offset.len()];
+    free.iter().enumerate().for_each(|(k, &i)| place[i] = k);
+    if scaled.is_alike && free.len() > DENSE {
+        let entries =
+            scaled.matrix.triplets().filter(|&(i, j, _)| i >= j && place[i] < free.len() && place[j] < free.len());
+        let mut entries: Vec<_> = entries.map(|(i, j, value)| (place[i], place[j], value)).collect();
+        entries.extend((0..free.len()).map(|k| (k, k, SHIFT)));
+        let lower = signorini_qp::SparseMatrix::from_triplets(free.len(), free.len(), &entries)?;
+        let factor = Cholesky::of(&signorini_qp::SymmetricMatrix::from_lower(lower)?);
+        return match factor {
+            Err(signorini_qp::Error::NotConvex { .. }) => Ok(None),
+            factor => Ok(Some(Factor::Sparse(factor?))),
+        };
+    }
+    check_size(free.len(), free.len(), allowed)?;
+    let mut rows = vec![vec![0.0; free.len()]; free.len()];
+    for (k, &j) in free.iter().enumerate() {
+        scaled
+            .matrix
+            .column(j)
+            .filter(|entry| place[entry.0] < free.len())
+            .for_each(|(i, value)| rows[place[i]][k] = value);
+    }
+    Ok(Lu::of(rows).map(Factor::Dense))
+}
+
+/// Refuses dense matrices that do not fit.
+///
+/// # Errors
+/// [`Error::TooLarge`].
+pub fn check_size(rows: usize, columns: usize, allowed: f64) -> Result<(), Error> {
+    let bytes = 16.0 * rows as f64 * columns as f64;
+    if bytes <= allowed { Ok(()) } else { Err(Error::TooLarge { unknowns: rows, bytes, allowed }) }
+}

@@ -1,0 +1,189 @@
+//! Lemke's method with the lexicographic rule, on a dense tableau. It ends in a solution or a ray; a ray proves
+//! something only if M is monotone, and no caller takes it as a proof.
+//!
+//! Bounds become nonnegative unknowns: z = l + x or z = u - x; an unknown between two bounds also has its slack
+//! v = u - l - x, with the negative part of w as its complement; one without bounds is a difference of two.
+//!
+//! # Source
+//! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), sections 4.4 and 4.9.
+
+use std::cmp::Ordering;
+
+use crate::answer::LcpSettings;
+use crate::basis::check_size;
+use crate::error::Error;
+use crate::run::Found;
+use crate::scaled::Scaled;
+
+/// Entries below this share of the largest of their column, and differences of ratios below it, are rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// Constants below this, of the largest at the start, are zero.
+const ZERO: f64 = 1e-14;
+
+/// The unknown x of a column: the unknown of the problem, and the sign by which it enters; of a slack its place.
+#[derive(Clone, Copy)]
+enum Column {
+    Part { of: usize, sign: f64 },
+    Slack { of: usize },
+}
+
+/// Basic variables as affine functions of the others: each row has their coefficients, and its constant at the end. The
+/// variables 0..N are x, N..2N their complements, 2N is the artificial one.
+struct Tableau {
+    rows: Vec<Vec<f64>>,
+    basic: Vec<usize>,
+    others: Vec<usize>,
+    /// The unit of the constants.
+    unit: f64,
+}
+
+impl Tableau {
+    fn pivot(&mut self, place: usize, column: usize) {
+        let mut own = std::mem::take(&mut self.rows[place]);
+        let pivot = own[column];
+        own[column] = -1.0;
+        own.iter_mut().for_each(|entry| *entry /= -pivot);
+        for row in self.rows.iter_mut().filter(|row| !row.is_empty() && row[column] != 0.0) {
+            let factor = std::mem::take(&mut row[column]);
+            row.iter_mut().zip(&own).for_each(|(entry, own)| {
+                let sum = *entry + factor * own;
+                // What cancels to nothing is nothing.
+                *entry = if sum.abs() <= 4.0 * f64::EPSILON * entry.abs() { 0.0 } else { sum };
+            });
+        }
+        self.rows[place] = own;
+        std::mem::swap(&mut self.basic[place], &mut self.others[column]);
+    }
+
+    /// The basic variable that becomes zero first as the variable at `column` grows, by the lexicographic rule; the
+    /// artificial one as soon as it may.
+    fn first_to_vanish(&self, column: usize) -> Option<usize> {
+        let count = self.rows.len();
+        let largest = self.rows.iter().map(|row| row[column].abs()).fold(0.0, f64::max);
+        let falling: Vec<usize> = (0..count).filter(|&place| self.rows[place][column] < -ROUNDING * largest).collect();
+        let compare = |a: f64, b: f64| match (a - b).abs() <= ROUNDING * a.abs().max(b.abs()) {
+            true => Ordering::Equal,
+            false => a.total_cmp(&b),
+        };
+        let rate = |place: usize| -self.rows[place][column];
+        // Constants below rounding of the largest are zero.
+        let constant = |place: usize| Some(self.rows[place][count + 1]).filter(|c| c.abs() > ZERO).unwrap_or(0.0);
+        let constants = |a: usize, b: usize| compare(constant(a) / rate(a), constant(b) / rate(b));
+        let inverse = |place: usize, variable: usize| match self.others.iter().position(|&other| other == variable) {
+            Some(other) => -self.rows[place][other],
+            None => f64::from(u8::from(self.basic[place] == variable)),
+        };
+        let earlier = |a: usize, b: usize| {
+            (count..2 * count).fold(constants(a, b), |order, variable| {
+                order.then_with(|| compare(inverse(a, variable) / rate(a), inverse(b, variable) / rate(b)))
+            })
+        };
+        let best = falling.iter().copied().reduce(|best, place| match earlier(place, best) {
+            Ordering::Less => place,
+            _ => best,
+        })?;
+        let artificial = falling.into_iter().find(|&place| self.basic[place] == 2 * count);
+        artificial.filter(|&place| constants(place, best) != Ordering::Greater).or(Some(best))
+    }
+}
+
+/// A point of a problem with any matrix, if the method ends in one.
+///
+/// # Errors
+/// [`Error::TooLarge`].
+pub fn lemke(scaled: &Scaled, allowed: f64, settings: &LcpSettings) -> Result<Found, Error> {
+    let (lower, upper) = (&scaled.lower, &scaled.upper);
+    let mut columns = Vec::new();
+    for of in 0..lower.len() {
+        let (is_above, is_below) = (lower[of].is_finite(), upper[of].is_finite());
+        columns.push(Column::Part { of, sign: if is_below && !is_above { -1.0 } else { 1.0 } });
+        match (is_above, is_below) {
+            (true, true) => columns.push(Column::Slack { of }),
+            (false, false) => columns.push(Column::Part { of, sign: -1.0 }),
+            _ => {}
+        }
+    }
+    let count = columns.len();
+    check_size(count, count, allowed)?;
+    let mut tableau = standard(scaled, &columns);
+    let end = |reason: &str| Ok(Found::Nothing(format!("Lemke's method {reason}")));
+    let lowest = (0..count).rev().min_by(|&a, &b| tableau.rows[a][count + 1].total_cmp(&tableau.rows[b][count + 1]));
+    let Some(lowest) = lowest.filter(|&place| tableau.rows[place][count + 1] < 0.0) else {
+        return Ok(Found::Point { z: point(&tableau, scaled, &columns), iterations: 0 });
+    };
+    let mut entering = tableau.basic[lowest] - count;
+    tableau.pivot(lowest, count);
+    for step in 1..=settings.max_pivots {
+        if settings.qp.watch.is_over() {
+            return end("was stopped");
+        }
+        let Some(column) = tableau.others.iter().position(|&other| other == entering) else {
+            return end("lost its basis to rounding");
+        };
+        let Some(leaving) = tableau.first_to_vanish(column) else { return end("ended in a ray") };
+        let left = tableau.basic[leaving];
+        tableau.pivot(leaving, column);
+        if left == 2 * count {
+            return Ok(Found::Point { z: point(&tableau, scaled, &columns), iterations: step });
+        }
+        entering = if left < count { left + count } else { left - count };
+    }
+    end("used up its pivots")
+}
+
+/// The bound from which an unknown is measured.
+fn base(scaled: &Scaled, of: usize) -> f64 {
+    let (lower, upper) = (scaled.lower[of], scaled.upper[of]);
+    if lower.is_finite() {
+        lower
+    } else if upper.is_finite() {
+        upper
+    } else {
+        0.0
+    }
+}
+
+/// The first tableau, with constants of at most one.
+fn standard(scaled: &Scaled, columns: &[Column]) -> Tableau {
+    let count = columns.len();
+    let mut at = vec![Vec::new(); scaled.lower.len()];
+    let mut rows = vec![vec![0.0; count + 2]; count];
+    let bases: Vec<f64> = (0..at.len()).map(|of| base(scaled, of)).collect();
+    let moved = scaled.matrix.mul(&bases);
+    for (k, column) in columns.iter().enumerate() {
+        rows[k][count + 1] = match *column {
+            Column::Part { of, sign } => {
+                at[of].push((k, sign));
+                sign * (scaled.offset[of] + moved[of])
+            }
+            Column::Slack { of } => {
+                // v = u - l - x, and w+ = w + w-.
+                (rows[k][k - 1], rows[k - 1][k]) = (-1.0, 1.0);
+                scaled.upper[of] - scaled.lower[of]
+            }
+        };
+    }
+    for (i, j, value) in scaled.matrix.triplets() {
+        for &(row, of_row) in &at[i] {
+            at[j].iter().for_each(|&(column, of_column)| rows[row][column] = of_row * of_column * value);
+        }
+    }
+    let unit = rows.iter().map(|row| row[count + 1].abs()).fold(f64::MIN_POSITIVE, f64::max);
+    for row in &mut rows {
+        (row[count], row[count + 1]) = (1.0, row[count + 1] / unit);
+    }
+    Tableau { rows, basic: (count..2 * count).collect(), others: (0..count).chain([2 * count]).collect(), unit }
+}
+
+/// The point of the last tableau, in units of z.
+fn point(tableau: &Tableau, scaled: &Scaled, columns: &[Column]) -> Vec<f64> {
+    let count = columns.len();
+    let mut x: Vec<f64> = (0..scaled.lower.len()).map(|of| base(scaled, of)).collect();
+    for (row, &basic) in tableau.rows.iter().zip(&tableau.basic) {
+        if let Some(Column::Part { of, sign }) = columns.get(basic) {
+            x[*of] += sign * row[count + 1] * tableau.unit;
+        }
+    }
+    x.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect()
+}

@@ -1,0 +1,151 @@
+//! The way of a problem to its answer: the class of M decides the methods, each point is settled and examined.
+
+use std::time::Instant;
+
+use signorini_qp::memory;
+
+use crate::answer::{Class, LcpSettings, LcpSolution, Place, Uniqueness};
+use crate::basis::settled;
+use crate::certificate::{examined, placed};
+use crate::class::Known;
+use crate::error::Error;
+use crate::lemke::lemke;
+use crate::pivoting::principal_pivoting;
+use crate::problem::Lcp;
+use crate::quadratic::{contradiction, gap_program, infeasible, proximal, quadratic_program};
+
+/// The end of a method.
+pub enum Found {
+    /// A point, in units of z, perhaps a rough one.
+    Point { z: Vec<f64>, iterations: usize },
+    /// A ray in scaled units that may show that there is no solution.
+    Ray(Vec<f64>),
+    /// Nothing, for this reason.
+    Nothing(String),
+}
+
+/// The methods.
+#[derive(Clone, Copy)]
+enum Way {
+    QuadraticProgram,
+    Proximal,
+    GapProgram,
+    PrincipalPivoting,
+    Lemke,
+}
+
+impl Way {
+    /// The methods of a class, in order: the only place that decides them.
+    fn of(class: Class) -> &'static [Way] {
+        match class {
+            Class::Symmetric => &[Way::QuadraticProgram, Way::Proximal, Way::Lemke],
+            Class::H | Class::P => &[Way::PrincipalPivoting, Way::Lemke],
+            Class::Monotone => &[Way::GapProgram, Way::Lemke],
+            Class::General => &[Way::Lemke],
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Way::QuadraticProgram => "quadratic-program",
+            Way::Proximal => "proximal",
+            Way::GapProgram => "gap-program",
+            Way::PrincipalPivoting => "principal-pivoting",
+            Way::Lemke => "lemke",
+        }
+    }
+
+    fn found(self, lcp: &Lcp, known: &Known, allowed: f64, settings: &LcpSettings) -> Result<Found, Error> {
+        let scaled = &known.scaled;
+        match self {
+            Way::QuadraticProgram => quadratic_program(scaled, settings),
+            Way::Proximal => proximal(scaled, settings),
+            Way::GapProgram => gap_program(scaled, settings),
+            Way::PrincipalPivoting => principal_pivoting(lcp, scaled, first_places(lcp), allowed, settings),
+            Way::Lemke => lemke(scaled, allowed, settings),
+        }
+    }
+}
+
+fn first_places(lcp: &Lcp) -> Vec<Place> {
+    let place = |i: usize| match (lcp.lower()[i].is_finite(), lcp.upper()[i].is_finite()) {
+        (true, _) => Place::Lower,
+        (false, true) => Place::Upper,
+        (false, false) => Place::Between,
+    };
+    (0..lcp.unknowns()).map(place).collect()
+}
+
+/// Residuals below this are rounding: no factorisation would improve the point.
+const ROUNDING: f64 = 1e-15;
+
+/// The point with the same places, settled; with other places, if M is a P-matrix and signs were wrong.
+fn polished(
+    lcp: &Lcp,
+    known: &Known,
+    z: &[f64],
+    allowed: f64,
+    settings: &LcpSettings,
+) -> Result<Option<Vec<f64>>, Error> {
+    let places = placed(lcp, z).places;
+    match known.uniqueness {
+        Uniqueness::One => match principal_pivoting(lcp, &known.scaled, places, allowed, settings)? {
+            Found::Point { z, .. } => Ok(Some(z)),
+            _ => Ok(None),
+        },
+        _ => settled(lcp, &known.scaled, &places, allowed),
+    }
+}
+
+/// See [`solve_lcp`](crate::solve_lcp).
+pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
+    let start = Instant::now();
+    let tolerance = settings.tolerance;
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        let (name, allowed) = ("tolerance", "positive and finite");
+        return Err(signorini_qp::Error::Setting { name, value: tolerance, allowed }.into());
+    }
+    let allowed = memory::allowed(settings.qp.memory);
+    let known = Known::of(lcp)?;
+    let (mut best, mut reasons): (Option<LcpSolution>, Vec<String>) = (None, Vec::new());
+    for way in Way::of(known.class) {
+        let (z, iterations) = match way.found(lcp, &known, allowed, settings)? {
+            Found::Point { z, iterations } => (z, iterations),
+            Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
+                Some(error) => return Err(error),
+                None => {
+                    reasons.push(format!("{} ended in a ray that shows nothing", way.name()));
+                    continue;
+                }
+            },
+            Found::Nothing(reason) => {
+                reasons.push(reason);
+                continue;
+            }
+        };
+        let rough = placed(lcp, &z).residual;
+        let is_rough = rough.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
+        let better = if is_rough { polished(lcp, &known, &z, allowed, settings)? } else { None };
+        for z in better.into_iter().chain([z]) {
+            let mut solution = examined(lcp, &known, z);
+            (solution.method, solution.iterations) = (way.name(), iterations);
+            solution.seconds = start.elapsed().as_secs_f64();
+            if solution.worst().1 <= tolerance {
+                return Ok(solution);
+            }
+            if best.as_ref().is_none_or(|best| solution.worst().1 < best.worst().1) {
+                best = Some(solution);
+            }
+        }
+    }
+    if let Some(error) = contradiction(lcp, &known.scaled, settings)? {
+        return Err(error);
+    }
+    Err(match best {
+        Some(solution) => {
+            let (index, residual) = solution.worst();
+            Error::NotCertified { solution: Box::new(solution), index, residual, tolerance }
+        }
+        None => Error::NotFound { reason: reasons.join("; ") },
+    })
+}

@@ -1,0 +1,152 @@
+//! Rows and unknowns in units of their own: A = R M C with diagonal R and C. A row may be multiplied by any positive
+//! number, because only the sign of w matters; so M need not keep its symmetry by chance of its units.
+
+use signorini_qp::{Error, SparseMatrix, SymmetricMatrix};
+
+use crate::problem::Lcp;
+
+/// Sweeps of the fit of scales to the logarithms of the entries.
+const SWEEPS: usize = 40;
+
+/// Mirrored entries that differ by less than this share count as equal for a method, though not for a claim.
+const ALIKE: f64 = 1e-12;
+
+/// A problem in scaled units: z = C x, R w = A x + R q.
+#[derive(Clone, Debug)]
+pub struct Scaled {
+    pub matrix: SparseMatrix,
+    pub offset: Vec<f64>,
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+    /// The diagonals of R and C; those of C are powers of two.
+    pub row: Vec<f64>,
+    pub column: Vec<f64>,
+    /// `true` if A is symmetric to rounding.
+    pub is_alike: bool,
+    /// `true` if A is symmetric, and all scales are powers of two: without any rounding.
+    pub is_symmetric: bool,
+}
+
+/// The power of two that is nearest to 2^exponent, far within the range of doubles.
+fn power(exponent: f64) -> f64 {
+    exponent.round().clamp(-300.0, 300.0).exp2()
+}
+
+fn is_power(value: f64) -> bool {
+    value.to_bits() & ((1 << 52) - 1) == 0
+}
+
+impl Scaled {
+    pub fn new(lcp: &Lcp, row: Vec<f64>, column: Vec<f64>) -> Self {
+        let matrix = lcp.matrix().scaled(&row, &column);
+        let mirrored = matrix.transposed();
+        let is_like = |share: f64| {
+            let pairs = (0..matrix.columns()).all(|j| {
+                let (mut own, mut other) =
+                    (matrix.column(j).filter(|e| e.1 != 0.0), mirrored.column(j).filter(|e| e.1 != 0.0));
+                loop {
+                    match (own.next(), other.next()) {
+                        (None, None) => return true,
+                        (Some(a), Some(b)) if a.0 == b.0 && (a.1 - b.1).abs() <= share * a.1.abs() => {}
+                        _ => return false,
+                    }
+                }
+            });
+            pairs && matrix.values().iter().all(|value| value.is_finite())
+        };
+        let is_exact = row.iter().chain(&column).all(|&scale| is_power(scale));
+        let (is_alike, is_symmetric) = (is_like(ALIKE), is_exact && is_like(0.0));
+        let times = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect();
+        let over = |bounds: &[f64]| bounds.iter().zip(&column).map(|(bound, unit)| bound / unit).collect();
+        let (offset, lower, upper) = (times(lcp.offset(), &row), over(lcp.lower()), over(lcp.upper()));
+        Scaled { matrix, offset, lower, upper, row, column, is_alike, is_symmetric }
+    }
+
+    /// Unit diagonals after each row was multiplied by its share.
+    pub fn by_diagonal(lcp: &Lcp, share: &[f64]) -> Self {
+        let (n, matrix) = (lcp.unknowns(), lcp.matrix());
+        let mut unit = vec![0.0; n];
+        let own = matrix.triplets().filter(|(i, j, value)| i == j && *value != 0.0);
+        own.for_each(|(i, _, value)| unit[i] = power(-0.5 * (share[i].log2() + value.abs().log2())));
+        // A row without a diagonal entry gets entries of order one, beside columns that have one if there are any.
+        let mut largest = vec![[0.0_f64; 2]; n];
+        for (i, j, value) in matrix.triplets().filter(|entry| entry.0 != entry.1) {
+            let size = (share[i] * value).abs();
+            for (at, other) in [(i, j), (j, i)] {
+                let [beside, alone] = &mut largest[at];
+                (*beside, *alone) = (beside.max(size * unit[other]), alone.max(size));
+            }
+        }
+        for (unit, [beside, alone]) in unit.iter_mut().zip(largest).filter(|entry| *entry.0 == 0.0) {
+            *unit = match beside > 0.0 {
+                true => power(-beside.log2()),
+                false if alone > 0.0 => power(-0.5 * alone.log2()),
+                false => 1.0,
+            };
+        }
+        let row = unit.iter().zip(share).map(|(unit, share)| unit * share).collect();
+        Scaled::new(lcp, row, unit)
+    }
+
+    /// Entries of order one in all rows and columns.
+    ///
+    /// # Source
+    /// A. R. Curtis, J. K. Reid, *On the automatic scaling of matrices for Gaussian elimination*, IMA J. Appl. Math. 10
+    /// (1972) 118-124.
+    pub fn by_entries(lcp: &Lcp) -> Self {
+        let n = lcp.unknowns();
+        let sizes: Vec<_> =
+            lcp.matrix().triplets().filter(|e| e.2 != 0.0).map(|(i, j, value)| (i, j, value.abs().log2())).collect();
+        let (mut row, mut column) = (vec![0.0; n], vec![0.0; n]);
+        for _ in 0..SWEEPS {
+            let mut means = vec![[(0.0, 0.0); 2]; n];
+            for &(i, j, size) in &sizes {
+                means[i][0] = (means[i][0].0 - size - column[j], means[i][0].1 + 1.0);
+                means[j][1] = (means[j][1].0 - size - row[i], means[j][1].1 + 1.0);
+            }
+            let halfway =
+                |old: f64, (sum, count): (f64, f64)| if count > 0.0 { 0.5 * (old + sum / count) } else { old };
+            for (i, [of_row, of_column]) in means.into_iter().enumerate() {
+                (row[i], column[i]) = (halfway(row[i], of_row), halfway(column[i], of_column));
+            }
+        }
+        let powers = |exponents: Vec<f64>| exponents.into_iter().map(power).collect();
+        Scaled::new(lcp, powers(row), powers(column))
+    }
+
+    /// The symmetric part (A + A') / 2, with this number added to its diagonal.
+    pub fn symmetric_part(&self, shift: f64) -> Result<SymmetricMatrix, Error> {
+        let n = self.offset.len();
+        let entry = |(i, j, value): (usize, usize, f64)| (i.max(j), i.min(j), if i == j { value } else { 0.5 * value });
+        let mut entries: Vec<_> = self.matrix.triplets().map(entry).collect();
+        entries.extend((0..n).map(|i| (i, i, shift)));
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries)?)
+    }
+}
+
+/// Shares of the rows of M that make mirrored entries equal in magnitude, as far as one walk over its graph finds them:
+/// of M = D S with a symmetric S the inverse of D, up to a factor for each component.
+pub fn shares(matrix: &SparseMatrix) -> Vec<f64> {
+    let mirrored = matrix.transposed();
+    let mut share = vec![0.0; matrix.columns()];
+    for root in 0..share.len() {
+        if share[root] != 0.0 {
+            continue;
+        }
+        share[root] = 1.0;
+        let mut found = vec![root];
+        while let Some(j) = found.pop() {
+            let mut row = mirrored.column(j).peekable();
+            for (i, below) in matrix.column(j).filter(|entry| entry.1 != 0.0) {
+                while row.next_if(|entry| entry.0 < i).is_some() {}
+                let Some(&(_, beside)) = row.peek().filter(|entry| entry.0 == i && entry.1 != 0.0) else { continue };
+                let of_other = share[j] * (beside / below).abs();
+                if share[i] == 0.0 && of_other.is_normal() {
+                    share[i] = of_other;
+                    found.push(i);
+                }
+            }
+        }
+    }
+    share
+}
