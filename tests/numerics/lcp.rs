@@ -113,6 +113,8 @@ struct Trial {
     case: LcpCase,
     /// `true` if M is of a class for which a ray of Lemke's method shows that there is no solution.
     is_decided: bool,
+    /// `false` if the entries were rounded: whether a point meets the inequalities of a singular M is then open.
+    is_exact: bool,
 }
 
 fn draw(seed: u64, number: u64) -> Trial {
@@ -157,13 +159,13 @@ fn draw(seed: u64, number: u64) -> Trial {
         offset.iter_mut().for_each(|q| *q = -q.abs());
     }
     let is_decided = family != "general";
-    Trial { family, case: LcpCase { matrix, offset, lower, upper }, is_decided }
+    Trial { family, case: LcpCase { matrix, offset, lower, upper }, is_decided, is_exact: true }
 }
 
 /// The same with rows and unknowns in other units, by powers of two or by any numbers.
 fn scaled(seed: u64, number: u64) -> Trial {
-    let Trial { family, mut case, mut is_decided } = draw(seed, number);
-    let mut draws = Draws::of(seed ^ 0x5ca1ed, number);
+    let Trial { family, mut case, mut is_decided, .. } = draw(seed, number);
+    let (before, mut draws) = (case.clone(), Draws::of(seed ^ 0x5ca1ed, number));
     let is_by_powers = draws.one_in(2);
     let n = case.unknowns();
     let mut units = || -> Vec<f64> {
@@ -183,7 +185,7 @@ fn scaled(seed: u64, number: u64) -> Trial {
     }
     // Rounding of the entries takes a semidefinite matrix out of its class.
     is_decided &= is_by_powers || case.is_p();
-    Trial { family, case, is_decided }
+    Trial { family, case, is_decided, is_exact: is_by_powers || before.bounded().is_feasible() }
 }
 
 /// Returns `true` if `|a - b| <= bound`, b over a denominator, without any rounding.
@@ -301,13 +303,8 @@ struct Counts {
 }
 
 fn run(counts: &mut Counts, name: &str, trial: &Trial) {
-    let Trial { family, case, is_decided } = trial;
-    let finite = |bound: f64| if bound.abs() >= 1e20 { f64::INFINITY.copysign(bound) } else { bound };
-    let bounded = LcpCase {
-        lower: case.lower.iter().map(|&bound| finite(bound)).collect(),
-        upper: case.upper.iter().map(|&bound| finite(bound)).collect(),
-        ..case.clone()
-    };
+    let Trial { family, case, is_decided, is_exact } = trial;
+    let bounded = case.bounded();
     let (exact, is_p, settings) = (bounded.solution(), case.is_p(), LcpSettings::default());
     let lcp = case.problem().unwrap();
     let mut found = Vec::new();
@@ -339,7 +336,7 @@ fn run(counts: &mut Counts, name: &str, trial: &Trial) {
             format!("solved by {} as {:?}, bounds {bounds}", solution.method, solution.class)
         }
         Err(Error::Infeasible { ray, .. }) => {
-            if bounded.is_feasible() {
+            if *is_exact && bounded.is_feasible() {
                 found.push("infeasible, but the inequalities can be met".into());
             }
             found.extend(ray_fault(case, &ray));
@@ -348,7 +345,7 @@ fn run(counts: &mut Counts, name: &str, trial: &Trial) {
         Err(error) => {
             if *is_decided {
                 found.push(format!("refused: {error}").chars().take(300).collect());
-            } else if exact.is_none() && !bounded.is_feasible() {
+            } else if *is_exact && exact.is_none() && !bounded.is_feasible() {
                 found.push(format!("infeasible, but refused: {error}").chars().take(300).collect());
             }
             format!("{}, {}", error.code(), if exact.is_some() { "solvable" } else { "exact ray" })

@@ -43,25 +43,22 @@ pub fn settled(lcp: &Lcp, scaled: &Scaled, places: &[Place], allowed: f64) -> Re
     let free: Vec<usize> = (0..n).filter(|&i| at(i).is_none()).collect();
     let mut z: Vec<f64> = (0..n).map(|i| at(i).unwrap_or(0.0)).collect();
     let Some(factor) = factor(scaled, &free, allowed)? else { return Ok(None) };
-    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
-        let [w, terms, _] = lcp.image(&z);
-        let left = free.iter().map(|&i| if w[i] == 0.0 { 0.0 } else { w[i].abs() / terms[i] }).fold(0.0, f64::max);
-        if left.is_nan() || best.as_ref().is_some_and(|(least, _)| left > 0.5 * least) {
-            break;
-        }
+        let [w, ..] = lcp.image(&z);
         let right: Vec<f64> = free.iter().map(|&i| -scaled.row[i] * w[i]).collect();
-        best = Some((left, z.clone()));
-        if left == 0.0 {
-            break;
-        }
         let step = match &factor {
             Factor::Dense(lu) => lu.solve(&right),
             Factor::Sparse(cholesky) => cholesky.solve(&right),
         };
+        let length = step.iter().fold(0.0, |length: f64, step| length.max(step.abs()));
+        if length == 0.0 || length > 0.5 * last || step.iter().any(|step| step.is_nan()) {
+            break;
+        }
         free.iter().zip(step).for_each(|(&i, step)| z[i] += scaled.column[i] * step);
+        last = length;
     }
-    Ok(best.map(|(_, z)| z).filter(|z| z.iter().all(|value| value.is_finite())))
+    Ok(Some(z).filter(|z| z.iter().all(|value| value.is_finite())))
 }
 
 fn factor(scaled: &Scaled, free: &[usize], allowed: f64) -> Result<Option<Factor>, Error> {

@@ -47,16 +47,18 @@ impl Rows {
         self.gaps.push(gap);
     }
 
-    /// The rows that w must meet: nonnegative without an upper bound, nonpositive without a lower one. The row of w, and
-    /// the sign of the demand, of each.
+    /// The rows that w must meet: nonnegative without an upper bound, nonpositive without a lower one; each has entries
+    /// of order one, or else such a gap. The row of w and the factor of the demand, of each.
     fn push_signs(&mut self, scaled: &Scaled) -> Vec<(usize, f64)> {
         let by_rows = scaled.matrix.transposed();
         let mut demands = Vec::new();
-        for i in 0..scaled.offset.len() {
-            for (sign, bound) in [(1.0, scaled.upper[i]), (-1.0, scaled.lower[i])] {
+        for (i, &offset) in scaled.offset.iter().enumerate() {
+            let largest = by_rows.column(i).map(|entry| entry.1.abs()).fold(0.0, f64::max);
+            let size = [largest, offset.abs()].into_iter().find(|&size| size > 0.0).unwrap_or(1.0);
+            for (factor, bound) in [(1.0 / size, scaled.upper[i]), (-1.0 / size, scaled.lower[i])] {
                 if bound.is_infinite() {
-                    self.push(by_rows.column(i).map(|(j, value)| (j, -sign * value)), sign * scaled.offset[i]);
-                    demands.push((i, sign));
+                    self.push(by_rows.column(i).map(|(j, value)| (j, -factor * value)), factor * offset);
+                    demands.push((i, factor));
                 }
             }
         }
@@ -170,8 +172,8 @@ pub fn contradiction(lcp: &Lcp, scaled: &Scaled, settings: &LcpSettings) -> Resu
         Err(QpError::Infeasible { rows, weights, .. }) => {
             let mut ray = vec![0.0; n];
             for (row, weight) in rows.into_iter().zip(weights).filter(|entry| entry.0 >= bounds) {
-                let (i, sign) = demands[row - bounds];
-                ray[i] += sign * weight;
+                let (i, factor) = demands[row - bounds];
+                ray[i] += factor * weight;
             }
             Ok(infeasible(lcp, scaled, &ray))
         }

@@ -6,7 +6,7 @@ use signorini_qp::{Error, SparseMatrix, SymmetricMatrix};
 use crate::problem::Lcp;
 
 /// Sweeps of the fit of scales to the logarithms of the entries.
-const SWEEPS: usize = 40;
+const SWEEPS: usize = 150;
 
 /// Mirrored entries that differ by less than this share count as equal for a method, though not for a claim.
 const ALIKE: f64 = 1e-12;
@@ -68,50 +68,20 @@ impl Scaled {
         let mut unit = vec![0.0; n];
         let own = matrix.triplets().filter(|(i, j, value)| i == j && *value != 0.0);
         own.for_each(|(i, _, value)| unit[i] = power(-0.5 * (share[i].log2() + value.abs().log2())));
-        // A row without a diagonal entry gets entries of order one, beside columns that have one if there are any.
-        let mut largest = vec![[0.0_f64; 2]; n];
-        for (i, j, value) in matrix.triplets().filter(|entry| entry.0 != entry.1) {
-            let size = (share[i] * value).abs();
-            for (at, other) in [(i, j), (j, i)] {
-                let [beside, alone] = &mut largest[at];
-                (*beside, *alone) = (beside.max(size * unit[other]), alone.max(size));
-            }
-        }
-        for (unit, [beside, alone]) in unit.iter_mut().zip(largest).filter(|entry| *entry.0 == 0.0) {
-            *unit = match beside > 0.0 {
-                true => power(-beside.log2()),
-                false if alone > 0.0 => power(-0.5 * alone.log2()),
-                false => 1.0,
-            };
+        if unit.contains(&0.0) {
+            let [row, column] = fit(matrix, share);
+            let means = row.iter().zip(&column).map(|(row, column)| power(0.5 * (row + column)));
+            unit.iter_mut().zip(means).filter(|entry| *entry.0 == 0.0).for_each(|(unit, mean)| *unit = mean);
         }
         let row = unit.iter().zip(share).map(|(unit, share)| unit * share).collect();
         Scaled::new(lcp, row, unit)
     }
 
     /// Entries of order one in all rows and columns.
-    ///
-    /// # Source
-    /// A. R. Curtis, J. K. Reid, *On the automatic scaling of matrices for Gaussian elimination*, IMA J. Appl. Math. 10
-    /// (1972) 118-124.
     pub fn by_entries(lcp: &Lcp) -> Self {
-        let n = lcp.unknowns();
-        let sizes: Vec<_> =
-            lcp.matrix().triplets().filter(|e| e.2 != 0.0).map(|(i, j, value)| (i, j, value.abs().log2())).collect();
-        let (mut row, mut column) = (vec![0.0; n], vec![0.0; n]);
-        for _ in 0..SWEEPS {
-            let mut means = vec![[(0.0, 0.0); 2]; n];
-            for &(i, j, size) in &sizes {
-                means[i][0] = (means[i][0].0 - size - column[j], means[i][0].1 + 1.0);
-                means[j][1] = (means[j][1].0 - size - row[i], means[j][1].1 + 1.0);
-            }
-            let halfway =
-                |old: f64, (sum, count): (f64, f64)| if count > 0.0 { 0.5 * (old + sum / count) } else { old };
-            for (i, [of_row, of_column]) in means.into_iter().enumerate() {
-                (row[i], column[i]) = (halfway(row[i], of_row), halfway(column[i], of_column));
-            }
-        }
         let powers = |exponents: Vec<f64>| exponents.into_iter().map(power).collect();
-        Scaled::new(lcp, powers(row), powers(column))
+        let [row, column] = fit(lcp.matrix(), &vec![1.0; lcp.unknowns()]).map(powers);
+        Scaled::new(lcp, row, column)
     }
 
     /// The symmetric part (A + A') / 2, with this number added to its diagonal.
@@ -122,6 +92,30 @@ impl Scaled {
         entries.extend((0..n).map(|i| (i, i, shift)));
         SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries)?)
     }
+}
+
+/// Exponents of rows and columns for entries of order one, after each row was multiplied by its share: the least squares
+/// of their logarithms, nearly.
+///
+/// # Source
+/// A. R. Curtis, J. K. Reid, *On the automatic scaling of matrices for Gaussian elimination*, IMA J. Appl. Math. 10
+/// (1972) 118-124.
+fn fit(matrix: &SparseMatrix, share: &[f64]) -> [Vec<f64>; 2] {
+    let entries = matrix.triplets().filter(|entry| entry.2 != 0.0);
+    let sizes: Vec<_> = entries.map(|(i, j, value)| (i, j, share[i].log2() + value.abs().log2())).collect();
+    let (mut row, mut column) = (vec![0.0; share.len()], vec![0.0; share.len()]);
+    for _ in 0..SWEEPS {
+        let mut means = vec![[(0.0, 0.0); 2]; share.len()];
+        for &(i, j, size) in &sizes {
+            means[i][0] = (means[i][0].0 - size - column[j], means[i][0].1 + 1.0);
+            means[j][1] = (means[j][1].0 - size - row[i], means[j][1].1 + 1.0);
+        }
+        let halfway = |old: f64, (sum, count): (f64, f64)| if count > 0.0 { 0.5 * (old + sum / count) } else { old };
+        for (i, [of_row, of_column]) in means.into_iter().enumerate() {
+            (row[i], column[i]) = (halfway(row[i], of_row), halfway(column[i], of_column));
+        }
+    }
+    [row, column]
 }
 
 /// Shares of the rows of M that make mirrored entries equal in magnitude, as far as one walk over its graph finds them:

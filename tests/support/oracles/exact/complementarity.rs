@@ -52,6 +52,13 @@ impl LcpCase {
         Lcp::new(matrix, self.offset.clone(), self.lower.clone(), self.upper.clone())
     }
 
+    /// The same with infinities for all bounds of 1e20 or more.
+    pub fn bounded(&self) -> Self {
+        let infinite = |&bound: &f64| if bound.abs() >= 1e20 { f64::INFINITY.copysign(bound) } else { bound };
+        let bounds = |bounds: &[f64]| bounds.iter().map(infinite).collect();
+        LcpCase { lower: bounds(&self.lower), upper: bounds(&self.upper), ..self.clone() }
+    }
+
     fn base(&self, of: usize) -> Dyadic {
         let bound = [self.lower[of], self.upper[of]].into_iter().find(|bound| bound.is_finite());
         Dyadic::from(bound.unwrap_or(0.0))
