@@ -1,5 +1,5 @@
-//! Lemke's method with the lexicographic rule, on a dense tableau. It ends in a solution or a ray; a ray proves
-//! something only if M is monotone, and no caller takes it as a proof.
+//! Lemke's method with the lexicographic rule, on a dense tableau. It ends in a solution or a ray. A ray
+//! proves something only if M is monotone; no caller takes it as a proof without a check.
 //!
 //! Bounds become nonnegative unknowns: z = l + x or z = u - x; an unknown between two bounds also has its slack
 //! v = u - l - x, with the negative part of w as its complement; one without bounds is a difference of two.
@@ -121,7 +121,9 @@ pub fn lemke(scaled: &Scaled, allowed: f64, settings: &LcpSettings) -> Result<Fo
         let Some(column) = tableau.others.iter().position(|&other| other == entering) else {
             return end("lost its basis to rounding");
         };
-        let Some(leaving) = tableau.first_to_vanish(column) else { return end("ended in a ray") };
+        let Some(leaving) = tableau.first_to_vanish(column) else {
+            return Ok(Found::Ray(ray(&tableau, column, &columns, lower.len())));
+        };
         let left = tableau.basic[leaving];
         tableau.pivot(leaving, column);
         if left == 2 * count {
@@ -174,6 +176,19 @@ fn standard(scaled: &Scaled, columns: &[Column]) -> Tableau {
         (row[count], row[count + 1]) = (1.0, row[count + 1] / unit);
     }
     Tableau { rows, basic: (count..2 * count).collect(), others: (0..count).chain([2 * count]).collect(), unit }
+}
+
+/// The direction of the unknowns along the ray of a column. If M is monotone it is the y that shows that there is no
+/// solution (section 4.4 of the source): y'(M + M')y = 0 along it.
+fn ray(tableau: &Tableau, column: usize, columns: &[Column], unknowns: usize) -> Vec<f64> {
+    let rates = tableau.rows.iter().map(|row| row[column]).chain([1.0]);
+    let mut ray = vec![0.0; unknowns];
+    for (variable, rate) in tableau.basic.iter().chain([&tableau.others[column]]).zip(rates) {
+        if let Some(Column::Part { of, sign }) = columns.get(*variable) {
+            ray[*of] += sign * rate;
+        }
+    }
+    ray
 }
 
 /// The point of the last tableau, in units of z.

@@ -1,10 +1,11 @@
 //! The convex programs behind a complementarity problem, solved by the QP: the energy of a symmetric M, the gap of a
-//! monotone one, and the shortest point that meets the inequalities, whose absence has a ray.
+//! monotone one. The rays that show that there is no point at all are found and checked here.
 
 use signorini_qp::{ContactProblem, Error as QpError, Prepared, SparseMatrix, SymmetricMatrix, solve};
 
 use crate::answer::LcpSettings;
 use crate::error::Error;
+use crate::lemke::lemke;
 use crate::problem::Lcp;
 use crate::run::Found;
 use crate::scaled::Scaled;
@@ -143,7 +144,8 @@ pub fn gap_program(scaled: &Scaled, settings: &LcpSettings) -> Result<Found, Err
     let moved = scaled.matrix.mul_transposed(&(0..n).map(base).collect::<Vec<_>>());
     let mut load: Vec<f64> = moved.iter().zip(&scaled.offset).map(|(moved, q)| moved - q).collect();
     let mut rows = Rows::of_bounds(scaled);
-    rows.push_signs(scaled);
+    let bounds = rows.gaps.len();
+    let demands = rows.push_signs(scaled);
     let by_rows = scaled.matrix.transposed();
     for &i in &boxed {
         let part = load.len();
@@ -152,33 +154,44 @@ pub fn gap_program(scaled: &Scaled, settings: &LcpSettings) -> Result<Found, Err
         load.push(lower[i] - upper[i]);
     }
     let stiffness = scaled.symmetric_part(0.0)?.times(2.0)?.with_empty(boxed.len());
-    let answer = rows.problem(stiffness, load).and_then(|problem| solve(&problem, &settings.qp));
-    // The rows can be contradictory; the search for their ray says so.
-    found(scaled, answer, "gap program")
+    match rows.problem(stiffness, load).and_then(|problem| solve(&problem, &settings.qp)) {
+        Err(QpError::Infeasible { rows, weights, .. }) => {
+            let mut ray = vec![0.0; n];
+            for (row, weight) in rows.into_iter().zip(weights) {
+                if let Some(&(i, factor)) = row.checked_sub(bounds).and_then(|place| demands.get(place)) {
+                    ray[i] += factor * weight;
+                }
+            }
+            Ok(Found::Ray(ray))
+        }
+        answer => found(scaled, answer, "gap program"),
+    }
 }
 
-/// The ray that shows that no point meets the inequalities, if there is one.
+/// The ray that shows that no point meets the inequalities `B x <= g`, if there is one: Lemke's method on the skew
+/// problem of x and y >= 0 with 0 = B'y and `g - B x >= 0`. Larger problems than it takes are not decided.
 ///
 /// # Errors
-/// As [`quadratic_program`].
-pub fn contradiction(lcp: &Lcp, scaled: &Scaled, settings: &LcpSettings) -> Result<Option<Error>, Error> {
+/// Those of Lemke's method.
+pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &LcpSettings) -> Result<Option<Error>, Error> {
     let n = scaled.offset.len();
     let mut rows = Rows::of_bounds(scaled);
     let bounds = rows.gaps.len();
     let demands = rows.push_signs(scaled);
-    let unit: Vec<_> = (0..n).map(|i| (i, i, 1.0)).collect();
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &unit)?)?;
-    match rows.problem(stiffness, vec![0.0; n]).and_then(|problem| solve(&problem, &settings.qp)) {
-        Err(QpError::Infeasible { rows, weights, .. }) => {
-            let mut ray = vec![0.0; n];
-            for (row, weight) in rows.into_iter().zip(weights).filter(|entry| entry.0 >= bounds) {
-                let (i, factor) = demands[row - bounds];
-                ray[i] += factor * weight;
-            }
-            Ok(infeasible(lcp, scaled, &ray))
-        }
-        answer => found(scaled, answer, "search for a point").map(|_| None),
-    }
+    let size = n + rows.gaps.len();
+    let both = rows.entries.iter().flat_map(|&(row, j, value)| [(n + row, j, -value), (j, n + row, value)]);
+    let matrix = SparseMatrix::from_triplets(size, size, &both.collect::<Vec<_>>())?;
+    let offset = [vec![0.0; n], rows.gaps].concat();
+    let lower = (0..size).map(|k| if k < n { f64::NEG_INFINITY } else { 0.0 }).collect();
+    let skew = Lcp::new(matrix, offset, lower, vec![f64::INFINITY; size])?;
+    let end = match lemke(&Scaled::new(&skew, vec![1.0; size], vec![1.0; size]), allowed, settings) {
+        Err(Error::TooLarge { .. }) => return Ok(None),
+        end => end?,
+    };
+    let Found::Ray(weights) = end else { return Ok(None) };
+    let mut ray = vec![0.0; n];
+    demands.iter().zip(&weights[n + bounds..]).for_each(|(&(i, factor), weight)| ray[i] += factor * weight);
+    Ok(infeasible(lcp, scaled, &ray))
 }
 
 /// The error of a problem with this ray, in scaled units; `None` if it shows nothing.

@@ -79,6 +79,13 @@ fn first_places(lcp: &Lcp) -> Vec<Place> {
 /// Residuals below this are rounding: no factorisation would improve the point.
 const ROUNDING: f64 = 1e-15;
 
+/// A point with a larger residual, even if it meets the tolerance, waits for the other methods and for a ray: far away
+/// along a ray, where terms are large, all conditions hold relative to them.
+const SHARP: f64 = 1e-13;
+
+/// Unknowns below this share of the largest, in scaled units, may be zero.
+const DUST: f64 = 1e-18;
+
 /// The point with the same places, settled; with other places, if M is a P-matrix and signs were wrong.
 fn polished(
     lcp: &Lcp,
@@ -95,6 +102,13 @@ fn polished(
         },
         _ => settled(lcp, &known.scaled, &places, allowed),
     }
+}
+
+/// The point with zeros for what rounding has left in place of them.
+fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
+    let size = |(z, unit): (&f64, &f64)| (z / unit).abs();
+    let largest = z.iter().zip(&known.scaled.column).map(size).fold(0.0, f64::max);
+    z.iter().zip(&known.scaled.column).map(|entry| if size(entry) <= DUST * largest { 0.0 } else { *entry.0 }).collect()
 }
 
 /// See [`solve_lcp`](crate::solve_lcp).
@@ -126,11 +140,11 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
         let rough = placed(lcp, &z).residual;
         let is_rough = rough.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
         let better = if is_rough { polished(lcp, &known, &z, allowed, settings)? } else { None };
-        for z in better.into_iter().chain([z]) {
+        for z in better.into_iter().flat_map(|z| [without_dust(&known, &z), z]).chain([z]) {
             let mut solution = examined(lcp, &known, z);
             (solution.method, solution.iterations) = (way.name(), iterations);
             solution.seconds = start.elapsed().as_secs_f64();
-            if solution.worst().1 <= tolerance {
+            if solution.worst().1 <= tolerance.min(SHARP) {
                 return Ok(solution);
             }
             if best.as_ref().is_none_or(|best| solution.worst().1 < best.worst().1) {
@@ -138,10 +152,11 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
             }
         }
     }
-    if let Some(error) = contradiction(lcp, &known.scaled, settings)? {
+    if let Some(error) = contradiction(lcp, &known.scaled, allowed, settings)? {
         return Err(error);
     }
     Err(match best {
+        Some(solution) if solution.worst().1 <= tolerance => return Ok(solution),
         Some(solution) => {
             let (index, residual) = solution.worst();
             Error::NotCertified { solution: Box::new(solution), index, residual, tolerance }
