@@ -185,7 +185,8 @@ fn scaled(seed: u64, number: u64) -> Trial {
     }
     // Rounding of the entries takes a semidefinite matrix out of its class.
     is_decided &= is_by_powers || ["definite", "h-matrix", "triangular"].contains(&family);
-    Trial { family, case, is_decided, is_exact: is_by_powers || before.bounded().is_feasible() }
+    let is_exact = is_by_powers || before.bounded().is_feasible() == case.bounded().is_feasible();
+    Trial { family, case, is_decided, is_exact }
 }
 
 /// Returns `true` if `|a - b| <= bound`, b over a denominator, without any rounding.

@@ -18,8 +18,14 @@ use crate::scaled::Scaled;
 /// Entries below this share of the largest of their column, and differences of ratios below it, are rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// Constants below this, of the largest at the start, are zero.
-const ZERO: f64 = 1e-14;
+/// Constants below this, of the largest at the start, and entries of the inverse of the basis are zero.
+const ZERO: f64 = 1e-13;
+
+/// Its multiples are spread evenly over the fractions.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// A sum below this share of its first term has cancelled to nothing.
+const CANCELLED: f64 = 64.0 * f64::EPSILON;
 
 /// The unknown x of a column: the unknown of the problem, and the sign by which it enters; of a slack its place.
 #[derive(Clone, Copy)]
@@ -49,7 +55,7 @@ impl Tableau {
             row.iter_mut().zip(&own).for_each(|(entry, own)| {
                 let sum = *entry + factor * own;
                 // What cancels to nothing is nothing.
-                *entry = if sum.abs() <= 4.0 * f64::EPSILON * entry.abs() { 0.0 } else { sum };
+                *entry = if sum.abs() <= CANCELLED * entry.abs() { 0.0 } else { sum };
             });
         }
         self.rows[place] = own;
@@ -67,11 +73,11 @@ impl Tableau {
             false => a.total_cmp(&b),
         };
         let rate = |place: usize| -self.rows[place][column];
-        // Constants below rounding of the largest are zero.
-        let constant = |place: usize| Some(self.rows[place][count + 1]).filter(|c| c.abs() > ZERO).unwrap_or(0.0);
+        let cleaned = |value: f64| if value.abs() > ZERO { value } else { 0.0 };
+        let constant = |place: usize| cleaned(self.rows[place][count + 1]);
         let constants = |a: usize, b: usize| compare(constant(a) / rate(a), constant(b) / rate(b));
         let inverse = |place: usize, variable: usize| match self.others.iter().position(|&other| other == variable) {
-            Some(other) => -self.rows[place][other],
+            Some(other) => -cleaned(self.rows[place][other]),
             None => f64::from(u8::from(self.basic[place] == variable)),
         };
         let earlier = |a: usize, b: usize| {
@@ -88,11 +94,12 @@ impl Tableau {
     }
 }
 
-/// A point of a problem with any matrix, if the method ends in one.
+/// A point of a problem with any matrix, if the method ends in one. Each `attempt` has its own artificial column, and so
+/// its own way; the entries of the column differ, which leaves few ties.
 ///
 /// # Errors
 /// [`Error::TooLarge`].
-pub fn lemke(scaled: &Scaled, allowed: f64, settings: &LcpSettings) -> Result<Found, Error> {
+pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &LcpSettings) -> Result<Found, Error> {
     let (lower, upper) = (&scaled.lower, &scaled.upper);
     let mut columns = Vec::new();
     for of in 0..lower.len() {
@@ -106,10 +113,11 @@ pub fn lemke(scaled: &Scaled, allowed: f64, settings: &LcpSettings) -> Result<Fo
     }
     let count = columns.len();
     check_size(count, count, allowed)?;
-    let mut tableau = standard(scaled, &columns);
+    let mut tableau = standard(scaled, &columns, attempt);
     let end = |reason: &str| Ok(Found::Nothing(format!("Lemke's method {reason}")));
-    let lowest = (0..count).rev().min_by(|&a, &b| tableau.rows[a][count + 1].total_cmp(&tableau.rows[b][count + 1]));
-    let Some(lowest) = lowest.filter(|&place| tableau.rows[place][count + 1] < 0.0) else {
+    let needed = |place: usize| tableau.rows[place][count + 1] / tableau.rows[place][count];
+    let lowest = (0..count).rev().min_by(|&a, &b| needed(a).total_cmp(&needed(b)));
+    let Some(lowest) = lowest.filter(|&place| needed(place) < 0.0) else {
         return Ok(Found::Point { z: point(&tableau, scaled, &columns), iterations: 0 });
     };
     let mut entering = tableau.basic[lowest] - count;
@@ -147,7 +155,7 @@ fn base(scaled: &Scaled, of: usize) -> f64 {
 }
 
 /// The first tableau, with constants of at most one.
-fn standard(scaled: &Scaled, columns: &[Column]) -> Tableau {
+fn standard(scaled: &Scaled, columns: &[Column], attempt: usize) -> Tableau {
     let count = columns.len();
     let mut at = vec![Vec::new(); scaled.lower.len()];
     let mut rows = vec![vec![0.0; count + 2]; count];
@@ -172,8 +180,9 @@ fn standard(scaled: &Scaled, columns: &[Column]) -> Tableau {
         }
     }
     let unit = rows.iter().map(|row| row[count + 1].abs()).fold(f64::MIN_POSITIVE, f64::max);
-    for row in &mut rows {
-        (row[count], row[count + 1]) = (1.0, row[count + 1] / unit);
+    for (k, row) in rows.iter_mut().enumerate() {
+        let artificial = 1.0 + (GOLDEN * ((k + 1) * (attempt + 1)) as f64).fract();
+        (row[count], row[count + 1]) = (artificial, row[count + 1] / unit);
     }
     Tableau { rows, basic: (count..2 * count).collect(), others: (0..count).chain([2 * count]).collect(), unit }
 }

@@ -20,6 +20,9 @@ const SETTLED: f64 = 1e-13;
 /// Sums that must vanish along a ray may keep this share of their terms, which are doubles.
 const ROUNDING: f64 = 1e-12;
 
+/// Entries of a ray below this share of the largest are rounding, in scaled units.
+const DUST: f64 = 1e-14;
+
 /// A ray that demands less than this share of its terms decides nothing.
 const DECISIVE: f64 = 1e-9;
 
@@ -184,7 +187,7 @@ pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &LcpSet
     let offset = [vec![0.0; n], rows.gaps].concat();
     let lower = (0..size).map(|k| if k < n { f64::NEG_INFINITY } else { 0.0 }).collect();
     let skew = Lcp::new(matrix, offset, lower, vec![f64::INFINITY; size])?;
-    let end = match lemke(&Scaled::new(&skew, vec![1.0; size], vec![1.0; size]), allowed, settings) {
+    let end = match lemke(&Scaled::new(&skew, vec![1.0; size], vec![1.0; size]), 0, allowed, settings) {
         Err(Error::TooLarge { .. }) => return Ok(None),
         end => end?,
     };
@@ -197,6 +200,8 @@ pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &LcpSet
 /// The error of a problem with this ray, in scaled units; `None` if it shows nothing.
 pub fn infeasible(lcp: &Lcp, scaled: &Scaled, ray: &[f64]) -> Option<Error> {
     let (n, lower, upper) = (lcp.unknowns(), lcp.lower(), lcp.upper());
+    let dust = DUST * ray.iter().fold(0.0, |largest: f64, y| largest.max(y.abs()));
+    let ray: Vec<f64> = ray.iter().map(|&y| if y.abs() > dust { y } else { 0.0 }).collect();
     let largest = (0..n).map(|i| (ray[i] * scaled.row[i]).abs()).fold(0.0, f64::max);
     let allowed = |i: usize, y: f64| {
         let low = if upper[i].is_infinite() { f64::INFINITY } else { 0.0 };

@@ -31,17 +31,19 @@ enum Way {
     Proximal,
     GapProgram,
     PrincipalPivoting,
-    Lemke,
+    /// With the artificial column of this number.
+    Lemke(usize),
 }
 
 impl Way {
     /// The methods of a class, in order: the only place that decides them.
     fn of(class: Class) -> &'static [Way] {
+        use Way::{GapProgram, Lemke, PrincipalPivoting, Proximal, QuadraticProgram};
         match class {
-            Class::Symmetric => &[Way::QuadraticProgram, Way::Proximal, Way::Lemke],
-            Class::H | Class::P => &[Way::PrincipalPivoting, Way::Lemke],
-            Class::Monotone => &[Way::GapProgram, Way::Lemke],
-            Class::General => &[Way::Lemke],
+            Class::Symmetric => &[QuadraticProgram, Proximal, Lemke(0), Lemke(1)],
+            Class::H | Class::P => &[PrincipalPivoting, Lemke(0), Lemke(1)],
+            Class::Monotone => &[GapProgram, Lemke(0), Lemke(1), Lemke(2)],
+            Class::General => &[Lemke(0), Lemke(1), Lemke(2)],
         }
     }
 
@@ -51,7 +53,7 @@ impl Way {
             Way::Proximal => "proximal",
             Way::GapProgram => "gap-program",
             Way::PrincipalPivoting => "principal-pivoting",
-            Way::Lemke => "lemke",
+            Way::Lemke(_) => "lemke",
         }
     }
 
@@ -62,7 +64,7 @@ impl Way {
             Way::Proximal => proximal(scaled, settings),
             Way::GapProgram => gap_program(scaled, settings),
             Way::PrincipalPivoting => principal_pivoting(lcp, scaled, first_places(lcp), allowed, settings),
-            Way::Lemke => lemke(scaled, allowed, settings),
+            Way::Lemke(attempt) => lemke(scaled, attempt, allowed, settings),
         }
     }
 }
