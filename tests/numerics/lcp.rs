@@ -378,21 +378,3 @@ fn no_answer_contradicts_exact_arithmetic() {
 fn no_scaled_answer_contradicts_exact_arithmetic() {
     all(cases(160, 1000), seed(77), scaled);
 }
-
-#[test]
-fn one_of_them() {
-    let Ok(number) = std::env::var("NUM") else { return };
-    let parts: Vec<&str> = number.split(':').collect();
-    let make = if parts[0] == "s" { scaled } else { draw };
-    let trial = make(parts[1].parse().unwrap(), parts[2].parse().unwrap());
-    println!("{:?}", trial.case);
-    println!(
-        "{:?}",
-        trial.case.bounded().solution().map(|p| p
-            .z
-            .iter()
-            .map(|z| support::oracles::exact::dyadic::ratio(z, &p.denominator))
-            .collect::<Vec<_>>())
-    );
-    println!("{:?}", solve_lcp(&trial.case.problem().unwrap(), &LcpSettings::default()));
-}

@@ -9,7 +9,7 @@
 
 use std::cmp::Ordering;
 
-use crate::answer::LcpSettings;
+use crate::answer::{LcpSettings, Place};
 use crate::basis::check_size;
 use crate::error::Error;
 use crate::run::Found;
@@ -118,7 +118,7 @@ pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &LcpSettin
     let needed = |place: usize| tableau.rows[place][count + 1] / tableau.rows[place][count];
     let lowest = (0..count).rev().min_by(|&a, &b| needed(a).total_cmp(&needed(b)));
     let Some(lowest) = lowest.filter(|&place| needed(place) < 0.0) else {
-        return Ok(Found::Point { z: point(&tableau, scaled, &columns), iterations: 0 });
+        return Ok(point(&tableau, scaled, &columns, 0));
     };
     let mut entering = tableau.basic[lowest] - count;
     tableau.pivot(lowest, count);
@@ -135,7 +135,7 @@ pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &LcpSettin
         let left = tableau.basic[leaving];
         tableau.pivot(leaving, column);
         if left == 2 * count {
-            return Ok(Found::Point { z: point(&tableau, scaled, &columns), iterations: step });
+            return Ok(point(&tableau, scaled, &columns, step));
         }
         entering = if left < count { left + count } else { left - count };
     }
@@ -200,14 +200,29 @@ fn ray(tableau: &Tableau, column: usize, columns: &[Column], unknowns: usize) ->
     ray
 }
 
-/// The point of the last tableau, in units of z.
-fn point(tableau: &Tableau, scaled: &Scaled, columns: &[Column]) -> Vec<f64> {
+/// The point of the last tableau, in units of z, and the places of its basis.
+fn point(tableau: &Tableau, scaled: &Scaled, columns: &[Column], iterations: usize) -> Found {
     let count = columns.len();
     let mut x: Vec<f64> = (0..scaled.lower.len()).map(|of| base(scaled, of)).collect();
+    let is_free = |of: usize| scaled.lower[of].is_infinite() && scaled.upper[of].is_infinite();
+    let at = |of: usize| match (is_free(of), scaled.lower[of].is_infinite()) {
+        (true, _) => Place::Between,
+        (false, true) => Place::Upper,
+        (false, false) => Place::Lower,
+    };
+    let mut places: Vec<Place> = (0..x.len()).map(at).collect();
     for (row, &basic) in tableau.rows.iter().zip(&tableau.basic) {
-        if let Some(Column::Part { of, sign }) = columns.get(basic) {
-            x[*of] += sign * row[count + 1] * tableau.unit;
+        if let Some(&Column::Part { of, sign }) = columns.get(basic) {
+            x[of] += sign * row[count + 1] * tableau.unit;
+            places[of] = Place::Between;
         }
     }
-    x.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect()
+    for other in tableau.others.iter().filter_map(|other| other.checked_sub(count)) {
+        // The distance from the upper bound is zero.
+        if let Some(&Column::Slack { of }) = columns.get(other) {
+            places[of] = if places[of] == Place::Between { Place::Upper } else { places[of] };
+        }
+    }
+    let z = x.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect();
+    Found::Point { z, places: Some(places), iterations }
 }

@@ -53,7 +53,7 @@ pub fn principal_pivoting(
         };
         let exchanges: Vec<(usize, Place)> = (0..z.len()).filter_map(|i| Some((i, exchanged(i)?))).collect();
         if exchanges.is_empty() {
-            return Ok(Found::Point { z, iterations: step });
+            return Ok(Found::Point { z, places: Some(places), iterations: step });
         }
         patience = if exchanges.len() < least { PATIENCE } else { patience.saturating_sub(1) };
         least = least.min(exchanges.len());

@@ -1,7 +1,7 @@
 //! The convex programs behind a complementarity problem, solved by the QP: the energy of a symmetric M, the gap of a
 //! monotone one. The rays that show that there is no point at all are found and checked here.
 
-use signorini_qp::{ContactProblem, Error as QpError, Prepared, SparseMatrix, SymmetricMatrix, solve};
+use signorini_qp::{ContactProblem, Error as QpError, Prepared, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 use crate::answer::LcpSettings;
 use crate::error::Error;
@@ -76,17 +76,14 @@ impl Rows {
 }
 
 /// Sorts the errors of a QP: what ends the search, and what leaves it to other methods.
-fn found(scaled: &Scaled, answer: Result<signorini_qp::Solution, QpError>, name: &str) -> Result<Found, Error> {
-    let in_units = |x: &[f64]| x.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect();
+fn found(scaled: &Scaled, answer: Result<Solution, QpError>, name: &str) -> Result<Found, Error> {
+    let point = |solution: &Solution| {
+        let z = solution.displacement.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect();
+        Found::Point { z, places: None, iterations: solution.iterations }
+    };
     match answer {
-        Ok(solution) => {
-            let iterations = solution.iterations;
-            Ok(Found::Point { z: in_units(&solution.displacement), iterations })
-        }
-        Err(QpError::NotCertified { solution, .. }) => {
-            let iterations = solution.iterations;
-            Ok(Found::Point { z: in_units(&solution.displacement), iterations })
-        }
+        Ok(solution) => Ok(point(&solution)),
+        Err(QpError::NotCertified { solution, .. }) => Ok(point(&solution)),
         Err(QpError::Unbounded { direction, .. }) => Ok(Found::Ray(direction)),
         Err(
             error @ (QpError::Interrupted

@@ -16,8 +16,8 @@ use crate::quadratic::{contradiction, gap_program, infeasible, proximal, quadrat
 
 /// The end of a method.
 pub enum Found {
-    /// A point, in units of z, perhaps a rough one.
-    Point { z: Vec<f64>, iterations: usize },
+    /// A point, in units of z, perhaps a rough one; if the method ends with a basis, with the places in it.
+    Point { z: Vec<f64>, places: Option<Vec<Place>>, iterations: usize },
     /// A ray in scaled units that may show that there is no solution.
     Ray(Vec<f64>),
     /// Nothing, for this reason.
@@ -86,17 +86,16 @@ const ROUNDING: f64 = 1e-15;
 const SHARP: f64 = 1e-13;
 
 /// Unknowns below this share of the largest, in scaled units, may be zero.
-const DUST: f64 = 1e-18;
+const DUST: f64 = 1e-14;
 
 /// The point with the same places, settled; with other places, if M is a P-matrix and signs were wrong.
 fn polished(
     lcp: &Lcp,
     known: &Known,
-    z: &[f64],
+    places: Vec<Place>,
     allowed: f64,
     settings: &LcpSettings,
 ) -> Result<Option<Vec<f64>>, Error> {
-    let places = placed(lcp, z).places;
     match known.uniqueness {
         Uniqueness::One => match principal_pivoting(lcp, &known.scaled, places, allowed, settings)? {
             Found::Point { z, .. } => Ok(Some(z)),
@@ -125,8 +124,8 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
     let known = Known::of(lcp)?;
     let (mut best, mut reasons): (Option<LcpSolution>, Vec<String>) = (None, Vec::new());
     for way in Way::of(known.class) {
-        let (z, iterations) = match way.found(lcp, &known, allowed, settings)? {
-            Found::Point { z, iterations } => (z, iterations),
+        let (z, places, iterations) = match way.found(lcp, &known, allowed, settings)? {
+            Found::Point { z, places, iterations } => (z, places, iterations),
             Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
                 Some(error) => return Err(error),
                 None => {
@@ -139,24 +138,36 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
                 continue;
             }
         };
-        let rough = placed(lcp, &z).residual;
-        let is_rough = rough.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
-        let better = if is_rough { polished(lcp, &known, &z, allowed, settings)? } else { None };
-        for z in better.into_iter().flat_map(|z| [without_dust(&known, &z), z]).chain([z]) {
-            let mut solution = examined(lcp, &known, z);
-            (solution.method, solution.iterations) = (way.name(), iterations);
-            solution.seconds = start.elapsed().as_secs_f64();
-            if solution.worst().1 <= tolerance.min(SHARP) {
-                return Ok(solution);
+        let mut is_sharp = false;
+        let mut examine = |z: &[f64]| {
+            if is_sharp {
+                return;
             }
+            let mut solution = examined(lcp, &known, z.to_vec());
+            (solution.method, solution.iterations) = (way.name(), iterations);
+            is_sharp = solution.worst().1 <= tolerance.min(SHARP);
             if best.as_ref().is_none_or(|best| solution.worst().1 < best.worst().1) {
                 best = Some(solution);
             }
+        };
+        let rough = placed(lcp, &z);
+        let is_rough = rough.residual.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
+        let mut points = vec![z];
+        if is_rough {
+            points.extend(polished(lcp, &known, rough.places, allowed, settings)?);
+            points.extend(places.and_then(|places| settled(lcp, &known.scaled, &places, allowed).ok()?));
+            points.reverse();
+        }
+        points.iter().for_each(|z| examine(z));
+        points.iter().for_each(|z| examine(&without_dust(&known, z)));
+        if let Some(solution) = best.take_if(|_| is_sharp) {
+            return Ok(LcpSolution { seconds: start.elapsed().as_secs_f64(), ..solution });
         }
     }
     if let Some(error) = contradiction(lcp, &known.scaled, allowed, settings)? {
         return Err(error);
     }
+    let best = best.map(|best| LcpSolution { seconds: start.elapsed().as_secs_f64(), ..best });
     Err(match best {
         Some(solution) if solution.worst().1 <= tolerance => return Ok(solution),
         Some(solution) => {
