@@ -67,12 +67,18 @@ pub fn placed(lcp: &Lcp, z: &[f64]) -> Placed {
     Placed { places, residual }
 }
 
+/// The point with each unknown at its place, and none beyond its bounds.
+pub fn onto(lcp: &Lcp, places: &[Place], z: &[f64]) -> Vec<f64> {
+    let (lower, upper) = (lcp.lower(), lcp.upper());
+    let at = |i: usize| held(places[i], lower[i], upper[i]).unwrap_or(z[i]).clamp(lower[i], upper[i]);
+    (0..z.len()).map(at).collect()
+}
+
 /// The certificate of a point z of a matrix of which this is known; n >= 1.
 pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
     let Placed { places, residual } = placed(lcp, &z);
     let (n, scaled) = (z.len(), &known.scaled);
-    let onto = |i: usize| held(places[i], lcp.lower()[i], lcp.upper()[i]).unwrap_or(z[i]);
-    let x: Vec<f64> = (0..n).map(|i| onto(i).clamp(lcp.lower()[i], lcp.upper()[i])).collect();
+    let x = onto(lcp, &places, &z);
     let [w, _, rounding] = lcp.image(&x);
     let defect: Vec<f64> = (0..n)
         .map(|i| {

@@ -16,6 +16,9 @@ const LEAST_NEGATIVE: f64 = 1e-12;
 /// Largest number of unknowns of which all principal minors are computed.
 const MINORS: usize = 16;
 
+/// What the terms of `<A> d` leave, at least, as a share of them.
+const MARGIN: f64 = 1e-9;
+
 /// Largest dense comparison matrix, and the multiplications that sweeps over a larger one may take.
 const DENSE: usize = 600;
 const SWEEPING: usize = 200_000_000;
@@ -127,19 +130,19 @@ pub fn compared(matrix: &SparseMatrix, d: &[f64]) -> Vec<f64> {
     own.iter().zip(&others).map(|(own, others)| own - others - rounding * (own + others) - f64::MIN_POSITIVE).collect()
 }
 
-/// A vector d of positive entries, for which `<A> d` is about `right`; `None` if none was found. Only [`compared`] shows
-/// that A is an H-matrix.
+/// A vector d of positive entries, for which `<A> d` is at least about `right`; `None` if none was found. Only [`compared`]
+/// shows that A is an H-matrix. The diagonal is lowered a little, so that `<A> d` stays above the rounding of its terms.
 pub fn comparison_solution(matrix: &SparseMatrix, right: &[f64]) -> Option<Vec<f64>> {
     let n = right.len();
     let mut diagonal = vec![0.0; n];
-    matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = value);
+    matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = (1.0 - MARGIN) * value);
     if !matrix_is_finite(matrix) || diagonal.iter().any(|&value| value <= 0.0) {
         return None;
     }
     let is_positive = |d: &[f64]| d.iter().all(|&d| d > 0.0 && d.is_finite());
     if n <= DENSE {
         let mut rows = vec![vec![0.0; n]; n];
-        matrix.triplets().for_each(|(i, j, value)| rows[i][j] = if i == j { value } else { -value.abs() });
+        matrix.triplets().for_each(|(i, j, value)| rows[i][j] = if i == j { diagonal[i] } else { -value.abs() });
         return Some(Lu::of(rows)?.solve(right)).filter(|d| is_positive(d));
     }
     let rows = matrix.transposed();

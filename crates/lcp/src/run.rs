@@ -6,7 +6,7 @@ use signorini_qp::memory;
 
 use crate::answer::{Class, LcpSettings, LcpSolution, Place, Uniqueness};
 use crate::basis::settled;
-use crate::certificate::{examined, placed};
+use crate::certificate::{examined, onto, placed};
 use crate::class::Known;
 use crate::error::Error;
 use crate::lemke::lemke;
@@ -152,7 +152,7 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
         };
         let rough = placed(lcp, &z);
         let is_rough = rough.residual.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
-        let mut points = vec![z];
+        let mut points = vec![onto(lcp, &rough.places, &z)];
         if is_rough {
             points.extend(polished(lcp, &known, rough.places, allowed, settings)?);
             points.extend(places.and_then(|places| settled(lcp, &known.scaled, &places, allowed).ok()?));
