@@ -18,14 +18,11 @@
 
 use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::held;
-use crate::class::{Known, compared, comparison_solution, if_definite};
+use crate::class::{Known, compared, comparison_solution};
 use crate::problem::Lcp;
 
 /// Sums and products of bounds are enlarged by this, which exceeds their rounding for any number of terms in memory.
 const OUTWARD: f64 = 1.0 + 1e-6;
-
-/// What is added to the diagonal of a semidefinite matrix for the direction of a repair.
-const SHIFT: f64 = 1e-10;
 
 /// The places of a point with its residuals.
 pub struct Placed {
@@ -168,8 +165,7 @@ fn energy_of_gap(lcp: &Lcp, known: &Known, mut x: Vec<f64>, defect: &[f64]) -> (
     let wanted: Vec<f64> =
         (0..n).map(|i| f64::from(i8::from(upper[i].is_infinite()) - i8::from(lower[i].is_infinite()))).collect();
     let largest = defect.iter().copied().fold(0.0, f64::max);
-    let factor = scaled.symmetric_part(SHIFT).ok().and_then(|shifted| if_definite(&shifted).ok()?);
-    if let Some(factor) = factor.filter(|_| largest > 0.0) {
+    if let Some(factor) = known.factor.as_ref().filter(|_| largest > 0.0) {
         let mut d = vec![0.0; n];
         for _ in 0..3 {
             let moved = scaled.matrix.mul(&d);
