@@ -106,7 +106,7 @@ pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
     let error: Vec<f64> = (0..n).map(|i| in_units(i, error[i])).collect();
     let image_error = image_errors(lcp, known, (&z, &beside), &error, energy);
     let [w, ..] = lcp.image(&z);
-    let proven = (0..n)
+    let proven: Vec<Option<Place>> = (0..n)
         .map(|i| {
             let (e, of_w) = (error[i], image_error[i]);
             let is_between = z[i] - e > lcp.lower()[i] && z[i] + e < lcp.upper()[i];
@@ -124,9 +124,10 @@ pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
         image_error: said(image_error, NO_IMAGE_ERROR),
         z,
         w,
-        class: known.class,
-        uniqueness: known.uniqueness,
-        proven,
+        class: known.class.name(),
+        is_unique: known.is_unique,
+        proven: [Place::Lower, Place::Between, Place::Upper]
+            .map(|place| proven.iter().map(|proven| *proven == Some(place)).collect()),
         residual,
         method: "given",
         iterations: 0,
@@ -198,12 +199,11 @@ fn image_errors(lcp: &Lcp, known: &Known, (z, x): (&[f64], &[f64]), error: &[f64
     }
     if scaled.is_symmetric && energy.is_finite() {
         let moved = lcp.matrix().mul_abs(&z.iter().zip(x).map(|(z, x)| z - x).collect::<Vec<_>>());
-        for (i, j, value) in scaled.matrix.triplets().filter(|entry| entry.0 == entry.1) {
-            by_rows[i] = by_rows[i].min(moved[j] * OUTWARD + value.max(0.0).sqrt() * energy / scaled.row[i]);
-        }
         // A row of a semidefinite matrix without a diagonal entry is zero.
-        let diagonal = scaled.symmetric_part(0.0).map(|part| part.diagonal()).unwrap_or_default();
-        diagonal.iter().enumerate().filter(|entry| *entry.1 == 0.0).for_each(|(i, _)| by_rows[i] = 0.0);
+        for (i, value) in scaled.diagonal().into_iter().enumerate() {
+            let by_energy = if value > 0.0 { value.sqrt() * energy / scaled.row[i] } else { 0.0 };
+            by_rows[i] = by_rows[i].min(moved[i] * OUTWARD + by_energy);
+        }
     }
     let all = by_rows.iter().zip(&rounding).zip(&w);
     all.map(|((by_row, rounding), w)| (by_row + rounding + f64::EPSILON * w.abs()) * OUTWARD).collect()
