@@ -1,9 +1,9 @@
 //! GOAL: no answer and no claim about a linear complementarity problem contradicts exact arithmetic.
 //!
-//! CONDITIONS: random problems of 1 to 8 unknowns from families whose class is known, with bounds on some unknowns, with
-//! ties, and without solutions; and the same with rows and unknowns scaled by 1e-12 to 1e12.
-//! REFERENCE: Lemke's method in integers for any matrix, principal minors, and the exact search for a point that meets
-//! the inequalities. The long form has 5,000 problems and 1,000 scaled ones.
+//! CONDITIONS: random problems of 1 to 8 unknowns from families whose class is known, with bounds on some unknowns,
+//! with ties, and without solutions; and the same with rows and unknowns scaled by 1e-12 to 1e12. REFERENCE: Lemke's
+//! method in integers for any matrix, principal minors, and the exact search for a point that meets the inequalities.
+//! The long form has 5,000 problems and 1,000 scaled ones.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;

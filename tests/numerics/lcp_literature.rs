@@ -1,9 +1,8 @@
 //! GOAL: linear complementarity problems of the literature are solved, with bounds where the theory has them.
 //!
-//! CONDITIONS: the families of Murty and of Fathi, on which pivoting in a fixed order takes exponentially many steps; an
-//! obstacle below a membrane; a journal bearing with cavitation; a market of 50 goods; the impulses in a stack of rigid
-//! blocks.
-//! REFERENCE: closed forms, and the conditions themselves in plain sums.
+//! CONDITIONS: the families of Murty and of Fathi, on which pivoting in a fixed order takes exponentially many steps;
+//! an obstacle below a membrane; a journal bearing with cavitation; a market of 50 goods; the impulses in a stack of
+//! rigid blocks. REFERENCE: closed forms, and the conditions themselves in plain sums.
 
 use signorini::lcp::{Error, Lcp, LcpSolution, solve_lcp};
 use signorini::qp::Cholesky;
@@ -147,8 +146,8 @@ fn a_market_of_fifty_goods_clears() {
 }
 
 /// Impulses in one step of a stack of rigid blocks of random masses that fall at random speeds; each block has two
-/// contacts with the next, so that M = B m^-1 B' is singular. The sum of the two impulses is the weight and the momentum
-/// of all that lies above, if all contacts close.
+/// contacts with the next, so that M = B m^-1 B' is singular. The sum of the two impulses is the weight and the
+/// momentum of all that lies above, if all contacts close.
 #[test]
 fn the_impulses_of_a_stack_of_blocks_carry_its_momentum() {
     let blocks: usize = cases(300, 10_000);

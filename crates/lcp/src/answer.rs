@@ -47,10 +47,10 @@ pub struct LcpSolution {
     pub z: Vec<f64>,
     /// w = M z + q, length n, in units of q; summed with twice the working precision.
     pub w: Vec<f64>,
-    /// What decided the methods: M is `symmetric` and positive semidefinite to rounding, if need be after its rows were
+    /// The class of M, which decides the methods: `symmetric` and positive semidefinite to rounding, if need be after its rows were
     /// multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector d > 0 with `<M> d > 0` was found,
-    /// `<M>` the comparison matrix); `monotone` (M + M' semidefinite to rounding, likewise); a `p-matrix` (decided for at most
-    /// 16 unknowns); or `general`.
+    /// `<M>` the comparison matrix); `monotone` (M + M' semidefinite to rounding, likewise); a `p-matrix` (decided for
+    /// at most 16 unknowns); or `general`.
     pub class: &'static str,
     /// `Some(true)` if there is proven to be one solution for every q, because M is a P-matrix; `Some(false)` if M is
     /// symmetric and semidefinite, and not shown to be definite: all solutions then share w, and z may be one of
@@ -65,9 +65,9 @@ pub struct LcpSolution {
     /// The unknowns whose places the bounds prove: of every solution those with `w_i* > 0`, of the only one those
     /// strictly between their bounds, and those with `w_i* < 0`.
     pub proven: [ContactSet; 3],
-    /// The residual `z - mid(l, z - w, u)`, one entry per unknown, relative, each side in its own scale: the least over the three
-    /// places of what is missing there. What w misses is relative to `t_i = |q_i| + sum |M_ij z_j|`, a distance to a bound
-    /// is taken as what it moves in any row k, relative to t_k.
+    /// The residual `z - mid(l, z - w, u)`, one entry per unknown, relative, each side in its own scale: the least over
+    /// the three places of what is missing there. What w misses is relative to `t_i = |q_i| + sum |M_ij z_j|`, a
+    /// distance to a bound is taken as what it moves in any row k, relative to t_k.
     pub residual: Vec<f64>,
     /// `quadratic-program`, `proximal`, `gap-program`, `principal-pivoting`, `lemke` or `given`.
     pub method: &'static str,

@@ -1,16 +1,16 @@
 //! The certificate of a point, whatever it comes from: residual, bounds on the errors of z and w, proven places. All is
 //! recomputed from M, q, l and u, with rounding counted.
 //!
-//! The point z is moved onto its places, which gives x. Then x solves the problem for another offset q + d exactly: with
-//! w = M x + q, `d_i = -w_i` between the bounds, `(-w_i)+` at l, `-(w_i)+` at u. For e = x - z* that gives in each row
-//! `e_i (M e + d)_i <= 0`, and therefore, in the scaled units of A,
+//! The point z is moved onto its places, which gives x. Then x solves the problem for another offset q + d exactly:
+//! with w = M x + q, `d_i = -w_i` between the bounds, `(-w_i)+` at l, `-(w_i)+` at u. For e = x - z* that gives in each
+//! row `e_i (M e + d)_i <= 0`, and therefore, in the scaled units of A,
 //!
 //! * `e'A e <= |e| |d|`: `|e| <= |d| / a` and `e'A e <= |d|^2 / a`, a the least eigenvalue of (A + A')/2;
 //! * `A_ii |e_i| - sum |A_ij| |e_j| <= |d_i|`: `|e| <= v` for every v >= 0 with `<A> v >= |d|`, if A is an H-matrix;
 //! * `|w_i - w_i*| <= sqrt(A_ii e'A e)` for a symmetric A, by the inequality of Cauchy and Schwarz.
 //!
-//! If A is symmetric and only semidefinite, x is moved on until it meets the inequalities; then e'A e is at most the gap
-//! `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+`.
+//! If A is symmetric and only semidefinite, x is moved on until it meets the inequalities; then e'A e is at most the
+//! gap `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+`.
 //!
 //! # Source
 //! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), section 5.10; X. Chen, S. Xiang,

@@ -140,8 +140,9 @@ pub fn compared(matrix: &SparseMatrix, d: &[f64]) -> Vec<f64> {
     own.iter().zip(&others).map(|(own, others)| own - others - rounding * (own + others) - f64::MIN_POSITIVE).collect()
 }
 
-/// A vector d of positive entries, for which `<A> d` is at least about `right`; `None` if none was found. Only [`compared`]
-/// shows that A is an H-matrix. The diagonal is lowered a little, so that `<A> d` stays above the rounding of its terms.
+/// A vector d of positive entries, for which `<A> d` is at least about `right`; `None` if none was found. Only
+/// [`compared`] shows that A is an H-matrix. The diagonal is lowered a little, so that `<A> d` stays above the rounding
+/// of its terms.
 pub fn comparison_solution(matrix: &SparseMatrix, right: &[f64]) -> Option<Vec<f64>> {
     let n = right.len();
     let mut diagonal = vec![0.0; n];

@@ -56,7 +56,7 @@ pub enum Error {
         index: usize,
         /// This residual, dimensionless.
         residual: f64,
-        /// What the settings allow for it.
+        /// The largest that the settings allow, dimensionless.
         tolerance: f64,
     },
     /// A matrix that is too large for the only method that fits its class.

@@ -96,8 +96,8 @@ impl Tableau {
     }
 }
 
-/// A point of a problem with any matrix, if the method ends in one. Each `attempt` has its own artificial column, and so
-/// its own way; the entries of the column differ, which leaves few ties.
+/// A point of a problem with any matrix, if the method ends in one. Each `attempt` has its own artificial column, and
+/// so its own way; the entries of the column differ, which leaves few ties.
 ///
 /// # Errors
 /// [`Error::TooLarge`].

@@ -4,8 +4,8 @@
 //!
 //! # Source
 //! J. J. Judice, F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
-//! complementarity problems*, Comput. Oper. Res. 21 (1994) 587-596; K. G. Murty, *Note on a Bard-type scheme for solving
-//! the complementarity problem*, Opsearch 11 (1974) 123-130.
+//! complementarity problems*, Comput. Oper. Res. 21 (1994) 587-596; K. G. Murty, *Note on a Bard-type scheme for
+//! solving the complementarity problem*, Opsearch 11 (1974) 123-130.
 
 use signorini_qp::Settings;
 

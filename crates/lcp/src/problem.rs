@@ -29,8 +29,8 @@ pub struct Lcp {
 }
 
 impl Lcp {
-    /// The problem of M (n x n, any real matrix, both triangles), q (length n, in units of w), and bounds l and u (length n, in units
-    /// of z); a bound of magnitude 1e20 or more is infinite.
+    /// The problem of M (n x n, any real matrix, both triangles), q (length n, in units of w), and bounds l and u
+    /// (length n, in units of z); a bound of magnitude 1e20 or more is infinite.
     ///
     /// # Errors
     /// [`Error::Qp`] with `Shape` or `Length` for sizes that do not fit and `NotFinite` for an offset that is not

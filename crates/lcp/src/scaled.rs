@@ -106,8 +106,8 @@ impl Scaled {
     }
 }
 
-/// Exponents of rows and columns for entries of order one, after each row was multiplied by its share: the least squares
-/// of their logarithms, nearly.
+/// Exponents of rows and columns for entries of order one, after each row was multiplied by its share: the least
+/// squares of their logarithms, nearly.
 ///
 /// # Source
 /// A. R. Curtis, J. K. Reid, *On the automatic scaling of matrices for Gaussian elimination*, IMA J. Appl. Math. 10

@@ -143,8 +143,7 @@ impl Settings {
         run::each(count, self, solved)
     }
 
-    /// Number of processors for one problem: all of the machine, at most 8, because more would wait for the same
-    /// memory.
+    /// The threads that one problem takes if none are named: those of the machine, at most 8.
     pub fn threads_of_machine() -> usize {
         linear::threads_of_machine()
     }
