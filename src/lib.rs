@@ -48,6 +48,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`qp`] | the certified quadratic program: problem, settings, solve, factor once and contact many; it speaks no mechanics |
+//! | [`lcp`] | linear complementarity problems with bounds: find z with w = M z + q, w'z = 0 |
 //! | [`fem`] | elastic bodies: meshes, elements, assembly, recovery of stresses, closed forms |
 //! | [`scene`] | scenes in JSON: bodies, supports, loads, obstacles; the model and the way back to it |
 //! | [`motion`] | contact in time: mass, schemes, the loop over steps |
@@ -63,14 +64,14 @@
 #[cfg(feature = "cli")]
 pub mod cli;
 
+pub use signorini_lcp as lcp;
 pub use signorini_mechanics::{Error, fem, motion, scene, study};
 #[cfg(feature = "pictures")]
 pub use signorini_output as output;
 pub use signorini_qp as qp;
 
 pub use qp::{
-    Attempt, BoundarySolution, Certificate, Condense, ContactProblem, ContactSet, Failure, Goal, InteriorPoint,
-    Iteration, Method, Path, Penalty, Prepared, ProvenSet, Seconds, Settings, Solution, SparseMatrix, Start,
-    SymmetricMatrix, Watch, solve, solve_qp,
+    Certificate, Condense, ContactProblem, ContactSet, Failure, Goal, InteriorPoint, Iteration, Method, Path, Penalty,
+    Prepared, ProvenSet, Seconds, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve, solve_qp,
 };
 pub use scene::{Model, Scene};

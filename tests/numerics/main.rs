@@ -14,6 +14,8 @@ mod exact_path;
 mod extremes;
 mod findings;
 mod hostile;
+mod lcp;
+mod lcp_literature;
 mod methods;
 mod modes;
 mod obstacle_problems;

@@ -173,8 +173,8 @@ fn eliminate_free(tableau: &mut Tableau<Variable>) -> bool {
     true
 }
 
-/// Solves the complementarity problem of a tableau. Returns the ray if Lemke's method ends in one.
-fn lemke(tableau: &mut Tableau<Variable>) -> Option<Vec<(Variable, BigInt)>> {
+/// Solves the complementarity problem of a tableau with any matrix. Returns the ray if Lemke's method ends in one.
+pub(super) fn lemke(tableau: &mut Tableau<Variable>) -> Option<Vec<(Variable, BigInt)>> {
     let start = tableau.basic.clone();
     let artificial = tableau.others.len();
     tableau.others.push(Artificial);

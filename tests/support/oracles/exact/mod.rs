@@ -4,6 +4,7 @@
 //! unique), infeasible, unbounded, or not convex. Each verdict is verified in the original data before it is returned.
 
 pub mod case;
+pub mod complementarity;
 pub mod dyadic;
 mod evidence;
 pub mod judge;

@@ -1,0 +1,87 @@
+//! The parts of an answer: plain data.
+
+use signorini_qp::ContactSet;
+
+/// The class of M that decides the method: the first of these that it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Symmetric, if need be after its rows were scaled by powers of two, and positive semidefinite to rounding.
+    Symmetric,
+    /// An H-matrix with positive diagonal: a vector d > 0 with `<M> d > 0` was found, `<M>` the comparison matrix.
+    H,
+    /// M + M' is positive semidefinite to rounding, if need be after the rows of M were scaled.
+    Monotone,
+    /// All principal minors are positive; decided for at most 16 unknowns.
+    P,
+    /// Any other matrix, or one that was not recognised.
+    General,
+}
+
+impl Class {
+    pub fn name(self) -> &'static str {
+        match self {
+            Class::Symmetric => "symmetric",
+            Class::H => "h-matrix",
+            Class::Monotone => "monotone",
+            Class::P => "p-matrix",
+            Class::General => "general",
+        }
+    }
+}
+
+/// Where an unknown lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// At its lower bound, with `w >= 0`.
+    Lower,
+    /// Between its bounds or at one of them, with w = 0.
+    Between,
+    /// At its upper bound, with `w <= 0`.
+    Upper,
+}
+
+/// A point with its certificate, recomputed from M, q, l and u.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LcpSolution {
+    /// The unknowns z, length n, in their units.
+    pub z: Vec<f64>,
+    /// w = M z + q, length n, in units of q; summed with twice the working precision.
+    pub w: Vec<f64>,
+    /// The class of M, which decides the methods: `symmetric` and positive semidefinite to rounding, if need be after
+    /// its rows were multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector d > 0 with
+    /// `<M> d > 0` was found, `<M>` the comparison matrix); `monotone` (M + M' semidefinite to rounding, likewise); a
+    /// `p-matrix` (decided for at most 16 unknowns); or `general`.
+    pub class: &'static str,
+    /// `Some(true)` if there is proven to be one solution for every q, because M is a P-matrix; `Some(false)` if M is
+    /// symmetric and semidefinite, and not shown to be definite: all solutions then share w, and z may be one of
+    /// several; `None` if nothing is proven.
+    pub is_unique: Option<bool>,
+    /// Upper bounds on `|z_i - z_i*|` of the only solution z*, one entry per unknown, in units of z; or the reason why
+    /// none is known. The rounding of its computation is included.
+    pub error: Result<Vec<f64>, String>,
+    /// Upper bounds on `|w_i - w_i*|` for every solution w*, one entry per row, in units of w; or the reason why none
+    /// is known.
+    pub image_error: Result<Vec<f64>, String>,
+    /// The unknowns whose places the bounds prove: of every solution those with `w_i* > 0`, of the only one those
+    /// strictly between their bounds, and those with `w_i* < 0`.
+    pub proven: [ContactSet; 3],
+    /// The residual `z - mid(l, z - w, u)`, one entry per unknown, relative, each side in its own scale: the least over
+    /// the three places of what is missing there. What w misses is relative to `t_i = |q_i| + sum |M_ij z_j|`, a
+    /// distance to a bound is taken as what it moves in any row k, relative to t_k.
+    pub residual: Vec<f64>,
+    /// `quadratic-program`, `proximal`, `gap-program`, `principal-pivoting`, `lemke` or `given`.
+    pub method: &'static str,
+    /// Iterations of this method: pivots, or those of the quadratic program.
+    pub iterations: usize,
+    /// Wall-clock seconds of all methods that were tried and of the certificate.
+    pub seconds: f64,
+}
+
+impl LcpSolution {
+    /// The unknown with the largest residual, and this residual.
+    pub fn worst(&self) -> (usize, f64) {
+        let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
+        let worst = self.residual.iter().copied().map(rank).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        worst.unwrap_or((0, 0.0))
+    }
+}

@@ -1,0 +1,230 @@
+//! Lemke's method with the lexicographic rule, on a dense tableau. It ends in a solution or a ray. A ray
+//! proves something only if M is monotone; no caller takes it as a proof without a check.
+//!
+//! Bounds become nonnegative unknowns: z = l + x or z = u - x; an unknown between two bounds also has its slack
+//! v = u - l - x, with the negative part of w as its complement; one without bounds is a difference of two.
+//!
+//! # Source
+//! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), sections 4.4 and 4.9.
+
+use std::cmp::Ordering;
+
+use signorini_qp::Settings;
+
+use crate::answer::Place;
+use crate::basis::check_size;
+use crate::error::Error;
+use crate::found::Found;
+use crate::scaled::Scaled;
+
+/// Entries below this share of the largest of their column, and differences of ratios below it, are rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// Constants below this, of the largest at the start, and entries of the inverse of the basis are zero.
+const ZERO: f64 = 1e-13;
+
+/// Its multiples are spread evenly over the fractions.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// A sum below this share of its first term has cancelled to nothing.
+const CANCELLED: f64 = 64.0 * f64::EPSILON;
+
+/// The unknown x of a column: the unknown of the problem, and the sign by which it enters; of a slack its place.
+#[derive(Clone, Copy)]
+enum Column {
+    Part { of: usize, sign: f64 },
+    Slack { of: usize },
+}
+
+/// Basic variables as affine functions of the others: each row has their coefficients, and its constant at the end. The
+/// variables 0..N are x, N..2N their complements, 2N is the artificial one.
+struct Tableau {
+    rows: Vec<Vec<f64>>,
+    basic: Vec<usize>,
+    others: Vec<usize>,
+    /// The unit of the constants.
+    unit: f64,
+}
+
+impl Tableau {
+    fn pivot(&mut self, place: usize, column: usize) {
+        let mut own = std::mem::take(&mut self.rows[place]);
+        let pivot = own[column];
+        own[column] = -1.0;
+        own.iter_mut().for_each(|entry| *entry /= -pivot);
+        for row in self.rows.iter_mut().filter(|row| !row.is_empty() && row[column] != 0.0) {
+            let factor = std::mem::take(&mut row[column]);
+            row.iter_mut().zip(&own).for_each(|(entry, own)| {
+                let sum = *entry + factor * own;
+                // What cancels to nothing is nothing.
+                *entry = if sum.abs() <= CANCELLED * entry.abs() { 0.0 } else { sum };
+            });
+        }
+        self.rows[place] = own;
+        std::mem::swap(&mut self.basic[place], &mut self.others[column]);
+    }
+
+    /// The basic variable that becomes zero first as the variable at `column` grows, by the lexicographic rule; the
+    /// artificial one as soon as it may.
+    fn first_to_vanish(&self, column: usize) -> Option<usize> {
+        let count = self.rows.len();
+        let largest = self.rows.iter().map(|row| row[column].abs()).fold(0.0, f64::max);
+        let falling: Vec<usize> = (0..count).filter(|&place| self.rows[place][column] < -ROUNDING * largest).collect();
+        let compare = |a: f64, b: f64| match (a - b).abs() <= ROUNDING * a.abs().max(b.abs()) {
+            true => Ordering::Equal,
+            false => a.total_cmp(&b),
+        };
+        let rate = |place: usize| -self.rows[place][column];
+        let cleaned = |value: f64| if value.abs() > ZERO { value } else { 0.0 };
+        let constant = |place: usize| cleaned(self.rows[place][count + 1]);
+        let constants = |a: usize, b: usize| compare(constant(a) / rate(a), constant(b) / rate(b));
+        let inverse = |place: usize, variable: usize| match self.others.iter().position(|&other| other == variable) {
+            Some(other) => -cleaned(self.rows[place][other]),
+            None => f64::from(u8::from(self.basic[place] == variable)),
+        };
+        let earlier = |a: usize, b: usize| {
+            (count..2 * count).fold(constants(a, b), |order, variable| {
+                order.then_with(|| compare(inverse(a, variable) / rate(a), inverse(b, variable) / rate(b)))
+            })
+        };
+        let best = falling.iter().copied().reduce(|best, place| match earlier(place, best) {
+            Ordering::Less => place,
+            _ => best,
+        })?;
+        let artificial = falling.into_iter().find(|&place| self.basic[place] == 2 * count);
+        artificial.filter(|&place| constants(place, best) != Ordering::Greater).or(Some(best))
+    }
+}
+
+/// A point of a problem with any matrix, if the method ends in one. Each `attempt` has its own artificial column, and
+/// so its own way; the entries of the column differ, which leaves few ties.
+///
+/// # Errors
+/// [`Error::TooLarge`].
+pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &Settings) -> Result<Found, Error> {
+    let (lower, upper) = (&scaled.lower, &scaled.upper);
+    let mut columns = Vec::new();
+    for of in 0..lower.len() {
+        let (is_above, is_below) = (lower[of].is_finite(), upper[of].is_finite());
+        columns.push(Column::Part { of, sign: if is_below && !is_above { -1.0 } else { 1.0 } });
+        match (is_above, is_below) {
+            (true, true) => columns.push(Column::Slack { of }),
+            (false, false) => columns.push(Column::Part { of, sign: -1.0 }),
+            _ => {}
+        }
+    }
+    let count = columns.len();
+    check_size(count, count, allowed)?;
+    let mut tableau = standard(scaled, &columns, attempt);
+    let end = |reason: &str| Ok(Found::Nothing(format!("Lemke's method {reason}")));
+    let needed = |place: usize| tableau.rows[place][count + 1] / tableau.rows[place][count];
+    let lowest = (0..count).rev().min_by(|&a, &b| needed(a).total_cmp(&needed(b)));
+    let Some(lowest) = lowest.filter(|&place| needed(place) < 0.0) else {
+        return Ok(point(&tableau, scaled, &columns, 0));
+    };
+    let mut entering = tableau.basic[lowest] - count;
+    tableau.pivot(lowest, count);
+    for step in 1..=settings.max_iterations {
+        if settings.watch.is_over() {
+            return end("was stopped");
+        }
+        let Some(column) = tableau.others.iter().position(|&other| other == entering) else {
+            return end("lost its basis to rounding");
+        };
+        let Some(leaving) = tableau.first_to_vanish(column) else {
+            return Ok(Found::Ray(ray(&tableau, column, &columns, lower.len())));
+        };
+        let left = tableau.basic[leaving];
+        tableau.pivot(leaving, column);
+        if left == 2 * count {
+            return Ok(point(&tableau, scaled, &columns, step));
+        }
+        entering = if left < count { left + count } else { left - count };
+    }
+    end("used up its pivots")
+}
+
+/// The bound from which an unknown is measured.
+fn base(scaled: &Scaled, of: usize) -> f64 {
+    let (lower, upper) = (scaled.lower[of], scaled.upper[of]);
+    if lower.is_finite() {
+        lower
+    } else if upper.is_finite() {
+        upper
+    } else {
+        0.0
+    }
+}
+
+/// The first tableau, with constants of at most one.
+fn standard(scaled: &Scaled, columns: &[Column], attempt: usize) -> Tableau {
+    let count = columns.len();
+    let mut at = vec![Vec::new(); scaled.lower.len()];
+    let mut rows = vec![vec![0.0; count + 2]; count];
+    let bases: Vec<f64> = (0..at.len()).map(|of| base(scaled, of)).collect();
+    let moved = scaled.matrix.mul(&bases);
+    for (k, column) in columns.iter().enumerate() {
+        rows[k][count + 1] = match *column {
+            Column::Part { of, sign } => {
+                at[of].push((k, sign));
+                sign * (scaled.offset[of] + moved[of])
+            }
+            Column::Slack { of } => {
+                // v = u - l - x, and w+ = w + w-.
+                (rows[k][k - 1], rows[k - 1][k]) = (-1.0, 1.0);
+                scaled.upper[of] - scaled.lower[of]
+            }
+        };
+    }
+    for (i, j, value) in scaled.matrix.triplets() {
+        for &(row, of_row) in &at[i] {
+            at[j].iter().for_each(|&(column, of_column)| rows[row][column] = of_row * of_column * value);
+        }
+    }
+    let unit = rows.iter().map(|row| row[count + 1].abs()).fold(f64::MIN_POSITIVE, f64::max);
+    for (k, row) in rows.iter_mut().enumerate() {
+        let artificial = 1.0 + (GOLDEN * ((k + 1) * (attempt + 1)) as f64).fract();
+        (row[count], row[count + 1]) = (artificial, row[count + 1] / unit);
+    }
+    Tableau { rows, basic: (count..2 * count).collect(), others: (0..count).chain([2 * count]).collect(), unit }
+}
+
+/// The direction of the unknowns along the ray of a column. If M is monotone it is the y that shows that there is no
+/// solution (section 4.4 of the source): y'(M + M')y = 0 along it.
+fn ray(tableau: &Tableau, column: usize, columns: &[Column], unknowns: usize) -> Vec<f64> {
+    let rates = tableau.rows.iter().map(|row| row[column]).chain([1.0]);
+    let mut ray = vec![0.0; unknowns];
+    for (variable, rate) in tableau.basic.iter().chain([&tableau.others[column]]).zip(rates) {
+        if let Some(Column::Part { of, sign }) = columns.get(*variable) {
+            ray[*of] += sign * rate;
+        }
+    }
+    ray
+}
+
+/// The point of the last tableau, in units of z, and the places of its basis.
+fn point(tableau: &Tableau, scaled: &Scaled, columns: &[Column], iterations: usize) -> Found {
+    let count = columns.len();
+    let mut x: Vec<f64> = (0..scaled.lower.len()).map(|of| base(scaled, of)).collect();
+    let is_free = |of: usize| scaled.lower[of].is_infinite() && scaled.upper[of].is_infinite();
+    let at = |of: usize| match (is_free(of), scaled.lower[of].is_infinite()) {
+        (true, _) => Place::Between,
+        (false, true) => Place::Upper,
+        (false, false) => Place::Lower,
+    };
+    let mut places: Vec<Place> = (0..x.len()).map(at).collect();
+    for (row, &basic) in tableau.rows.iter().zip(&tableau.basic) {
+        if let Some(&Column::Part { of, sign }) = columns.get(basic) {
+            x[of] += sign * row[count + 1] * tableau.unit;
+            places[of] = Place::Between;
+        }
+    }
+    for other in tableau.others.iter().filter_map(|other| other.checked_sub(count)) {
+        // The distance from the upper bound is zero.
+        if let Some(&Column::Slack { of }) = columns.get(other) {
+            places[of] = if places[of] == Place::Between { Place::Upper } else { places[of] };
+        }
+    }
+    let z = x.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect();
+    Found::Point { z, places: Some(places), iterations }
+}

@@ -1,0 +1,158 @@
+//! Rows and unknowns in units of their own: A = R M C with diagonal R and C. A row may be multiplied by any positive
+//! number, because only the sign of w matters; so M need not keep its symmetry by chance of its units.
+
+use signorini_qp::{Error, SparseMatrix, SymmetricMatrix};
+
+use crate::problem::Lcp;
+
+/// Sweeps of the fit of scales to the logarithms of the entries.
+const SWEEPS: usize = 150;
+
+/// Mirrored entries that differ by less than this share count as equal for a method, though not for a claim.
+const ALIKE: f64 = 1e-12;
+
+/// A problem in scaled units: z = C x, R w = A x + R q.
+#[derive(Clone, Debug)]
+pub struct Scaled {
+    pub matrix: SparseMatrix,
+    pub offset: Vec<f64>,
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+    /// The diagonals of R and C; those of C are powers of two.
+    pub row: Vec<f64>,
+    pub column: Vec<f64>,
+    /// `true` if A is symmetric to rounding.
+    pub is_alike: bool,
+    /// `true` if A is symmetric, and all scales are powers of two: without any rounding.
+    pub is_symmetric: bool,
+}
+
+/// The power of two that is nearest to 2^exponent, far within the range of doubles.
+fn power(exponent: f64) -> f64 {
+    exponent.round().clamp(-300.0, 300.0).exp2()
+}
+
+fn is_power(value: f64) -> bool {
+    value.to_bits() & ((1 << 52) - 1) == 0
+}
+
+impl Scaled {
+    pub fn new(lcp: &Lcp, row: Vec<f64>, column: Vec<f64>) -> Self {
+        let matrix = lcp.matrix().scaled(&row, &column);
+        let mirrored = matrix.transposed();
+        let is_like = |share: f64| {
+            let pairs = (0..matrix.columns()).all(|j| {
+                let (mut own, mut other) =
+                    (matrix.column(j).filter(|e| e.1 != 0.0), mirrored.column(j).filter(|e| e.1 != 0.0));
+                loop {
+                    match (own.next(), other.next()) {
+                        (None, None) => return true,
+                        (Some(a), Some(b)) if a.0 == b.0 && (a.1 - b.1).abs() <= share * a.1.abs() => {}
+                        _ => return false,
+                    }
+                }
+            });
+            pairs && matrix.values().iter().all(|value| value.is_finite())
+        };
+        let is_exact = row.iter().chain(&column).all(|&scale| is_power(scale));
+        let (is_alike, is_symmetric) = (is_like(ALIKE), is_exact && is_like(0.0));
+        let times = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect();
+        let over = |bounds: &[f64]| bounds.iter().zip(&column).map(|(bound, unit)| bound / unit).collect();
+        let (offset, lower, upper) = (times(lcp.offset(), &row), over(lcp.lower()), over(lcp.upper()));
+        Scaled { matrix, offset, lower, upper, row, column, is_alike, is_symmetric }
+    }
+
+    /// Unit diagonals after each row was multiplied by its share.
+    pub fn by_diagonal(lcp: &Lcp, share: &[f64]) -> Self {
+        let (n, matrix) = (lcp.unknowns(), lcp.matrix());
+        let mut unit = vec![0.0; n];
+        let own = matrix.triplets().filter(|(i, j, value)| i == j && *value != 0.0);
+        own.for_each(|(i, _, value)| unit[i] = power(-0.5 * (share[i].log2() + value.abs().log2())));
+        if unit.contains(&0.0) {
+            let [row, column] = fit(matrix, share);
+            let means = row.iter().zip(&column).map(|(row, column)| power(0.5 * (row + column)));
+            unit.iter_mut().zip(means).filter(|entry| *entry.0 == 0.0).for_each(|(unit, mean)| *unit = mean);
+        }
+        let row = unit.iter().zip(share).map(|(unit, share)| unit * share).collect();
+        Scaled::new(lcp, row, unit)
+    }
+
+    /// Entries of order one in all rows and columns.
+    pub fn by_entries(lcp: &Lcp) -> Self {
+        let powers = |exponents: Vec<f64>| exponents.into_iter().map(power).collect();
+        let [row, column] = fit(lcp.matrix(), &vec![1.0; lcp.unknowns()]).map(powers);
+        Scaled::new(lcp, row, column)
+    }
+
+    /// The diagonal of A.
+    pub fn diagonal(&self) -> Vec<f64> {
+        let mut diagonal = vec![0.0; self.offset.len()];
+        self.matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = value);
+        diagonal
+    }
+
+    /// The symmetric part (A + A') / 2, with this number added to its diagonal.
+    pub fn symmetric_part(&self, shift: f64) -> Result<SymmetricMatrix, Error> {
+        let n = self.offset.len();
+        let half = |(i, j, value): (usize, usize, f64)| (i.max(j), i.min(j), if i == j { value } else { 0.5 * value });
+        let mut entries: Vec<_> = match self.is_symmetric {
+            true => self.matrix.triplets().filter(|entry| entry.0 >= entry.1).collect(),
+            false => self.matrix.triplets().map(half).collect(),
+        };
+        if shift != 0.0 {
+            entries.extend((0..n).map(|i| (i, i, shift)));
+        }
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries)?)
+    }
+}
+
+/// Exponents of rows and columns for entries of order one, after each row was multiplied by its share: the least
+/// squares of their logarithms, nearly.
+///
+/// # Source
+/// A. R. Curtis, J. K. Reid, *On the automatic scaling of matrices for Gaussian elimination*, IMA J. Appl. Math. 10
+/// (1972) 118-124.
+fn fit(matrix: &SparseMatrix, share: &[f64]) -> [Vec<f64>; 2] {
+    let entries = matrix.triplets().filter(|entry| entry.2 != 0.0);
+    let sizes: Vec<_> = entries.map(|(i, j, value)| (i, j, share[i].log2() + value.abs().log2())).collect();
+    let (mut row, mut column) = (vec![0.0; share.len()], vec![0.0; share.len()]);
+    for _ in 0..SWEEPS {
+        let mut means = vec![[(0.0, 0.0); 2]; share.len()];
+        for &(i, j, size) in &sizes {
+            means[i][0] = (means[i][0].0 - size - column[j], means[i][0].1 + 1.0);
+            means[j][1] = (means[j][1].0 - size - row[i], means[j][1].1 + 1.0);
+        }
+        let halfway = |old: f64, (sum, count): (f64, f64)| if count > 0.0 { 0.5 * (old + sum / count) } else { old };
+        for (i, [of_row, of_column]) in means.into_iter().enumerate() {
+            (row[i], column[i]) = (halfway(row[i], of_row), halfway(column[i], of_column));
+        }
+    }
+    [row, column]
+}
+
+/// Shares of the rows of M that make mirrored entries equal in magnitude, as far as one walk over its graph finds them:
+/// of M = D S with a symmetric S the inverse of D, up to a factor for each component.
+pub fn shares(matrix: &SparseMatrix) -> Vec<f64> {
+    let mirrored = matrix.transposed();
+    let mut share = vec![0.0; matrix.columns()];
+    for root in 0..share.len() {
+        if share[root] != 0.0 {
+            continue;
+        }
+        share[root] = 1.0;
+        let mut found = vec![root];
+        while let Some(j) = found.pop() {
+            let mut row = mirrored.column(j).peekable();
+            for (i, below) in matrix.column(j).filter(|entry| entry.1 != 0.0) {
+                while row.next_if(|entry| entry.0 < i).is_some() {}
+                let Some(&(_, beside)) = row.peek().filter(|entry| entry.0 == i && entry.1 != 0.0) else { continue };
+                let of_other = share[j] * (beside / below).abs();
+                if share[i] == 0.0 && of_other.is_normal() {
+                    share[i] = of_other;
+                    found.push(i);
+                }
+            }
+        }
+    }
+    share
+}
