@@ -187,13 +187,25 @@ impl Lines<'_> {
     }
 }
 
+fn look_square<'py>(name: &str, matrix: &Bound<'py, PyAny>) -> PyResult<Seen<'py>> {
+    let seen = look(name, matrix, 0)?;
+    match seen.shape.filter(|shape| shape[0] != shape[1]) {
+        Some([rows, columns]) => {
+            Err(bad_input(matrix.py(), format!("{name} is {rows} x {columns}; it must be square")))
+        }
+        None => Ok(seen),
+    }
+}
+
+/// Reads a square matrix; the shape of a dense one is not checked.
+pub fn square(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<SparseMatrix> {
+    general(name, look_square(name, matrix)?)
+}
+
 /// Reads the stiffness: a symmetric matrix, given with both triangles.
 pub fn stiffness(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<SymmetricMatrix> {
     let py = matrix.py();
-    let seen = look(name, matrix, 0)?;
-    if let Some([rows, columns]) = seen.shape.filter(|shape| shape[0] != shape[1]) {
-        return Err(bad_input(py, format!("{name} is {rows} x {columns}; it must be square")));
-    }
+    let seen = look_square(name, matrix)?;
     if let (Source::Columns(lines), Some([dim, _])) | (Source::Rows(lines), Some([dim, _])) = (&seen.source, seen.shape)
     {
         let is_columns = matches!(seen.source, Source::Columns(_));

@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::options::Limits;
 use super::outcome::unfit;
 use crate::Error;
+use crate::lcp::Lcp;
 use crate::qp::{ContactProblem, Goal, Solution, read_problem};
 use crate::scene::{Answer, Model, Scene, Units};
 use crate::study::Summary;
@@ -41,6 +42,13 @@ impl Source {
         if !path.is_dir() {
             let scene = Box::new(scene_of(path, limits)?);
             return Ok(Source::Scene(scene, clock.elapsed().as_secs_f64()));
+        }
+        if Lcp::is_directory(path)? {
+            let name = path.display();
+            let message = format!(
+                "{name} is the directory of a complementarity problem (q.mtx), which only `solve`, `compare` and `verify` take"
+            );
+            return unfit("input", message);
         }
         let content = Content::Directory(Box::new(read_problem(path)?));
         let (title, units) = (format!("Problem directory {}", path.display()), Units::unnamed());

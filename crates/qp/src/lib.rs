@@ -61,6 +61,8 @@ pub use linear::{
     Accumulator, Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest, threads_of_machine,
 };
 pub use matrix_market::{format_vector, read_vector};
+#[doc(hidden)]
+pub use matrix_market::{read_bounds, read_matrix};
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;
 pub use method::penalty::Penalty;
