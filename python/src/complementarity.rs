@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use signorini::Watch;
-use signorini::lcp::{Error, Lcp, LcpSettings, Place as Side, solve_lcp};
+use signorini::lcp::{Error, Lcp, solve_lcp};
 
 use crate::arrays::{of_indices, of_reals, reals};
 use crate::errors::raised;
@@ -49,13 +49,17 @@ impl LcpSolution {
     /// is positive semidefinite), "p-matrix" or "general".
     #[getter]
     fn kind(&self) -> &'static str {
-        self.inner.class.name()
+        self.inner.class
     }
 
     /// "one" if there is no other solution, "several" if all solutions have the same w, "unknown" if nothing is proven.
     #[getter]
     fn unique(&self) -> &'static str {
-        self.inner.uniqueness.name()
+        match self.inner.is_unique {
+            Some(true) => "one",
+            Some(false) => "several",
+            None => "unknown",
+        }
     }
 
     /// Residual z - mid(lower, z - w, upper) of each unknown, shape (n,), relative to the terms of its row, read-only.
@@ -86,12 +90,11 @@ impl LcpSolution {
     /// The proven place of each unknown, a list of n: "lower", "between" or "upper"; None if nothing is proven.
     #[getter]
     fn proven(&self) -> Vec<Option<&'static str>> {
-        let name = |place: &Side| match place {
-            Side::Lower => "lower",
-            Side::Between => "between",
-            Side::Upper => "upper",
+        let name = |i: usize| {
+            let names = ["lower", "between", "upper"].into_iter().zip(&self.inner.proven);
+            names.into_iter().find_map(|(name, proven)| proven.contains(i).then_some(name))
         };
-        self.inner.proven.iter().map(|place| place.as_ref().map(name)).collect()
+        (0..self.inner.z.len()).map(name).collect()
     }
 
     /// Time of all methods and of the certificate, in seconds.
@@ -210,16 +213,9 @@ pub fn lcp<'py>(
     };
     let (lower, upper) = (bound("lower", lower, 0.0)?, bound("upper", upper, f64::INFINITY)?);
     let options = Options { tolerance, time, threads, memory, ..Options::default() };
-    let mut settings = LcpSettings::default();
-    settings.qp = options.settings_for(Some(matrix.entries()))?;
-    settings.tolerance = settings.qp.tolerance.unwrap_or(settings.tolerance);
-    let limit = settings.qp.time.take();
+    let settings = options.settings_for(Some(matrix.entries()))?;
     let problem = Lcp::new(matrix, offset, lower, upper).map_err(|error| exception(py, error))?;
-    let find = move |watch: &Watch| {
-        let watch = limit.map_or_else(|| watch.clone(), |limit| watch.within(limit.as_secs_f64()));
-        settings.qp.watch = watch;
-        solve_lcp(&problem, &settings)
-    };
+    let find = move |watch: &Watch| solve_lcp(&problem, &settings.watched(watch));
     match run(py, Place::Apart, find)? {
         End::Done(Ok(inner)) => Ok(LcpSolution { inner }),
         End::Done(Err(error)) => Err(exception(py, error)),

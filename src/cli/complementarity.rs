@@ -10,9 +10,9 @@ use super::options::{Common, Compare, Format, Solve, Verify};
 use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
 use crate::Error;
-use crate::lcp::{Class, Error as LcpError, Lcp, LcpSettings, LcpSolution, Place, Uniqueness, certify, solve_lcp};
+use crate::lcp::{Error as LcpError, Lcp, LcpSolution, solve_lcp};
 use crate::output::{listed, printable, remove_files, write_files};
-use crate::qp::{self, Method, Watch, format_vector, read_vector};
+use crate::qp::{self, ContactSet, Method, Watch, format_vector, read_vector};
 use crate::study::Status;
 
 /// Two certified answers must agree to this share of the largest entry, or within their bounds, as those of contact
@@ -34,12 +34,6 @@ impl Case {
         Ok(Case { lcp, title, read_seconds: clock.elapsed().as_secs_f64(), tolerance })
     }
 
-    fn settings(&self, method: Method, common: &Common, watch: &Watch) -> LcpSettings {
-        let mut of_lcp = LcpSettings::default();
-        (of_lcp.tolerance, of_lcp.qp) = (self.tolerance, settings(method, common, watch));
-        of_lcp
-    }
-
     fn status(&self, solution: &LcpSolution) -> Status {
         if solution.worst().1 <= self.tolerance { Status::Certified } else { Status::NotCertified }
     }
@@ -56,17 +50,17 @@ impl Case {
     fn json(&self, solution: &LcpSolution) -> Value {
         let ((unknown, residual), [lower, upper, between]) = (solution.worst(), self.places(solution));
         let (of_z, of_w) = (Bound::of(&solution.error), Bound::of(&solution.image_error));
-        let proven = |place| solution.proven.iter().filter(|proven| **proven == place).count();
+        let proven = solution.proven.each_ref().map(ContactSet::count);
         json!({
             "status": self.status(solution), "tolerance": self.tolerance, "method": solution.method,
-            "iterations": solution.iterations, "class": solution.class.name(), "unique": solution.uniqueness.name(),
+            "iterations": solution.iterations, "class": solution.class, "unique": unique(solution),
             "residual": residual, "worst_unknown": unknown,
             "error_bound": of_z.largest(), "error_bound_w": of_w.largest(),
             "no_error_bound": of_z.reason(), "no_error_bound_w": of_w.reason(),
             "places": { "lower": lower, "upper": upper, "between": between },
             "proven": {
-                "lower": proven(Some(Place::Lower)), "upper": proven(Some(Place::Upper)),
-                "between": proven(Some(Place::Between)), "undecided": proven(None),
+                "lower": proven[0], "between": proven[1], "upper": proven[2],
+                "undecided": self.lcp.unknowns() - proven.iter().sum::<usize>(),
             },
             "model": { "unknowns": self.lcp.unknowns(), "entries": self.lcp.matrix().entries() },
             "seconds": {
@@ -78,7 +72,7 @@ impl Case {
     fn text(&self, solution: &LcpSolution) -> String {
         let (unknowns, entries) = (self.lcp.unknowns(), self.lcp.matrix().entries());
         let ((unknown, residual), [lower, upper, between]) = (solution.worst(), self.places(solution));
-        let undecided = solution.proven.iter().filter(|proven| proven.is_none()).count();
+        let proven: usize = solution.proven.iter().map(ContactSet::count).sum();
         let verdict = match self.status(solution) {
             Status::Certified => format!("certified to {:.1e}", self.tolerance),
             _ => format!("NOT certified to {:.1e}", self.tolerance),
@@ -92,8 +86,8 @@ impl Case {
                 "solution",
                 vec![
                     format!("{lower} unknowns at the lower bound, {upper} at the upper bound, {between} between"),
-                    format!("{} places proven, {undecided} undecided", unknowns - undecided),
-                    uniqueness_in_words(solution.uniqueness).into(),
+                    format!("{proven} places proven, {} undecided", unknowns - proven),
+                    uniqueness_in_words(solution).into(),
                 ],
             ),
             (
@@ -113,10 +107,10 @@ impl Case {
 
     /// The agreement of two answers in the part that all solutions share.
     fn agreement(&self, one: &LcpSolution, other: &LcpSolution) -> Agreement {
-        let (of, [a, b], errors) = match one.uniqueness {
-            Uniqueness::One => ("z", [&one.z, &other.z], [&one.error, &other.error]),
-            Uniqueness::Several => ("w", [&one.w, &other.w], [&one.image_error, &other.image_error]),
-            Uniqueness::Unknown => return Agreement { of: "neither", difference: None, holds: true },
+        let (of, [a, b], errors) = match one.is_unique {
+            Some(true) => ("z", [&one.z, &other.z], [&one.error, &other.error]),
+            Some(false) => ("w", [&one.w, &other.w], [&one.image_error, &other.image_error]),
+            None => return Agreement { of: "neither", difference: None, holds: true },
         };
         let apart: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
         // What cancels in w is rounded in the size of its terms.
@@ -200,21 +194,29 @@ impl<'a> Bound<'a> {
     }
 }
 
-fn class_in_words(class: Class) -> &'static str {
+fn class_in_words(class: &str) -> &'static str {
     match class {
-        Class::Symmetric => "M is symmetric and positive semidefinite",
-        Class::H => "M is an H-matrix with positive diagonal",
-        Class::Monotone => "M is monotone: M + M' is positive semidefinite",
-        Class::P => "M is a P-matrix: all principal minors are positive",
-        Class::General => "M belongs to no class for which a solution is sure to be found",
+        "symmetric" => "M is symmetric and positive semidefinite",
+        "h-matrix" => "M is an H-matrix with positive diagonal",
+        "monotone" => "M is monotone: M + M' is positive semidefinite",
+        "p-matrix" => "M is a P-matrix: all principal minors are positive",
+        _ => "M belongs to no class for which a solution is sure to be found",
     }
 }
 
-fn uniqueness_in_words(uniqueness: Uniqueness) -> &'static str {
-    match uniqueness {
-        Uniqueness::One => "there is no other solution",
-        Uniqueness::Several => "there may be several solutions z, all with the same w",
-        Uniqueness::Unknown => "nothing is proven about other solutions",
+fn unique(solution: &LcpSolution) -> &'static str {
+    match solution.is_unique {
+        Some(true) => "one",
+        Some(false) => "several",
+        None => "unknown",
+    }
+}
+
+fn uniqueness_in_words(solution: &LcpSolution) -> &'static str {
+    match solution.is_unique {
+        Some(true) => "there is no other solution",
+        Some(false) => "there may be several solutions z, all with the same w",
+        None => "nothing is proven about other solutions",
     }
 }
 
@@ -233,7 +235,6 @@ fn refused(error: LcpError, format: Format) -> Result<Outcome, Error> {
 /// Refuses options that have no effect on a complementarity problem.
 fn check_options(options: &Solve) -> Result<(), Error> {
     let given = [
-        ("--method", options.method != Method::Auto),
         ("--accuracy", options.accuracy.is_some()),
         ("--explain", options.explain),
         ("--plan", options.plan),
@@ -247,10 +248,6 @@ fn check_options(options: &Solve) -> Result<(), Error> {
         ("--resume", options.resume),
     ];
     match given.into_iter().find(|(_, is_given)| *is_given) {
-        Some(("--method", _)) => unfit(
-            "--method",
-            "the class of M decides the method of a complementarity problem; `compare` runs the others",
-        ),
         Some((option, _)) => unfit(
             option,
             "the directory is that of a complementarity problem (q.mtx), on which this option has no effect",
@@ -267,7 +264,7 @@ pub(super) fn solve(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         Err(error) => return refused(error, common.format),
     };
     watch.step("solve", 0);
-    let solution = match solve_lcp(&case.lcp, &case.settings(Method::Auto, common, watch)) {
+    let solution = match solve_lcp(&case.lcp, &settings(options.method, common, watch)) {
         Ok(solution) => solution,
         Err(error @ LcpError::NotCertified { .. }) => {
             warn(&format!("error: {error}\n"));
@@ -303,7 +300,7 @@ pub(super) fn verify(options: &Verify) -> Result<Outcome, Error> {
     };
     let z = read_vector(file)?;
     let certified = Case::read(&options.directory, options.tolerance)
-        .and_then(|case| certify(&case.lcp, &z).map(|solution| (case, solution)));
+        .and_then(|case| case.lcp.certify(&z).map(|solution| (case, solution)));
     match certified {
         Ok((case, solution)) => {
             let report = Report::new(&case.json(&solution), case.text(&solution))?;
@@ -371,31 +368,15 @@ pub(super) fn compare(options: &Compare, watch: &Watch) -> Result<Outcome, Error
 
 /// The ends of the three methods.
 fn ends(case: &Case, common: &Common, watch: &Watch) -> Result<[End; 3], LcpError> {
-    let run = |number: usize| -> Result<End, LcpError> {
+    let run = |number: usize| match solve_lcp(&case.lcp, &settings(BY[number].1, common, watch)) {
+        Ok(solution) => Ok(Ok(solution)),
+        Err(LcpError::NotCertified { solution, .. }) => Ok(Ok(*solution)),
+        Err(error @ LcpError::NotFound { .. }) => Ok(Err((error.status(), sentence(&error)))),
+        Err(error) => Err(error),
+    };
+    let run = |number: usize| {
         watch.part("method", number + 1, BY.len());
-        match solve_lcp(&case.lcp, &case.settings(BY[number].1.clone(), common, watch)) {
-            Ok(solution) => Ok(Ok(solution)),
-            Err(LcpError::NotCertified { solution, .. }) => Ok(Ok(*solution)),
-            Err(error @ LcpError::NotFound { .. }) => Ok(Err((error.status(), sentence(&error)))),
-            Err(error) => Err(error),
-        }
+        run(number)
     };
-    // A class without a program leaves only pivoting, which the first run has then carried out.
-    let by_program = |end: End| {
-        end.and_then(|solution| match solution.method {
-            "principal-pivoting" | "lemke" => {
-                Err(("not_found", "its program led to no point, only pivoting did".into()))
-            }
-            _ => Ok(solution),
-        })
-    };
-    let first = run(0)?;
-    match first.as_ref().map(|solution| solution.class) {
-        Ok(Class::Symmetric | Class::Monotone) => Ok([by_program(first), run(1)?, by_program(run(2)?)]),
-        class => {
-            let words = class.map_or("no point was found", class_in_words);
-            let none = || Err(("not_available", format!("{words}: no quadratic program is taken for it")));
-            Ok([none(), first, none()])
-        }
-    }
+    Ok([run(0)?, run(1)?, run(2)?])
 }

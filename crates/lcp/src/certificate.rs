@@ -1,16 +1,16 @@
 //! The certificate of a point, whatever it comes from: residual, bounds on the errors of z and w, proven places. All is
 //! recomputed from M, q, l and u, with rounding counted.
 //!
-//! The point z is moved onto its places, which gives x. Then x solves the problem for another offset q + d exactly: with
-//! w = M x + q, `d_i = -w_i` between the bounds, `(-w_i)+` at l, `-(w_i)+` at u. For e = x - z* that gives in each row
-//! `e_i (M e + d)_i <= 0`, and therefore, in the scaled units of A,
+//! The point z is moved onto its places, which gives x. Then x solves the problem for another offset q + d exactly:
+//! with w = M x + q, `d_i = -w_i` between the bounds, `(-w_i)+` at l, `-(w_i)+` at u. For e = x - z* that gives in each
+//! row `e_i (M e + d)_i <= 0`, and therefore, in the scaled units of A,
 //!
 //! * `e'A e <= |e| |d|`: `|e| <= |d| / a` and `e'A e <= |d|^2 / a`, a the least eigenvalue of (A + A')/2;
 //! * `A_ii |e_i| - sum |A_ij| |e_j| <= |d_i|`: `|e| <= v` for every v >= 0 with `<A> v >= |d|`, if A is an H-matrix;
 //! * `|w_i - w_i*| <= sqrt(A_ii e'A e)` for a symmetric A, by the inequality of Cauchy and Schwarz.
 //!
-//! If A is symmetric and only semidefinite, x is moved on until it meets the inequalities; then e'A e is at most the gap
-//! `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+`.
+//! If A is symmetric and only semidefinite, x is moved on until it meets the inequalities; then e'A e is at most the
+//! gap `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+`.
 //!
 //! # Source
 //! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), section 5.10; X. Chen, S. Xiang,
@@ -18,14 +18,11 @@
 
 use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::held;
-use crate::class::{Known, compared, comparison_solution, if_definite};
+use crate::class::{Known, compared, comparison_solution};
 use crate::problem::Lcp;
 
 /// Sums and products of bounds are enlarged by this, which exceeds their rounding for any number of terms in memory.
 const OUTWARD: f64 = 1.0 + 1e-6;
-
-/// What is added to the diagonal of a semidefinite matrix for the direction of a repair.
-const SHIFT: f64 = 1e-10;
 
 /// The places of a point with its residuals.
 pub struct Placed {
@@ -67,12 +64,18 @@ pub fn placed(lcp: &Lcp, z: &[f64]) -> Placed {
     Placed { places, residual }
 }
 
+/// The point with each unknown at its place, and none beyond its bounds.
+pub fn onto(lcp: &Lcp, places: &[Place], z: &[f64]) -> Vec<f64> {
+    let (lower, upper) = (lcp.lower(), lcp.upper());
+    let at = |i: usize| held(places[i], lower[i], upper[i]).unwrap_or(z[i]).clamp(lower[i], upper[i]);
+    (0..z.len()).map(at).collect()
+}
+
 /// The certificate of a point z of a matrix of which this is known; n >= 1.
 pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
     let Placed { places, residual } = placed(lcp, &z);
     let (n, scaled) = (z.len(), &known.scaled);
-    let onto = |i: usize| held(places[i], lcp.lower()[i], lcp.upper()[i]).unwrap_or(z[i]);
-    let x: Vec<f64> = (0..n).map(|i| onto(i).clamp(lcp.lower()[i], lcp.upper()[i])).collect();
+    let x = onto(lcp, &places, &z);
     let [w, _, rounding] = lcp.image(&x);
     let defect: Vec<f64> = (0..n)
         .map(|i| {
@@ -103,7 +106,7 @@ pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
     let error: Vec<f64> = (0..n).map(|i| in_units(i, error[i])).collect();
     let image_error = image_errors(lcp, known, (&z, &beside), &error, energy);
     let [w, ..] = lcp.image(&z);
-    let proven = (0..n)
+    let proven: Vec<Option<Place>> = (0..n)
         .map(|i| {
             let (e, of_w) = (error[i], image_error[i]);
             let is_between = z[i] - e > lcp.lower()[i] && z[i] + e < lcp.upper()[i];
@@ -121,9 +124,10 @@ pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
         image_error: said(image_error, NO_IMAGE_ERROR),
         z,
         w,
-        class: known.class,
-        uniqueness: known.uniqueness,
-        proven,
+        class: known.class.name(),
+        is_unique: known.is_unique,
+        proven: [Place::Lower, Place::Between, Place::Upper]
+            .map(|place| proven.iter().map(|proven| *proven == Some(place)).collect()),
         residual,
         method: "given",
         iterations: 0,
@@ -162,8 +166,7 @@ fn energy_of_gap(lcp: &Lcp, known: &Known, mut x: Vec<f64>, defect: &[f64]) -> (
     let wanted: Vec<f64> =
         (0..n).map(|i| f64::from(i8::from(upper[i].is_infinite()) - i8::from(lower[i].is_infinite()))).collect();
     let largest = defect.iter().copied().fold(0.0, f64::max);
-    let factor = scaled.symmetric_part(SHIFT).ok().and_then(|shifted| if_definite(&shifted).ok()?);
-    if let Some(factor) = factor.filter(|_| largest > 0.0) {
+    if let Some(factor) = known.factor.as_ref().filter(|_| largest > 0.0) {
         let mut d = vec![0.0; n];
         for _ in 0..3 {
             let moved = scaled.matrix.mul(&d);
@@ -196,12 +199,11 @@ fn image_errors(lcp: &Lcp, known: &Known, (z, x): (&[f64], &[f64]), error: &[f64
     }
     if scaled.is_symmetric && energy.is_finite() {
         let moved = lcp.matrix().mul_abs(&z.iter().zip(x).map(|(z, x)| z - x).collect::<Vec<_>>());
-        for (i, j, value) in scaled.matrix.triplets().filter(|entry| entry.0 == entry.1) {
-            by_rows[i] = by_rows[i].min(moved[j] * OUTWARD + value.max(0.0).sqrt() * energy / scaled.row[i]);
-        }
         // A row of a semidefinite matrix without a diagonal entry is zero.
-        let diagonal = scaled.symmetric_part(0.0).map(|part| part.diagonal()).unwrap_or_default();
-        diagonal.iter().enumerate().filter(|entry| *entry.1 == 0.0).for_each(|(i, _)| by_rows[i] = 0.0);
+        for (i, value) in scaled.diagonal().into_iter().enumerate() {
+            let by_energy = if value > 0.0 { value.sqrt() * energy / scaled.row[i] } else { 0.0 };
+            by_rows[i] = by_rows[i].min(moved[i] * OUTWARD + by_energy);
+        }
     }
     let all = by_rows.iter().zip(&rounding).zip(&w);
     all.map(|((by_row, rounding), w)| (by_row + rounding + f64::EPSILON * w.abs()) * OUTWARD).collect()

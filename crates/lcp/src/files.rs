@@ -1,12 +1,12 @@
 //! Directories of complementarity problems: `M.mtx`, `q.mtx`, and for bounds other than 0 and infinity `lower.mtx` and
-//! `upper.mtx`; an answer adds `z.mtx` and `w.mtx`. The names of classes in reports.
+//! `upper.mtx`; an answer adds `z.mtx` and `w.mtx`.
 
 use std::io;
 use std::path::Path;
 
 use signorini_qp::{ContactProblem, Error as QpError, format_vector, read_bounds, read_matrix, read_vector};
 
-use crate::answer::{Class, LcpSolution, Uniqueness};
+use crate::answer::LcpSolution;
 use crate::error::Error;
 use crate::problem::Lcp;
 
@@ -53,29 +53,5 @@ impl LcpSolution {
     /// The files of an answer: name and text, `z.mtx` and `w.mtx`.
     pub fn files(&self) -> [(&'static str, String); 2] {
         [("z.mtx", format_vector(&self.z)), ("w.mtx", format_vector(&self.w))]
-    }
-}
-
-impl Class {
-    /// Its name: `symmetric`, `h-matrix`, `monotone`, `p-matrix` or `general`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Class::Symmetric => "symmetric",
-            Class::H => "h-matrix",
-            Class::Monotone => "monotone",
-            Class::P => "p-matrix",
-            Class::General => "general",
-        }
-    }
-}
-
-impl Uniqueness {
-    /// Its name: `one`, `several` or `unknown`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Uniqueness::One => "one",
-            Uniqueness::Several => "several",
-            Uniqueness::Unknown => "unknown",
-        }
     }
 }

@@ -2,27 +2,18 @@
 
 use std::time::Instant;
 
-use signorini_qp::memory;
+use signorini_qp::{Method, Settings, memory};
 
-use crate::answer::{Class, LcpSettings, LcpSolution, Place, Uniqueness};
+use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::settled;
-use crate::certificate::{examined, placed};
+use crate::certificate::{examined, onto, placed};
 use crate::class::Known;
 use crate::error::Error;
+use crate::found::Found;
 use crate::lemke::lemke;
 use crate::pivoting::principal_pivoting;
 use crate::problem::Lcp;
 use crate::quadratic::{contradiction, gap_program, infeasible, proximal, quadratic_program};
-
-/// The end of a method.
-pub enum Found {
-    /// A point, in units of z, perhaps a rough one; if the method ends with a basis, with the places in it.
-    Point { z: Vec<f64>, places: Option<Vec<Place>>, iterations: usize },
-    /// A ray in scaled units that may show that there is no solution.
-    Ray(Vec<f64>),
-    /// Nothing, for this reason.
-    Nothing(String),
-}
 
 /// The methods.
 #[derive(Clone, Copy)]
@@ -36,10 +27,25 @@ enum Way {
 }
 
 impl Way {
-    /// The methods of a class, in order: the only place that decides them.
-    fn of(class: Class) -> &'static [Way] {
+    /// The methods of a class, in order: the only place that decides them. A method of the settings leaves programs alone
+    /// or pivoting alone, of which the active set on a quadratic program is one.
+    fn of(known: &Known, method: Method) -> &'static [Way] {
         use Way::{GapProgram, Lemke, PrincipalPivoting, Proximal, QuadraticProgram};
-        match class {
+        match (known.class, method) {
+            (Class::Symmetric, Method::Qp(_) | Method::Penalty(_)) => return &[QuadraticProgram, Proximal],
+            (Class::Symmetric, Method::ActiveSet) => return &[QuadraticProgram, PrincipalPivoting, Lemke(0), Lemke(1)],
+            (class, Method::Qp(_) | Method::Penalty(_)) => {
+                let is_monotone = class == Class::Monotone || known.least.is_some();
+                return if is_monotone { &[GapProgram] } else { &[] };
+            }
+            (Class::Monotone, Method::ActiveSet) => return &[Lemke(0), Lemke(1), Lemke(2)],
+            _ => {}
+        }
+        match known.class {
+            // A stack with more contacts than it needs: if all close, one factor is enough.
+            Class::Symmetric if known.least.is_none() => {
+                &[PrincipalPivoting, QuadraticProgram, Proximal, Lemke(0), Lemke(1)]
+            }
             Class::Symmetric => &[QuadraticProgram, Proximal, Lemke(0), Lemke(1)],
             Class::H | Class::P => &[PrincipalPivoting, Lemke(0), Lemke(1)],
             Class::Monotone => &[GapProgram, Lemke(0), Lemke(1), Lemke(2)],
@@ -57,20 +63,21 @@ impl Way {
         }
     }
 
-    fn found(self, lcp: &Lcp, known: &Known, allowed: f64, settings: &LcpSettings) -> Result<Found, Error> {
+    fn found(self, lcp: &Lcp, known: &Known, allowed: f64, settings: &Settings) -> Result<Found, Error> {
         let scaled = &known.scaled;
         match self {
             Way::QuadraticProgram => quadratic_program(scaled, settings),
             Way::Proximal => proximal(scaled, settings),
             Way::GapProgram => gap_program(scaled, settings),
-            Way::PrincipalPivoting => principal_pivoting(lcp, scaled, first_places(lcp), allowed, settings),
+            Way::PrincipalPivoting => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
             Way::Lemke(attempt) => lemke(scaled, attempt, allowed, settings),
         }
     }
 }
 
-fn first_places(lcp: &Lcp) -> Vec<Place> {
+fn first_places(lcp: &Lcp, known: &Known) -> Vec<Place> {
     let place = |i: usize| match (lcp.lower()[i].is_finite(), lcp.upper()[i].is_finite()) {
+        _ if known.class == Class::Symmetric => Place::Between,
         (true, _) => Place::Lower,
         (false, true) => Place::Upper,
         (false, false) => Place::Between,
@@ -94,14 +101,14 @@ fn polished(
     known: &Known,
     places: Vec<Place>,
     allowed: f64,
-    settings: &LcpSettings,
+    settings: &Settings,
 ) -> Result<Option<Vec<f64>>, Error> {
-    match known.uniqueness {
-        Uniqueness::One => match principal_pivoting(lcp, &known.scaled, places, allowed, settings)? {
+    match known.is_unique {
+        Some(true) => match principal_pivoting(lcp, known, places, allowed, settings)? {
             Found::Point { z, .. } => Ok(Some(z)),
             _ => Ok(None),
         },
-        _ => settled(lcp, &known.scaled, &places, allowed),
+        _ => settled(lcp, known, &places, allowed),
     }
 }
 
@@ -113,17 +120,14 @@ fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
 }
 
 /// See [`solve_lcp`](crate::solve_lcp).
-pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
+pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     let start = Instant::now();
-    let tolerance = settings.tolerance;
-    if !(tolerance > 0.0 && tolerance.is_finite()) {
-        let (name, allowed) = ("tolerance", "positive and finite");
-        return Err(signorini_qp::Error::Setting { name, value: tolerance, allowed }.into());
-    }
-    let allowed = memory::allowed(settings.qp.memory);
+    let settings = &settings.started().map_err(Error::Qp)?;
+    let tolerance = settings.goal().tolerance;
+    let allowed = memory::allowed(settings.memory);
     let known = Known::of(lcp)?;
     let (mut best, mut reasons): (Option<LcpSolution>, Vec<String>) = (None, Vec::new());
-    for way in Way::of(known.class) {
+    for way in Way::of(&known, settings.method) {
         let (z, places, iterations) = match way.found(lcp, &known, allowed, settings)? {
             Found::Point { z, places, iterations } => (z, places, iterations),
             Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
@@ -152,10 +156,10 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
         };
         let rough = placed(lcp, &z);
         let is_rough = rough.residual.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
-        let mut points = vec![z];
+        let mut points = vec![onto(lcp, &rough.places, &z)];
         if is_rough {
             points.extend(polished(lcp, &known, rough.places, allowed, settings)?);
-            points.extend(places.and_then(|places| settled(lcp, &known.scaled, &places, allowed).ok()?));
+            points.extend(places.and_then(|places| settled(lcp, &known, &places, allowed).ok()?));
             points.reverse();
         }
         points.iter().for_each(|z| examine(z));
@@ -174,6 +178,7 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
             let (index, residual) = solution.worst();
             Error::NotCertified { solution: Box::new(solution), index, residual, tolerance }
         }
+        None if reasons.is_empty() => Error::NotFound { reason: "M is not monotone, and has no convex program".into() },
         None => Error::NotFound { reason: reasons.join("; ") },
     })
 }

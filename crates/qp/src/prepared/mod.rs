@@ -4,7 +4,6 @@ mod boundary;
 mod path;
 mod reuse;
 
-pub use boundary::BoundarySolution;
 pub use path::Path;
 pub(crate) use path::between;
 pub use reuse::Prepared;
