@@ -145,7 +145,7 @@ impl Case {
                     number(agreement.and_then(|agreement| agreement.difference)),
                 )
             }
-            Err((_, reason)) => format!("  {by:<16}none: {reason}\n"),
+            Err((_, reason)) => format!("  {by:<16}none\n{}", listed("", vec![reason.clone()])),
         });
         let of = agreements.iter().flatten().next().map_or("neither", |agreement| agreement.of);
         let verdict = match (status, of) {
