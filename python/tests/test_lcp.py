@@ -99,7 +99,7 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     ),
     "M huge and empty": (lambda: sg.lcp(sparse.coo_array((10**9, 10**9)), Q), ValueError, "almost empty"),
     "M masked": (lambda: sg.lcp(np.ma.masked_less(M, 0.0), Q), TypeError, "masked array"),
-    "q none": (lambda: sg.lcp(M, None), TypeError, "q is None"),
+    "q none": (lambda: sg.lcp(M, None), TypeError, "q is None"),  # type: ignore[arg-type]
     "q short": (lambda: sg.lcp(M, [1.0]), ValueError, "2 x 2"),
     "q column": (lambda: sg.lcp(M, Q.reshape(-1, 1)), ValueError, "q has the shape"),
     "q number": (lambda: sg.lcp(M, 1.0), ValueError, "q has the shape"),

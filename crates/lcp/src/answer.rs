@@ -47,10 +47,10 @@ pub struct LcpSolution {
     pub z: Vec<f64>,
     /// w = M z + q, length n, in units of q; summed with twice the working precision.
     pub w: Vec<f64>,
-    /// The class of M, which decides the methods: `symmetric` and positive semidefinite to rounding, if need be after its rows were
-    /// multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector d > 0 with `<M> d > 0` was found,
-    /// `<M>` the comparison matrix); `monotone` (M + M' semidefinite to rounding, likewise); a `p-matrix` (decided for
-    /// at most 16 unknowns); or `general`.
+    /// The class of M, which decides the methods: `symmetric` and positive semidefinite to rounding, if need be after
+    /// its rows were multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector d > 0 with
+    /// `<M> d > 0` was found, `<M>` the comparison matrix); `monotone` (M + M' semidefinite to rounding, likewise); a
+    /// `p-matrix` (decided for at most 16 unknowns); or `general`.
     pub class: &'static str,
     /// `Some(true)` if there is proven to be one solution for every q, because M is a P-matrix; `Some(false)` if M is
     /// symmetric and semidefinite, and not shown to be definite: all solutions then share w, and z may be one of

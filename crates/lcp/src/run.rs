@@ -70,6 +70,9 @@ impl Way {
             Way::Proximal => proximal(scaled, settings),
             Way::GapProgram => gap_program(scaled, settings),
             Way::PrincipalPivoting => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
+            Way::Lemke(_) if known.class != Class::General && lcp.unknowns() > DENSE => {
+                Ok(Found::Nothing(format!("Lemke's method is not tried on more than {DENSE} unknowns of this class")))
+            }
             Way::Lemke(attempt) => lemke(scaled, attempt, allowed, settings),
         }
     }
@@ -91,6 +94,9 @@ const ROUNDING: f64 = 1e-15;
 /// A point with a larger residual, even if it meets the tolerance, waits for the other methods and for a ray: far away
 /// along a ray, where terms are large, all conditions hold relative to them.
 const SHARP: f64 = 1e-13;
+
+/// Most unknowns for a dense tableau where it is not the only method, and for the search for a ray.
+const DENSE: usize = 1000;
 
 /// Unknowns below this share of the largest, in scaled units, may be zero.
 const DUST: f64 = 1e-14;
@@ -168,7 +174,9 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             return Ok(LcpSolution { seconds: start.elapsed().as_secs_f64(), ..solution });
         }
     }
-    if let Some(error) = contradiction(lcp, &known.scaled, allowed, settings)? {
+    if lcp.unknowns() <= DENSE
+        && let Some(error) = contradiction(lcp, &known.scaled, allowed, settings)?
+    {
         return Err(error);
     }
     let best = best.map(|best| LcpSolution { seconds: start.elapsed().as_secs_f64(), ..best });
