@@ -68,8 +68,8 @@ impl LcpSolution {
         of_reals(py, &self.inner.residual)
     }
 
-    /// Upper bounds on the error of each unknown of the only solution, shape (n,), rounding included, read-only. None if
-    /// none is known.
+    /// Upper bounds on the error of each unknown of the only solution, shape (n,), rounding included, read-only. None
+    /// if none is known.
     #[getter]
     fn error_bound<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.inner.error.as_ref().ok().map(|error| of_reals(py, error)).transpose()

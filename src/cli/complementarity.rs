@@ -282,7 +282,7 @@ pub(super) fn solve(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     reported(&case, &solution, common)
 }
 
-/// Reports an answer, and writes the output of `--out`.
+/// Prints the report; its folder gets z, w and the same as JSON.
 fn reported(case: &Case, solution: &LcpSolution, common: &Common) -> Result<Outcome, Error> {
     let report = Report::new(&case.json(solution), case.text(solution))?;
     if let Some(folder) = &common.out {

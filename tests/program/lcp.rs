@@ -143,8 +143,8 @@ fn what_does_not_fit_a_complementarity_problem_is_refused() {
     assert_eq!((&run.json()["status"], &run.json()["code"]), (&"bad_input".into(), &"bounds".into()));
 }
 
-/// w = (-2 z_0 + z_1 - 1, z_1 + 1) is positive for z = (0, 2), but no complementary z exists: of the four bases z = 0 has
-/// `w_0 = -1`, and each other one a negative z.
+/// w = (-2 z_0 + z_1 - 1, z_1 + 1) is positive for z = (0, 2), but no complementary z exists: of the four bases z = 0
+/// has `w_0 = -1`, and each other one a negative z.
 #[test]
 fn a_problem_without_a_solution_and_without_a_proof_ends_with_4() {
     let desk = Desk::new();

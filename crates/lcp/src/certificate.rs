@@ -186,7 +186,7 @@ fn energy_of_gap(lcp: &Lcp, known: &Known, mut x: Vec<f64>, defect: &[f64]) -> (
         }
     }
     let [w, _, rounding] = lcp.image(&x);
-    if w.iter().chain(&rounding).any(|value| !value.is_finite()) {
+    if w.iter().chain(&rounding).chain(&x).any(|value| !value.is_finite()) {
         return (f64::INFINITY, x);
     }
     let gap = |i: usize| {

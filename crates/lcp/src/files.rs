@@ -4,7 +4,7 @@
 use std::io;
 use std::path::Path;
 
-use signorini_qp::{ContactProblem, Error as QpError, format_vector, read_bounds, read_matrix, read_vector};
+use signorini_qp::{ContactProblem, Error as QpError, SparseMatrix, format_vector, read_vector};
 
 use crate::answer::LcpSolution;
 use crate::error::Error;
@@ -29,8 +29,8 @@ impl Lcp {
         Ok(is_one)
     }
 
-    /// Reads the problem of a directory: `M.mtx` (n x n), `q.mtx`, and `lower.mtx` and `upper.mtx`, of length n; without
-    /// these files the bounds are 0 and infinity.
+    /// Reads the problem of a directory: `M.mtx` (n x n), `q.mtx`, and `lower.mtx` and `upper.mtx`, of length n;
+    /// without these files the bounds are 0 and infinity.
     ///
     /// # Errors
     /// [`Error::Qp`] with `File`, `FileSyntax` or `FileBytes` for a file that is missing or malformed, and those of
@@ -41,11 +41,11 @@ impl Lcp {
             ["M.mtx", OFFSET, "lower.mtx", "upper.mtx"].map(|name| directory.join(name));
         let offset = read_vector(&offset)?;
         let bounds = |file: &Path, without: f64| match file.exists() {
-            true => read_bounds(file),
+            true => SparseMatrix::read_bounds(file),
             false => Ok(vec![without; offset.len()]),
         };
         let (lower, upper) = (bounds(&lower, 0.0)?, bounds(&upper, f64::INFINITY)?);
-        Lcp::new(read_matrix(&matrix)?, offset, lower, upper)
+        Lcp::new(SparseMatrix::read(&matrix)?, offset, lower, upper)
     }
 }
 

@@ -33,8 +33,8 @@ impl Lcp {
     /// (length n, in units of z); a bound of magnitude 1e20 or more is infinite.
     ///
     /// # Errors
-    /// [`Error::Qp`] with `Shape` or `Length` for sizes that do not fit and `NotFinite` for a matrix or an offset that is not
-    /// finite or a bound that is NaN; [`Error::Bounds`] for l > u, `l = +inf` or `u = -inf`.
+    /// [`Error::Qp`] with `Shape` or `Length` for sizes that do not fit and `NotFinite` for a matrix or an offset that
+    /// is not finite or a bound that is NaN; [`Error::Bounds`] for l > u, `l = +inf` or `u = -inf`.
     pub fn new(matrix: SparseMatrix, offset: Vec<f64>, lower: Vec<f64>, upper: Vec<f64>) -> Result<Self, Error> {
         let n = offset.len();
         if (matrix.rows(), matrix.columns()) != (n, n) {

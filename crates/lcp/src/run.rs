@@ -27,8 +27,8 @@ enum Way {
 }
 
 impl Way {
-    /// The methods of a class, in order: the only place that decides them. A method of the settings leaves programs alone
-    /// or pivoting alone, of which the active set on a quadratic program is one.
+    /// The methods of a class, in order: the only place that decides them. A method of the settings leaves programs
+    /// alone or pivoting alone, of which the active set on a quadratic program is one.
     fn of(known: &Known, method: Method) -> &'static [Way] {
         use Way::{GapProgram, Lemke, PrincipalPivoting, Proximal, QuadraticProgram};
         match (known.class, method) {

@@ -59,8 +59,6 @@ pub use error::{Error, Failure};
 pub use linear::multigrid::{Multigrid, NearNullSpace};
 pub use linear::{Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest};
 pub use matrix_market::{format_vector, read_vector};
-#[doc(hidden)]
-pub use matrix_market::{read_bounds, read_matrix};
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;
 pub use method::penalty::Penalty;
@@ -148,6 +146,27 @@ impl Settings {
     /// The threads that one problem takes if none are named: those of the machine, at most 8.
     pub fn threads_of_machine() -> usize {
         linear::threads_of_machine()
+    }
+}
+
+impl SparseMatrix {
+    /// Reads a Matrix Market file; of a symmetric one both triangles. For the crates of this workspace.
+    ///
+    /// # Errors
+    /// As [`read_vector`].
+    #[doc(hidden)]
+    pub fn read(file: &std::path::Path) -> Result<Self, Error> {
+        matrix_market::read_matrix(file)
+    }
+
+    /// Reads a file as [`read_vector`] does, in which `-inf` and `inf` stand for no bound. For the crates of this
+    /// workspace.
+    ///
+    /// # Errors
+    /// As [`read_vector`].
+    #[doc(hidden)]
+    pub fn read_bounds(file: &std::path::Path) -> Result<Vec<f64>, Error> {
+        matrix_market::read_bounds(file)
     }
 }
 

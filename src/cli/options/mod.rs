@@ -169,8 +169,8 @@ impl Common {
 #[derive(Debug, Args)]
 pub(super) struct Solve {
     /// Scene (a JSON file, - for standard input), deck of CalculiX (a .inp file), problem directory (with K.mtx,
-    /// f.mtx, B.mtx, g.mtx, or the same as .petsc) or directory of a complementarity problem (with M.mtx, q.mtx, and for
-    /// bounds other than 0 and infinity lower.mtx, upper.mtx)
+    /// f.mtx, B.mtx, g.mtx, or the same as .petsc) or directory of a complementarity problem (with M.mtx, q.mtx, and
+    /// for bounds other than 0 and infinity lower.mtx, upper.mtx)
     pub input: PathBuf,
     /// Method that finds the contact set
     #[arg(long, value_parser = choice::<Method>(), default_value = "auto")]

@@ -179,7 +179,7 @@ pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
     vector(file, Values::Finite)
 }
 
-/// Reads bounds, as [`read_vector`]: `-inf` and `inf` are allowed, for unknowns without a bound.
+/// A vector, in the unit of its file, that may have the entries `-inf` and `inf`.
 ///
 /// # Errors
 /// As [`read_vector`].
@@ -187,7 +187,7 @@ pub fn read_bounds(file: &Path) -> Result<Vec<f64>, Error> {
     vector(file, Values::Bounds)
 }
 
-/// Reads a matrix with all its entries; a symmetric file holds the lower triangle.
+/// All entries of a file; if it is symmetric, it holds the lower triangle only.
 ///
 /// # Errors
 /// As [`read_vector`].
