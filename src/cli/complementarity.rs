@@ -79,14 +79,14 @@ impl Case {
         };
         let seconds = format!("read {:.3}, solve {:.3}", self.read_seconds, solution.seconds);
         let lines = [
-            ("model", vec![format!("{unknowns} unknowns, {entries} entries of M")]),
+            ("model", vec![format!("n = {unknowns}, {entries} entries of M")]),
             ("class", vec![class_in_words(solution.class).into()]),
-            ("method", vec![format!("{}, {} iterations", solution.method, solution.iterations)]),
+            ("method", vec![format!("{}, iterations: {}", solution.method, solution.iterations)]),
             (
                 "solution",
                 vec![
-                    format!("{lower} unknowns at the lower bound, {upper} at the upper bound, {between} between"),
-                    format!("{proven} places proven, {} undecided", unknowns - proven),
+                    format!("at the lower bound {lower}, at the upper bound {upper}, between {between}"),
+                    format!("proven places {proven}, undecided {}", unknowns - proven),
                     uniqueness_in_words(solution).into(),
                 ],
             ),

@@ -2,6 +2,7 @@
 
 use crate::promised::has;
 use serde_json::Value;
+use support::draws::Draws;
 use support::program::{Desk, Problem, matrix, vector};
 
 /// Writes the directory of a problem: rows of M, q, and bounds by their names.
@@ -154,4 +155,34 @@ fn a_problem_without_a_solution_and_without_a_proof_ends_with_4() {
     assert_eq!((&run.json()["status"], &run.json()["code"]), (&"not_found".into(), &"not-found".into()));
     let compared = desk.run(&["compare", "lost", "--format", "json"]).ends_with(4).json();
     assert_eq!(compared["agreement"]["certified_answers"], false, "{compared}");
+}
+
+/// With M = 1e300 and q = -1 the solution is 1e-300; w of z = 1e300 is beyond all numbers.
+#[test]
+fn a_point_whose_w_overflows_is_not_certified() {
+    let desk = Desk::new();
+    lcp(&desk, "steep", &[&["1e300"]], &["-1"], &[]);
+    desk.write("z.mtx", vector(&["1e300"]));
+    let report = desk.run(&["verify", "steep", "--z", "z.mtx", "--format", "json"]).ends_with(4).json();
+    assert_eq!(report["status"], "not_certified", "{report}");
+    assert!(report["error_bound"].as_f64().is_none_or(|bound| bound >= 1e300), "{report}");
+    assert_eq!(report["proven"]["undecided"], 1, "{report}");
+    desk.run(&["solve", "steep"]).ends_with(0);
+}
+
+/// A dense M without a class: each pivot is a step that an interrupt can end.
+#[test]
+fn an_interrupt_ends_pivoting_with_130() {
+    let desk = Desk::new();
+    let mut draws = Draws(5);
+    let size = 700;
+    let numbers: Vec<String> = (0..size * size).map(|_| draws.signed().to_string()).collect();
+    let text = format!("%%MatrixMarket matrix array real general\n{size} {size}\n{}\n", numbers.join("\n"));
+    desk.write("dense/M.mtx", text);
+    desk.write("dense/q.mtx", vector(&vec!["-1"; size]));
+    let mut run = desk.start(&["solve", "dense"]);
+    assert!(run.waits_for("solve"));
+    run.interrupt();
+    let run = run.ends(true).ends_with(130);
+    assert!(run.stderr.contains("interrupted"), "{}", run.stderr);
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use signorini_qp::{Method, Settings, memory};
+use signorini_qp::{Error as QpError, Method, Settings, memory};
 
 use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::settled;
@@ -179,6 +179,8 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     {
         return Err(error);
     }
+    // Attempts of one method end alike.
+    reasons.dedup();
     let best = best.map(|best| LcpSolution { seconds: start.elapsed().as_secs_f64(), ..best });
     Err(match best {
         Some(solution) if solution.worst().1 <= tolerance => return Ok(solution),
@@ -186,6 +188,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             let (index, residual) = solution.worst();
             Error::NotCertified { solution: Box::new(solution), index, residual, tolerance }
         }
+        None if settings.watch.acknowledge() => QpError::Interrupted.into(),
         None if reasons.is_empty() => Error::NotFound { reason: "M is not monotone, and has no convex program".into() },
         None => Error::NotFound { reason: reasons.join("; ") },
     })
