@@ -6,6 +6,7 @@
 
 mod answered;
 mod arrays;
+mod complementarity;
 mod derivative;
 mod errors;
 mod exceptions;
@@ -45,6 +46,8 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<scene::SceneSolution>()?;
     module.add_class::<study::Comparison>()?;
     module.add_class::<total_error::TotalError>()?;
+    module.add_class::<complementarity::LcpSolution>()?;
+    module.add_function(wrap_pyfunction!(complementarity::lcp, module)?)?;
     module.add_function(wrap_pyfunction!(solving::solve, module)?)?;
     module.add_function(wrap_pyfunction!(solving::solve_qp, module)?)?;
     module.add_function(wrap_pyfunction!(many::solve_many, module)?)?;

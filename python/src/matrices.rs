@@ -190,18 +190,31 @@ impl Lines<'_> {
     }
 }
 
+fn check_square(py: Python<'_>, name: &str, [rows, columns]: [usize; 2]) -> PyResult<()> {
+    match rows == columns {
+        true => Ok(()),
+        false => Err(bad_input(py, format!("{name} is {rows} x {columns}; it must be square"))),
+    }
+}
+
+fn look_square<'py>(name: &str, matrix: &Bound<'py, PyAny>) -> PyResult<Seen<'py>> {
+    let seen = look(name, matrix, 0)?;
+    seen.shape.map_or(Ok(()), |shape| check_square(matrix.py(), name, shape))?;
+    Ok(seen)
+}
+
+/// Reads a square matrix; the shape of a dense one is not checked.
+pub fn square(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<SparseMatrix> {
+    general(name, look_square(name, matrix)?)
+}
+
 /// Reads the stiffness: a symmetric matrix, given with both triangles.
 pub fn stiffness(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<SymmetricMatrix> {
     let py = matrix.py();
-    let seen = look(name, matrix, 0)?;
-    let check_square = |[rows, columns]: [usize; 2]| match rows == columns {
-        true => Ok(()),
-        false => Err(bad_input(py, format!("{name} is {rows} x {columns}; it must be square"))),
-    };
-    seen.shape.map_or(Ok(()), check_square)?;
+    let seen = look_square(name, matrix)?;
     if let Source::Table(table) = &seen.source {
         return with_table(name, table, |values, shape| {
-            check_square(shape)?;
+            check_square(py, name, shape)?;
             SymmetricMatrix::from_table(shape[0], values).map_err(|error| plain_exception(py, error))
         });
     }

@@ -4,16 +4,21 @@ use crate::output::{InWords, Pictures, Wanted};
 use serde_json::json;
 
 use super::about::about;
+use super::complementarity;
 use super::input::Input;
 use super::options::Compare;
 use super::outcome::{OfPart, Outcome, Report, warn};
 use super::settings::settings;
 use crate::Error;
+use crate::lcp::Lcp;
 use crate::qp::{Method, Watch};
 use crate::scene::Answer;
 use crate::study::{Comparison, Summary, compare};
 
 pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
+    if Lcp::is_directory(&options.input)? {
+        return complementarity::compare(options, watch);
+    }
     let common = &options.common;
     let input = Input::read(&options.input, &common.limits)?;
     warn(&input.warnings());

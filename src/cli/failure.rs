@@ -1,5 +1,7 @@
 //! The error of a command: one sentence, the status of its report, one exit code.
 
+use std::fmt::Display;
+
 use serde_json::json;
 
 use super::options::Format;
@@ -11,7 +13,7 @@ use crate::{Error, Failure};
 const LONGEST_SENTENCE: usize = 800;
 
 /// The message of an error on one line of bearable length.
-pub(super) fn sentence(error: &Error) -> String {
+pub(super) fn sentence(error: &impl Display) -> String {
     let message: Vec<char> = printable(&error.to_string()).chars().collect();
     let half = LONGEST_SENTENCE / 2;
     if message.len() <= LONGEST_SENTENCE {
@@ -23,7 +25,12 @@ pub(super) fn sentence(error: &Error) -> String {
 
 /// The outcome of a command that ended with an error, with its exit code; in JSON it is an object.
 pub(super) fn failed(error: &Error, format: Format) -> Outcome {
-    let ending = match error.failure() {
+    ended(&sentence(error), (error.status(), error.code()), error.failure(), format)
+}
+
+/// The same for a sentence with its status and code.
+pub(super) fn ended(message: &str, (status, code): (&str, &str), failure: Failure, format: Format) -> Outcome {
+    let ending = match failure {
         Failure::BadInput => Ending::BadInput,
         Failure::NoSolution => Ending::NoSolution,
         Failure::NotCertified => Ending::NotCertified,
@@ -31,7 +38,7 @@ pub(super) fn failed(error: &Error, format: Format) -> Outcome {
     let text = match format {
         Format::Text => String::new(),
         Format::Json => {
-            let report = json!({ "status": error.status(), "code": error.code(), "message": sentence(error) });
+            let report = json!({ "status": status, "code": code, "message": message });
             format!("{report:#}\n")
         }
     };

@@ -1,5 +1,6 @@
 //! A scene or a problem directory: the common interface for the commands.
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -7,7 +8,8 @@ use std::time::Instant;
 use super::options::Limits;
 use super::outcome::unfit;
 use crate::Error;
-use crate::qp::{ContactProblem, Goal, Solution, read_problem};
+use crate::lcp::Lcp;
+use crate::qp::{self, ContactProblem, Goal, Solution, read_problem};
 use crate::scene::{Answer, Model, Scene, Units};
 use crate::study::Summary;
 
@@ -42,11 +44,26 @@ impl Source {
             let scene = Box::new(scene_of(path, limits)?);
             return Ok(Source::Scene(scene, clock.elapsed().as_secs_f64()));
         }
+        check_contact(path)?;
         let content = Content::Directory(Box::new(read_problem(path)?));
         let (title, units) = (format!("Problem directory {}", path.display()), Units::unnamed());
         let assemble_seconds = clock.elapsed().as_secs_f64();
         Ok(Source::Directory(Box::new(Input { title, units, assemble_seconds, content })))
     }
+}
+
+/// Refuses the directory of a complementarity problem.
+pub(super) fn check_contact(path: &Path) -> Result<(), Error> {
+    if !Lcp::is_directory(path)? {
+        return Ok(());
+    }
+    let message = "it is a complementarity problem (q.mtx), which only `solve`, `compare` and `verify` take";
+    Err(qp::Error::File {
+        action: "read",
+        path: path.into(),
+        source: io::Error::new(io::ErrorKind::InvalidInput, message),
+    }
+    .into())
 }
 
 impl Input {

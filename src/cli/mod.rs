@@ -4,6 +4,7 @@ mod about;
 mod along;
 mod ccx;
 mod compare;
+mod complementarity;
 mod draw;
 mod dynamic;
 mod export;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::about::about;
 use super::along;
+use super::complementarity;
 use super::dynamic;
 use super::input::{Input, Source, add_error_and_energy};
 use super::interrupt::Kept;
@@ -14,6 +15,7 @@ use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
 use super::total_error;
 use crate::Error;
+use crate::lcp::Lcp;
 use crate::qp;
 use crate::qp::{Goal, Method, Settings, Solution, Start, Watch, read_vector};
 use crate::scene::{Answer, Scene};
@@ -29,6 +31,9 @@ const REPORT: f64 = 0.5;
 pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome, Error> {
     // Reading and assembly count too.
     let watch = &options.time.map_or_else(|| watch.clone(), |time| watch.within(time));
+    if Lcp::is_directory(&options.input)? {
+        return complementarity::solve(options, watch);
+    }
     let source = Source::read(&options.input, &options.common.limits)?;
     let mut report_seconds = 0.0;
     check_options(options, if let Source::Scene(scene, _) = &source { Some(scene) } else { None })?;

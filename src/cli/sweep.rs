@@ -1,7 +1,7 @@
 //! `signorini sweep`: one scene at several gaps or forces, or one problem directory on the way to its other end.
 
 use super::about::about;
-use super::input::{Input, scene_title, still_model, warnings};
+use super::input::{Input, check_contact, scene_title, still_model, warnings};
 use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, unfit, warn};
 use super::settings::settings;
@@ -13,6 +13,7 @@ use crate::scene::Scene;
 use crate::study::{ProblemSweep, Sweep as Swept};
 
 pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
+    check_contact(&options.scene)?;
     // Any other folder is refused as a scene.
     let is_problem = ContactProblem::is_directory(&options.scene);
     match (is_problem, options.points) {

@@ -1,18 +1,26 @@
 //! `signorini verify`: the certificate of an answer that came from elsewhere.
 
+use super::complementarity;
 use super::options::Verify;
 use super::outcome::{Outcome, Report, unfit, warn};
 use crate::Error;
+use crate::lcp::Lcp;
 use crate::output::InWords;
 use crate::qp::{Settings, Watch, memory, read_problem, read_vector};
 use crate::scene::Units;
 use crate::study::{ModelSize, Verification};
 
 pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
+    if Lcp::is_directory(&options.directory)? {
+        return complementarity::verify(options);
+    }
+    let (Some(displacement), Some(multiplier)) = (&options.displacement, &options.multiplier) else {
+        return unfit("--z", "the directory has no q.mtx, of a complementarity problem, to which this option belongs");
+    };
     // The available memory is asked for before the problem takes its own.
     let memory = Some(memory::allowed(options.max_memory));
-    let displacement = read_vector(&options.displacement)?;
-    let multiplier = read_vector(&options.multiplier)?;
+    let displacement = read_vector(displacement)?;
+    let multiplier = read_vector(multiplier)?;
     let problem = read_problem(&options.directory)?;
     let (threads, tolerance) = (options.threads, Some(options.tolerance));
     let mut settings = Settings::default().watched(watch);

@@ -6,6 +6,7 @@ mod corpus;
 mod drawn_answers;
 mod drawn_bodies;
 mod faults;
+mod lcp;
 mod matrix_market;
 mod out_folder;
 mod petsc;

@@ -43,6 +43,7 @@ const WINGS: [(&[&str], &[&str]); 6] = [
             "answer",
             "error",
             "problem",
+            "files",
             "scaled",
             "dense",
             "class",

@@ -10,6 +10,7 @@ mod exit_codes;
 mod files_read;
 mod guarantees;
 mod habits;
+mod lcp;
 mod limits;
 mod memory;
 mod motion_runs;

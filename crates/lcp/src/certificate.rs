@@ -50,7 +50,12 @@ pub fn placed(lcp: &Lcp, z: &[f64]) -> Placed {
         } else {
             0.0
         };
-        let missing = |value: f64| if value <= rounding[i] && terms[i].is_finite() { 0.0 } else { value / terms[i] };
+        // What overflows is known by no number; a maximum would leave NaN out.
+        let missing = |value: f64| match terms[i].is_finite() && value.is_finite() {
+            false => f64::INFINITY,
+            true if value <= rounding[i] => 0.0,
+            true => value / terms[i],
+        };
         let all = [
             (Place::Lower, off(lower).max(missing(-w[i]))),
             (Place::Upper, off(upper).max(missing(w[i]))),
@@ -141,6 +146,9 @@ const NO_IMAGE_ERROR: &str =
 
 /// Bounds on `|e|` by the comparison matrix, entry by entry.
 fn by_comparison(known: &Known, defect: &[f64]) -> Option<Vec<f64>> {
+    if defect.iter().any(|d| !d.is_finite()) {
+        return None;
+    }
     let largest = defect.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {
         return Some(vec![0.0; defect.len()]).filter(|_| known.class == Class::H || known.least.is_some());
@@ -178,6 +186,9 @@ fn energy_of_gap(lcp: &Lcp, known: &Known, mut x: Vec<f64>, defect: &[f64]) -> (
         }
     }
     let [w, _, rounding] = lcp.image(&x);
+    if w.iter().chain(&rounding).chain(&x).any(|value| !value.is_finite()) {
+        return (f64::INFINITY, x);
+    }
     let gap = |i: usize| {
         let part = |distance: f64, w: f64| if w > 0.0 && distance > 0.0 { distance * w } else { 0.0 };
         // The larger of the gaps at both ends of the interval in which w lies.

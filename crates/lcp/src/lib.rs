@@ -38,6 +38,7 @@ mod certificate;
 mod class;
 mod dense;
 mod error;
+mod files;
 mod found;
 mod lemke;
 mod pivoting;

@@ -33,13 +33,17 @@ impl Lcp {
     /// (length n, in units of z); a bound of magnitude 1e20 or more is infinite.
     ///
     /// # Errors
-    /// [`Error::Qp`] with `Shape` or `Length` for sizes that do not fit and `NotFinite` for an offset that is not
-    /// finite or a bound that is NaN; [`Error::Bounds`] for l > u, `l = +inf` or `u = -inf`.
+    /// [`Error::Qp`] with `Shape` or `Length` for sizes that do not fit and `NotFinite` for a matrix or an offset that
+    /// is not finite or a bound that is NaN; [`Error::Bounds`] for l > u, `l = +inf` or `u = -inf`.
     pub fn new(matrix: SparseMatrix, offset: Vec<f64>, lower: Vec<f64>, upper: Vec<f64>) -> Result<Self, Error> {
         let n = offset.len();
         if (matrix.rows(), matrix.columns()) != (n, n) {
             let found = (matrix.rows(), matrix.columns());
             return Err(QpError::Shape { name: "matrix M of the LCP", found, expected: (n, n) }.into());
+        }
+        if let Some((i, j, value)) = matrix.triplets().find(|entry| !entry.2.is_finite()) {
+            let (name, at, allowed) = ("matrix M of the LCP", format!("({i}, {j})"), "finite");
+            return Err(QpError::NotFinite { name, at, value, allowed }.into());
         }
         let check = |name, values: &[f64], is_allowed: fn(f64) -> bool, allowed| -> Result<(), QpError> {
             QpError::check_length(name, values.len(), n, "rows of M")?;

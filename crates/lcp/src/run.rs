@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use signorini_qp::{Settings, memory};
+use signorini_qp::{Error as QpError, Method, Settings, memory};
 
 use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::settled;
@@ -27,9 +27,20 @@ enum Way {
 }
 
 impl Way {
-    /// The methods of a class, in order: the only place that decides them.
-    fn of(known: &Known) -> &'static [Way] {
+    /// The methods of a class, in order: the only place that decides them. A method of the settings leaves programs
+    /// alone or pivoting alone, of which the active set on a quadratic program is one.
+    fn of(known: &Known, method: Method) -> &'static [Way] {
         use Way::{GapProgram, Lemke, PrincipalPivoting, Proximal, QuadraticProgram};
+        match (known.class, method) {
+            (Class::Symmetric, Method::Qp(_) | Method::Penalty(_)) => return &[QuadraticProgram, Proximal],
+            (Class::Symmetric, Method::ActiveSet) => return &[QuadraticProgram, PrincipalPivoting, Lemke(0), Lemke(1)],
+            (class, Method::Qp(_) | Method::Penalty(_)) => {
+                let is_monotone = class == Class::Monotone || known.least.is_some();
+                return if is_monotone { &[GapProgram] } else { &[] };
+            }
+            (Class::Monotone, Method::ActiveSet) => return &[Lemke(0), Lemke(1), Lemke(2)],
+            _ => {}
+        }
         match known.class {
             // A stack with more contacts than it needs: if all close, one factor is enough.
             Class::Symmetric if known.least.is_none() => {
@@ -122,7 +133,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     let allowed = memory::allowed(settings.memory);
     let known = Known::of(lcp)?;
     let (mut best, mut reasons): (Option<LcpSolution>, Vec<String>) = (None, Vec::new());
-    for way in Way::of(&known) {
+    for way in Way::of(&known, settings.method) {
         let (z, places, iterations) = match way.found(lcp, &known, allowed, settings)? {
             Found::Point { z, places, iterations } => (z, places, iterations),
             Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
@@ -168,6 +179,8 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     {
         return Err(error);
     }
+    // Attempts of one method end alike.
+    reasons.dedup();
     let best = best.map(|best| LcpSolution { seconds: start.elapsed().as_secs_f64(), ..best });
     Err(match best {
         Some(solution) if solution.worst().1 <= tolerance => return Ok(solution),
@@ -175,6 +188,8 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             let (index, residual) = solution.worst();
             Error::NotCertified { solution: Box::new(solution), index, residual, tolerance }
         }
+        None if settings.watch.acknowledge() => QpError::Interrupted.into(),
+        None if reasons.is_empty() => Error::NotFound { reason: "M is not monotone, and has no convex program".into() },
         None => Error::NotFound { reason: reasons.join("; ") },
     })
 }

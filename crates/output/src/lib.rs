@@ -42,6 +42,8 @@ pub use plots::plot::{Plot, Series, line_plots};
 pub use plots::ticks::{Quantity, Scale};
 pub use reports::in_words::{InWords, Measured, rows_at_kink, tables_of_places};
 pub use reports::motion_report::MotionReport;
+#[doc(hidden)]
+pub use reports::report::listed;
 pub use reports::report::why_text;
 pub use text::printable;
 pub use view::along::Along;

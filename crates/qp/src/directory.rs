@@ -9,7 +9,8 @@ use crate::problem::ContactProblem;
 
 /// The reason against a folder without a stiffness.
 const NO_PROBLEM: &str = "the folder has neither K.mtx nor K.petsc; a problem directory needs K.mtx (stiffness), f.mtx (load), \
-                          B.mtx (contact rows) and g.mtx (gaps), or the same four as .petsc; a scene is a .json file: give its name";
+                          B.mtx (contact rows) and g.mtx (gaps), or the same four as .petsc; a complementarity problem needs M.mtx and q.mtx; a \
+                          scene is a .json file: give its name";
 
 /// Reads the problem of a directory: Matrix Market files, with `K.mtx`, or PETSc's, with `K.petsc`. A directory with
 /// both is refused: they may belong to two problems.

@@ -149,6 +149,27 @@ impl Settings {
     }
 }
 
+impl SparseMatrix {
+    /// Reads a Matrix Market file; of a symmetric one both triangles. For the crates of this workspace.
+    ///
+    /// # Errors
+    /// As [`read_vector`].
+    #[doc(hidden)]
+    pub fn read(file: &std::path::Path) -> Result<Self, Error> {
+        matrix_market::read_matrix(file)
+    }
+
+    /// Reads a file as [`read_vector`] does, in which `-inf` and `inf` stand for no bound. For the crates of this
+    /// workspace.
+    ///
+    /// # Errors
+    /// As [`read_vector`].
+    #[doc(hidden)]
+    pub fn read_bounds(file: &std::path::Path) -> Result<Vec<f64>, Error> {
+        matrix_market::read_bounds(file)
+    }
+}
+
 impl SymmetricMatrix {
     /// The matrix as a Matrix Market file of this name, by its lower triangle.
     pub fn file(&self, name: &'static str) -> file::Streamed<'_> {

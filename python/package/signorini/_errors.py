@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from signorini._signorini import SceneSolution, Solution
+    from signorini._signorini import SceneSolution
 
 
 class SignoriniError(Exception):
@@ -67,10 +67,14 @@ class FileError(SignoriniError, OSError):
 
 
 class Infeasible(SignoriniError):
-    """Contact rows that no displacement satisfies at the same time.
+    """Contact rows that no displacement satisfies at the same time, or inequalities of a complementarity problem.
 
     Attributes
     ----------
+    ray : array, shape (n,), or None
+        Of a complementarity problem: y, its largest entry 1, which shows that no z meets the inequalities. Without upper
+        bounds y >= 0, M'y <= 0 and q'y < 0. `rows` and `weights` are its entries that are not zero, and `overlap` is what
+        the rows demand beyond what they can give. None for a contact problem.
     rows : array of int
         Indices of the rows that contradict each other, counted from 0.
     weights : array, one per row of `rows`
@@ -84,6 +88,13 @@ class Infeasible(SignoriniError):
     rows: NDArray[np.int64]
     weights: NDArray[np.float64]
     overlap: float = 0.0
+    ray: NDArray[np.float64] | None = None
+
+
+class NotFound(SignoriniError):
+    """No solution of a complementarity problem was found, and none is shown to be impossible. M is not monotone."""
+
+    code = "not-found"
 
 
 class Unbounded(SignoriniError):
@@ -125,7 +136,7 @@ class NotCertified(SignoriniError):
 
     Attributes
     ----------
-    solution : Solution
+    solution : Solution or LcpSolution
         The best solution, with its certificate.
     condition : str
         Name of the condition that misses most.
@@ -136,7 +147,7 @@ class NotCertified(SignoriniError):
     """
 
     code = "not-certified"
-    solution: Solution
+    solution: Any
     condition: str = ""
     value: float = 0.0
     tolerance: float = 0.0

@@ -17,6 +17,7 @@ __all__ = [
     "Event",
     "Gradient",
     "Jvp",
+    "LcpSolution",
     "Path",
     "Prepared",
     "Problem",
@@ -35,6 +36,7 @@ __all__ = [
     "_swept",
     "_vjp",
     "compare",
+    "lcp",
     "prepare",
     "modes",
     "sensitivity",
@@ -452,6 +454,45 @@ def verify(
 ) -> Certificate: ...
 
 def compare(problem: Problem | Scene) -> Comparison: ...
+
+@final
+class LcpSolution:
+    @property
+    def z(self) -> NDArray[np.float64]: ...
+    @property
+    def w(self) -> NDArray[np.float64]: ...
+    @property
+    def method(self) -> str: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def unique(self) -> str: ...
+    @property
+    def residual(self) -> NDArray[np.float64]: ...
+    @property
+    def error_bound(self) -> NDArray[np.float64] | None: ...
+    @property
+    def w_error_bound(self) -> NDArray[np.float64] | None: ...
+    @property
+    def no_error_bound(self) -> str | None: ...
+    @property
+    def proven(self) -> list[str | None]: ...
+    @property
+    def seconds(self) -> float: ...
+
+def lcp(
+    M: Any,
+    q: ArrayLike,
+    lower: ArrayLike | None = None,
+    upper: ArrayLike | None = None,
+    *,
+    tolerance: float | None = None,
+    time: float | None = None,
+    threads: int | None = None,
+    memory: float | None = None,
+) -> LcpSolution: ...
 
 def sensitivity(
     scene: Scene,

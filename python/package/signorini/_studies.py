@@ -363,7 +363,8 @@ def _solved_anew(problem: Problem, threads: int | None) -> Solution:
     try:
         return _signorini.solve(problem, threads=threads, proof=False)
     except NotCertified as fell_short:
-        return fell_short.solution
+        best: Solution = fell_short.solution
+        return best
 
 
 def _check_kind(problem: object) -> None:

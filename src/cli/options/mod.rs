@@ -51,7 +51,7 @@ pub(super) enum Command {
     /// Draw a scene before it is solved: body, mesh, supports, loads, obstacles, gap
     #[command(after_help = "Example: signorini draw examples/indentation.json --out set-up.png")]
     Draw(Draw),
-    /// Solve a scene or a problem directory and certify the answer
+    /// Solve a scene, a problem directory or a complementarity problem, and certify the answer
     #[command(after_help = format!("\
 Example: signorini solve examples/ball.json --accuracy 1e-3 --time 10 --out ball
          signorini solve problem --explain --start earlier
@@ -97,6 +97,7 @@ Before it begins it prints the number of bytes that it writes on standard error;
     /// Certify an answer of another program
     #[command(after_help = "\
 Example: signorini verify problem --displacement u.mtx --multiplier lambda.mtx
+         signorini verify lcp --z z.mtx
 
 The energy error is bounded with a factor of the stiffness if that fits into the memory and the time; else by multigrid,
 and the bound then rests on a measured eigenvalue.")]
@@ -167,8 +168,9 @@ impl Common {
 
 #[derive(Debug, Args)]
 pub(super) struct Solve {
-    /// Scene (a JSON file, - for standard input), deck of CalculiX (a .inp file) or problem directory (with K.mtx,
-    /// f.mtx, B.mtx, g.mtx, or the same as .petsc)
+    /// Scene (a JSON file, - for standard input), deck of CalculiX (a .inp file), problem directory (with K.mtx,
+    /// f.mtx, B.mtx, g.mtx, or the same as .petsc) or directory of a complementarity problem (with M.mtx, q.mtx, and
+    /// for bounds other than 0 and infinity lower.mtx, upper.mtx)
     pub input: PathBuf,
     /// Method that finds the contact set
     #[arg(long, value_parser = choice::<Method>(), default_value = "auto")]
@@ -234,7 +236,8 @@ pub(super) struct New {
 
 #[derive(Debug, Args)]
 pub(super) struct Compare {
-    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
+    /// Scene (a JSON file), problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc) or directory of
+    /// a complementarity problem (with M.mtx, q.mtx)
     pub input: PathBuf,
     #[command(flatten)]
     pub common: Common,
@@ -487,14 +490,18 @@ pub(super) enum Form {
 
 #[derive(Debug, Args)]
 pub(super) struct Verify {
-    /// Problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
+    /// Problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc) or directory of a complementarity
+    /// problem (with M.mtx, q.mtx)
     pub directory: PathBuf,
     /// Displacement u of the free dofs
-    #[arg(long, value_name = "u.mtx")]
-    pub displacement: PathBuf,
+    #[arg(long, value_name = "u.mtx", required_unless_present = "z")]
+    pub displacement: Option<PathBuf>,
     /// Contact multiplier lambda of the contact rows, negative in compression
-    #[arg(long, value_name = "lambda.mtx")]
-    pub multiplier: PathBuf,
+    #[arg(long, value_name = "lambda.mtx", required_unless_present = "z")]
+    pub multiplier: Option<PathBuf>,
+    /// Unknowns z of a complementarity problem
+    #[arg(long, value_name = "z.mtx", conflicts_with_all = ["displacement", "multiplier", "equality_multiplier"])]
+    pub z: Option<PathBuf>,
     /// Multiplier mu of the equality rows of E.mtx, of either sign
     #[arg(long, value_name = "mu.mtx")]
     pub equality_multiplier: Option<PathBuf>,

@@ -292,8 +292,8 @@ fn displacement_text(summary: &Summary, units: &Units) -> String {
     )
 }
 
-/// Sentences beside a name, the first ones of many.
-fn listed(name: &str, sentences: Vec<String>) -> String {
+/// Sentences beside a name, the first ones of many. For the program.
+pub fn listed(name: &str, sentences: Vec<String>) -> String {
     let more = sentences.len().saturating_sub(MOST_LINES);
     let shown = sentences.into_iter().take(MOST_LINES);
     let more = (more > 0).then(|| format!("and {more} more in the JSON report"));

@@ -179,6 +179,29 @@ pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
     vector(file, Values::Finite)
 }
 
+/// A vector, in the unit of its file, that may have the entries `-inf` and `inf`.
+///
+/// # Errors
+/// As [`read_vector`].
+pub fn read_bounds(file: &Path) -> Result<Vec<f64>, Error> {
+    vector(file, Values::Bounds)
+}
+
+/// All entries of a file; if it is symmetric, it holds the lower triangle only.
+///
+/// # Errors
+/// As [`read_vector`].
+pub fn read_matrix(file: &Path) -> Result<SparseMatrix, Error> {
+    let mut content = read(file, Values::Finite)?;
+    check_filled(file, &content, content.rows.max(content.columns))?;
+    if content.symmetric {
+        let below = content.entries.iter().filter(|(row, column, _)| row != column);
+        let above: Vec<_> = below.map(|&(row, column, value)| (column, row, value)).collect();
+        content.entries.extend(above);
+    }
+    matrix(content)
+}
+
 fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
     let content = read(file, values)?;
     if content.columns != 1 && content.rows != 1 {

@@ -12,7 +12,9 @@ mod directory;
 mod lines;
 mod parse;
 
-pub use directory::{STIFFNESS, read_other_end, read_problem, read_vector, solution_files, streamed_files};
+pub use directory::{
+    STIFFNESS, read_bounds, read_matrix, read_other_end, read_problem, read_vector, solution_files, streamed_files,
+};
 
 use std::io::{self, Write};
 

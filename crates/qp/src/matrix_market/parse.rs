@@ -35,6 +35,8 @@ pub(super) enum Values {
     Finite,
     /// Gaps: `inf` is a row without obstacle.
     FiniteOrInfinite,
+    /// Lower and upper bounds: `-inf` and `inf` are none.
+    Bounds,
 }
 
 /// Permission for an error to quote the content of a file.
@@ -215,6 +217,8 @@ impl Values {
         match self {
             _ if value.is_finite() => Ok(()),
             Values::FiniteOrInfinite if value == f64::INFINITY => Ok(()),
+            Values::Bounds if !value.is_nan() => Ok(()),
+            Values::Bounds => Err(format!("the value is {value}; it must be a number, or -inf or inf without a bound")),
             Values::Finite => Err(format!("the value is {value}; it must be finite")),
             Values::FiniteOrInfinite => {
                 Err(format!("the value is {value}; it must be finite, or inf for a row without obstacle"))
