@@ -66,7 +66,7 @@ pub use method::parametric::Event;
 pub use method::penalty::Penalty;
 pub use method::{Ending, Outcome, Start};
 pub use petsc::Layout as PetscLayout;
-pub use prepared::{BoundarySolution, Path, Prepared};
+pub use prepared::{BoundarySolution, Delassus, Path, Prepared};
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Settings};
 pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution, Why};

@@ -23,7 +23,9 @@ use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
 use crate::certificate::{NullMode, Rounding};
 use crate::error::Error;
-use crate::linear::{Analysis, FactorError, NullSpace, SparseMatrix, SymmetricMatrix, Twice, generic, largest, twice};
+use crate::linear::{
+    Analysis, FactorError, NullSpace, SparseMatrix, SymmetricMatrix, Twice, generic, largest, subtract, twice,
+};
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
 use crate::transform::Scaling;
@@ -180,6 +182,23 @@ impl Existence {
              entries, {:.1e}; give the rigid-body modes if the body floats",
             NullSpace::OF_ENTRIES
         ))
+    }
+
+    /// As many dofs as there are motions without energy, which hold all of them, each with the stiffness of a dof of its
+    /// kind.
+    pub fn springs(&self) -> Vec<(usize, f64)> {
+        let (kind, mut springs) = (self.scaling.identity(0), Vec::new());
+        let mut motions: Vec<Vec<f64>> =
+            self.null.vectors.iter().map(|vector| vector.iter().map(|value| value.rounded()).collect()).collect();
+        while let Some(motion) = motions.pop() {
+            let dof = place_of_largest(&motion);
+            for other in &mut motions {
+                let share = other[dof] / motion[dof];
+                subtract(other, share, &motion);
+            }
+            springs.push((dof, kind[dof]));
+        }
+        springs
     }
 
     /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and

@@ -262,6 +262,11 @@ impl Elimination {
         self.dofs.iter().map(|&dof| all[dof]).collect()
     }
 
+    /// The rows that stay, increasing.
+    pub fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+
     /// The set of the rows that stay, from one of all rows.
     pub fn staying_rows(&self, set: &ContactSet) -> ContactSet {
         self.rows.iter().map(|&row| set.contains(row)).collect()
@@ -281,7 +286,7 @@ impl Elimination {
     }
 
     /// The displacement of all dofs, length n, from that of those that stay.
-    fn displacement(&self, y: &[f64]) -> Vec<f64> {
+    pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
         self.of_all(y, 1.0).map(Twice::rounded).collect()
     }
 
