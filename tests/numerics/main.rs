@@ -15,6 +15,7 @@ mod extremes;
 mod findings;
 mod hostile;
 mod lcp;
+mod lcp_literature;
 mod methods;
 mod modes;
 mod obstacle_problems;

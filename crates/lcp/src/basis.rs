@@ -1,13 +1,15 @@
 //! The point of a basis: some unknowns are held at values, and w vanishes in all others. One factorisation, and
 //! corrections with residuals in twice the working precision, so that the point does not depend on the way to it.
 
-use signorini_qp::Cholesky;
+use std::borrow::Cow;
+
+use signorini_qp::{Cholesky, Error as QpError, SparseMatrix, SymmetricMatrix};
 
 use crate::answer::Place;
+use crate::class::Known;
 use crate::dense::Lu;
 use crate::error::Error;
 use crate::problem::Lcp;
-use crate::scaled::Scaled;
 
 /// Blocks of a symmetric matrix above this size are taken to a sparse factor.
 const DENSE: usize = 150;
@@ -18,9 +20,9 @@ const SHIFT: f64 = 1e-10;
 /// Most corrections of a point.
 const CORRECTIONS: usize = 20;
 
-enum Factor {
+enum Factor<'a> {
     Dense(Lu),
-    Sparse(Cholesky),
+    Sparse(Cow<'a, Cholesky>),
 }
 
 /// The value at which an unknown is held; `None` between its bounds.
@@ -37,12 +39,13 @@ pub fn held(place: Place, lower: f64, upper: f64) -> Option<f64> {
 ///
 /// # Errors
 /// Those of a factorisation for lack of memory, and [`Error::TooLarge`].
-pub fn settled(lcp: &Lcp, scaled: &Scaled, places: &[Place], allowed: f64) -> Result<Option<Vec<f64>>, Error> {
+pub fn settled(lcp: &Lcp, known: &Known, places: &[Place], allowed: f64) -> Result<Option<Vec<f64>>, Error> {
     let n = places.len();
     let at = |i: usize| held(places[i], lcp.lower()[i], lcp.upper()[i]);
     let free: Vec<usize> = (0..n).filter(|&i| at(i).is_none()).collect();
     let mut z: Vec<f64> = (0..n).map(|i| at(i).unwrap_or(0.0)).collect();
-    let Some(factor) = factor(scaled, &free, allowed)? else { return Ok(None) };
+    let scaled = &known.scaled;
+    let Some(factor) = factor(known, &free, allowed)? else { return Ok(None) };
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let [w, ..] = lcp.image(&z);
@@ -61,19 +64,23 @@ pub fn settled(lcp: &Lcp, scaled: &Scaled, places: &[Place], allowed: f64) -> Re
     Ok(Some(z).filter(|z| z.iter().all(|value| value.is_finite())))
 }
 
-fn factor(scaled: &Scaled, free: &[usize], allowed: f64) -> Result<Option<Factor>, Error> {
+fn factor<'a>(known: &'a Known, free: &[usize], allowed: f64) -> Result<Option<Factor<'a>>, Error> {
+    let scaled = &known.scaled;
     let mut place = vec![usize::MAX; scaled.offset.len()];
     free.iter().enumerate().for_each(|(k, &i)| place[i] = k);
     if scaled.is_alike && free.len() > DENSE {
+        if let Some(whole) = known.factor.as_ref().filter(|_| free.len() == place.len()) {
+            return Ok(Some(Factor::Sparse(Cow::Borrowed(whole))));
+        }
         let entries =
             scaled.matrix.triplets().filter(|&(i, j, _)| i >= j && place[i] < free.len() && place[j] < free.len());
         let mut entries: Vec<_> = entries.map(|(i, j, value)| (place[i], place[j], value)).collect();
         entries.extend((0..free.len()).map(|k| (k, k, SHIFT)));
-        let lower = signorini_qp::SparseMatrix::from_triplets(free.len(), free.len(), &entries)?;
-        let factor = Cholesky::of(&signorini_qp::SymmetricMatrix::from_lower(lower)?);
+        let lower = SparseMatrix::from_triplets(free.len(), free.len(), &entries)?;
+        let factor = Cholesky::of(&SymmetricMatrix::from_lower(lower)?);
         return match factor {
-            Err(signorini_qp::Error::NotConvex { .. }) => Ok(None),
-            factor => Ok(Some(Factor::Sparse(factor?))),
+            Err(QpError::NotConvex { .. }) => Ok(None),
+            factor => Ok(Some(Factor::Sparse(Cow::Owned(factor?)))),
         };
     }
     check_size(free.len(), free.len(), allowed)?;

@@ -18,14 +18,11 @@
 
 use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::held;
-use crate::class::{Known, compared, comparison_solution, if_definite};
+use crate::class::{Known, compared, comparison_solution};
 use crate::problem::Lcp;
 
 /// Sums and products of bounds are enlarged by this, which exceeds their rounding for any number of terms in memory.
 const OUTWARD: f64 = 1.0 + 1e-6;
-
-/// What is added to the diagonal of a semidefinite matrix for the direction of a repair.
-const SHIFT: f64 = 1e-10;
 
 /// The places of a point with its residuals.
 pub struct Placed {
@@ -67,12 +64,18 @@ pub fn placed(lcp: &Lcp, z: &[f64]) -> Placed {
     Placed { places, residual }
 }
 
+/// The point with each unknown at its place, and none beyond its bounds.
+pub fn onto(lcp: &Lcp, places: &[Place], z: &[f64]) -> Vec<f64> {
+    let (lower, upper) = (lcp.lower(), lcp.upper());
+    let at = |i: usize| held(places[i], lower[i], upper[i]).unwrap_or(z[i]).clamp(lower[i], upper[i]);
+    (0..z.len()).map(at).collect()
+}
+
 /// The certificate of a point z of a matrix of which this is known; n >= 1.
 pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
     let Placed { places, residual } = placed(lcp, &z);
     let (n, scaled) = (z.len(), &known.scaled);
-    let onto = |i: usize| held(places[i], lcp.lower()[i], lcp.upper()[i]).unwrap_or(z[i]);
-    let x: Vec<f64> = (0..n).map(|i| onto(i).clamp(lcp.lower()[i], lcp.upper()[i])).collect();
+    let x = onto(lcp, &places, &z);
     let [w, _, rounding] = lcp.image(&x);
     let defect: Vec<f64> = (0..n)
         .map(|i| {
@@ -162,8 +165,7 @@ fn energy_of_gap(lcp: &Lcp, known: &Known, mut x: Vec<f64>, defect: &[f64]) -> (
     let wanted: Vec<f64> =
         (0..n).map(|i| f64::from(i8::from(upper[i].is_infinite()) - i8::from(lower[i].is_infinite()))).collect();
     let largest = defect.iter().copied().fold(0.0, f64::max);
-    let factor = scaled.symmetric_part(SHIFT).ok().and_then(|shifted| if_definite(&shifted).ok()?);
-    if let Some(factor) = factor.filter(|_| largest > 0.0) {
+    if let Some(factor) = known.factor.as_ref().filter(|_| largest > 0.0) {
         let mut d = vec![0.0; n];
         for _ in 0..3 {
             let moved = scaled.matrix.mul(&d);

@@ -16,6 +16,9 @@ const LEAST_NEGATIVE: f64 = 1e-12;
 /// Largest number of unknowns of which all principal minors are computed.
 const MINORS: usize = 16;
 
+/// What the terms of `<A> d` leave, at least, as a share of them.
+const MARGIN: f64 = 1e-9;
+
 /// Largest dense comparison matrix, and the multiplications that sweeps over a larger one may take.
 const DENSE: usize = 600;
 const SWEEPING: usize = 200_000_000;
@@ -28,6 +31,14 @@ pub struct Known {
     pub uniqueness: Uniqueness,
     /// A lower bound on the least eigenvalue of (A + A') / 2, if it is positive.
     pub least: Option<f64>,
+    /// The factor of (A + A') / 2 with a little more on its diagonal, if that is semidefinite.
+    pub factor: Option<Cholesky>,
+}
+
+/// A semidefinite matrix: its factor, and a lower bound on its least eigenvalue if it is positive.
+struct Semidefinite {
+    factor: Cholesky,
+    least: Option<f64>,
 }
 
 impl Known {
@@ -37,33 +48,34 @@ impl Known {
     /// Those of a factorisation for lack of memory.
     pub fn of(lcp: &Lcp) -> Result<Self, Error> {
         let (n, matrix) = (lcp.unknowns(), lcp.matrix());
-        let known = |scaled: Scaled, class: Class, least: Option<f64>| {
+        let known = |scaled: Scaled, class: Class, found: Option<Semidefinite>| {
+            let (factor, least) = found.map_or((None, None), |found| (Some(found.factor), found.least));
             let uniqueness = match class {
                 _ if least.is_some() => Uniqueness::One,
                 Class::H | Class::P => Uniqueness::One,
                 Class::Symmetric if scaled.is_symmetric => Uniqueness::Several,
                 _ => Uniqueness::Unknown,
             };
-            Known { scaled, class, uniqueness, least }
+            Known { scaled, class, uniqueness, least, factor }
         };
         let mut monotone = None;
         for share in [vec![1.0; n], shares(matrix)] {
             let scaled = Scaled::by_diagonal(lcp, &share);
             if matrix_is_finite(&scaled.matrix) && (scaled.is_alike || monotone.is_none()) {
                 match semidefinite(&scaled)? {
-                    Some(least) if scaled.is_alike => return Ok(known(scaled, Class::Symmetric, least)),
-                    Some(least) => monotone = Some((scaled, least)),
+                    Some(found) if scaled.is_alike => return Ok(known(scaled, Class::Symmetric, Some(found))),
+                    Some(found) => monotone = Some((scaled, Some(found))),
                     None => {}
                 }
             }
         }
         let by_entries = Scaled::by_entries(lcp);
         if is_h(&by_entries.matrix) {
-            let (scaled, least) = monotone.unwrap_or((by_entries, None));
-            return Ok(known(scaled, Class::H, least));
+            let (scaled, found) = monotone.unwrap_or((by_entries, None));
+            return Ok(known(scaled, Class::H, found));
         }
-        if let Some((scaled, least)) = monotone {
-            return Ok(known(scaled, Class::Monotone, least));
+        if let Some((scaled, found)) = monotone {
+            return Ok(known(scaled, Class::Monotone, found));
         }
         let class = if n <= MINORS && has_positive_minors(&by_entries.matrix) { Class::P } else { Class::General };
         Ok(known(by_entries, class, None))
@@ -74,13 +86,12 @@ fn matrix_is_finite(matrix: &SparseMatrix) -> bool {
     matrix.values().iter().all(|value| value.is_finite())
 }
 
-/// `None` if (A + A') / 2 is not positive semidefinite to rounding; else a lower bound on its least eigenvalue if one
-/// is proven to be positive.
+/// `None` if (A + A') / 2 is not positive semidefinite to rounding.
 ///
 /// # Source
 /// S. M. Rump, *Verification of positive definiteness*, BIT 46 (2006) 433-452: a Cholesky factorisation that ends shows
 /// that the least eigenvalue is above -(n + 1) eps trace.
-fn semidefinite(scaled: &Scaled) -> Result<Option<Option<f64>>, Error> {
+fn semidefinite(scaled: &Scaled) -> Result<Option<Semidefinite>, Error> {
     let part = scaled.symmetric_part(0.0)?;
     let (n, diagonal) = (part.dim() as f64, part.diagonal());
     let has_none = |i: usize| diagonal[i] == 0.0;
@@ -102,14 +113,14 @@ fn semidefinite(scaled: &Scaled) -> Result<Option<Option<f64>>, Error> {
     for share in [0.5, 0.05] {
         let least = share * estimate;
         if least > 2.0 * rounding && if_definite(&scaled.symmetric_part(-least)?)?.is_some() {
-            return Ok(Some(Some(least - rounding)));
+            return Ok(Some(Semidefinite { factor, least: Some(least - rounding) }));
         }
     }
-    Ok(Some(None))
+    Ok(Some(Semidefinite { factor, least: None }))
 }
 
 /// The factor of a matrix; `None` if it is not positive definite.
-pub fn if_definite(matrix: &SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
+fn if_definite(matrix: &SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
     match Cholesky::of(matrix) {
         Err(QpError::NotConvex { .. }) => Ok(None),
         factor => Ok(Some(factor?)),
@@ -127,19 +138,19 @@ pub fn compared(matrix: &SparseMatrix, d: &[f64]) -> Vec<f64> {
     own.iter().zip(&others).map(|(own, others)| own - others - rounding * (own + others) - f64::MIN_POSITIVE).collect()
 }
 
-/// A vector d of positive entries, for which `<A> d` is about `right`; `None` if none was found. Only [`compared`] shows
-/// that A is an H-matrix.
+/// A vector d of positive entries, for which `<A> d` is at least about `right`; `None` if none was found. Only [`compared`]
+/// shows that A is an H-matrix. The diagonal is lowered a little, so that `<A> d` stays above the rounding of its terms.
 pub fn comparison_solution(matrix: &SparseMatrix, right: &[f64]) -> Option<Vec<f64>> {
     let n = right.len();
     let mut diagonal = vec![0.0; n];
-    matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = value);
+    matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = (1.0 - MARGIN) * value);
     if !matrix_is_finite(matrix) || diagonal.iter().any(|&value| value <= 0.0) {
         return None;
     }
     let is_positive = |d: &[f64]| d.iter().all(|&d| d > 0.0 && d.is_finite());
     if n <= DENSE {
         let mut rows = vec![vec![0.0; n]; n];
-        matrix.triplets().for_each(|(i, j, value)| rows[i][j] = if i == j { value } else { -value.abs() });
+        matrix.triplets().for_each(|(i, j, value)| rows[i][j] = if i == j { diagonal[i] } else { -value.abs() });
         return Some(Lu::of(rows)?.solve(right)).filter(|d| is_positive(d));
     }
     let rows = matrix.transposed();

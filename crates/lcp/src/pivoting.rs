@@ -7,37 +7,41 @@
 //! complementarity problems*, Comput. Oper. Res. 21 (1994) 587-596; K. G. Murty, *Note on a Bard-type scheme for solving
 //! the complementarity problem*, Opsearch 11 (1974) 123-130.
 
-use crate::answer::{LcpSettings, Place};
+use crate::answer::{LcpSettings, Place, Uniqueness};
 use crate::basis::settled;
+use crate::class::Known;
 use crate::error::Error;
 use crate::problem::Lcp;
 use crate::run::Found;
-use crate::scaled::Scaled;
 
 /// Steps of all exchanges at once that may fail to lower the number of wrong signs.
 const PATIENCE: usize = 10;
 
+/// Most steps if M is no P-matrix: then nothing says that they end.
+const TRIALS: usize = 20;
+
 /// A sign counts as wrong beyond this share of the terms of its row: otherwise rounding exchanges unknowns for ever.
 const ROUNDING: f64 = 1e-13;
 
-/// The point of a P-matrix; [`Found::Nothing`] if a basis is singular or the steps are used up.
+/// The point of a P-matrix, or perhaps of another; [`Found::Nothing`] if a basis is singular or the steps are used up.
 ///
 /// # Errors
 /// Those of a factorisation, and [`Error::TooLarge`].
 pub fn principal_pivoting(
     lcp: &Lcp,
-    scaled: &Scaled,
+    known: &Known,
     mut places: Vec<Place>,
     allowed: f64,
     settings: &LcpSettings,
 ) -> Result<Found, Error> {
     let (lower, upper) = (lcp.lower(), lcp.upper());
     let (mut least, mut patience) = (usize::MAX, PATIENCE);
-    for step in 1..=settings.max_pivots {
+    let most = if known.uniqueness == Uniqueness::One { settings.max_pivots } else { TRIALS.min(settings.max_pivots) };
+    for step in 1..=most {
         if settings.qp.watch.is_over() {
             break;
         }
-        let Some(z) = settled(lcp, scaled, &places, allowed)? else {
+        let Some(z) = settled(lcp, known, &places, allowed)? else {
             return Ok(Found::Nothing("a basis is singular".into()));
         };
         let [w, terms, _] = lcp.image(&z);

@@ -6,7 +6,7 @@ use signorini_qp::memory;
 
 use crate::answer::{Class, LcpSettings, LcpSolution, Place, Uniqueness};
 use crate::basis::settled;
-use crate::certificate::{examined, placed};
+use crate::certificate::{examined, onto, placed};
 use crate::class::Known;
 use crate::error::Error;
 use crate::lemke::lemke;
@@ -37,9 +37,13 @@ enum Way {
 
 impl Way {
     /// The methods of a class, in order: the only place that decides them.
-    fn of(class: Class) -> &'static [Way] {
+    fn of(known: &Known) -> &'static [Way] {
         use Way::{GapProgram, Lemke, PrincipalPivoting, Proximal, QuadraticProgram};
-        match class {
+        match known.class {
+            // A stack with more contacts than it needs: if all close, one factor is enough.
+            Class::Symmetric if known.least.is_none() => {
+                &[PrincipalPivoting, QuadraticProgram, Proximal, Lemke(0), Lemke(1)]
+            }
             Class::Symmetric => &[QuadraticProgram, Proximal, Lemke(0), Lemke(1)],
             Class::H | Class::P => &[PrincipalPivoting, Lemke(0), Lemke(1)],
             Class::Monotone => &[GapProgram, Lemke(0), Lemke(1), Lemke(2)],
@@ -63,14 +67,15 @@ impl Way {
             Way::QuadraticProgram => quadratic_program(scaled, settings),
             Way::Proximal => proximal(scaled, settings),
             Way::GapProgram => gap_program(scaled, settings),
-            Way::PrincipalPivoting => principal_pivoting(lcp, scaled, first_places(lcp), allowed, settings),
+            Way::PrincipalPivoting => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
             Way::Lemke(attempt) => lemke(scaled, attempt, allowed, settings),
         }
     }
 }
 
-fn first_places(lcp: &Lcp) -> Vec<Place> {
+fn first_places(lcp: &Lcp, known: &Known) -> Vec<Place> {
     let place = |i: usize| match (lcp.lower()[i].is_finite(), lcp.upper()[i].is_finite()) {
+        _ if known.class == Class::Symmetric => Place::Between,
         (true, _) => Place::Lower,
         (false, true) => Place::Upper,
         (false, false) => Place::Between,
@@ -97,11 +102,11 @@ fn polished(
     settings: &LcpSettings,
 ) -> Result<Option<Vec<f64>>, Error> {
     match known.uniqueness {
-        Uniqueness::One => match principal_pivoting(lcp, &known.scaled, places, allowed, settings)? {
+        Uniqueness::One => match principal_pivoting(lcp, known, places, allowed, settings)? {
             Found::Point { z, .. } => Ok(Some(z)),
             _ => Ok(None),
         },
-        _ => settled(lcp, &known.scaled, &places, allowed),
+        _ => settled(lcp, known, &places, allowed),
     }
 }
 
@@ -123,7 +128,7 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
     let allowed = memory::allowed(settings.qp.memory);
     let known = Known::of(lcp)?;
     let (mut best, mut reasons): (Option<LcpSolution>, Vec<String>) = (None, Vec::new());
-    for way in Way::of(known.class) {
+    for way in Way::of(&known) {
         let (z, places, iterations) = match way.found(lcp, &known, allowed, settings)? {
             Found::Point { z, places, iterations } => (z, places, iterations),
             Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
@@ -152,10 +157,10 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
         };
         let rough = placed(lcp, &z);
         let is_rough = rough.residual.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
-        let mut points = vec![z];
+        let mut points = vec![onto(lcp, &rough.places, &z)];
         if is_rough {
             points.extend(polished(lcp, &known, rough.places, allowed, settings)?);
-            points.extend(places.and_then(|places| settled(lcp, &known.scaled, &places, allowed).ok()?));
+            points.extend(places.and_then(|places| settled(lcp, &known, &places, allowed).ok()?));
             points.reverse();
         }
         points.iter().for_each(|z| examine(z));
