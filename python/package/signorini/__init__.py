@@ -44,6 +44,7 @@ from signorini._mortar import MortarRows, mortar_rows
 from signorini._signorini import (
     Certificate,
     Comparison,
+    Delassus,
     Event,
     Gradient,
     Jvp,
@@ -75,6 +76,7 @@ __all__ = [
     "BeyondSmallDisplacements",
     "Certificate",
     "Comparison",
+    "Delassus",
     "Event",
     "FileError",
     "Gradient",
