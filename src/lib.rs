@@ -71,8 +71,7 @@ pub use signorini_output as output;
 pub use signorini_qp as qp;
 
 pub use qp::{
-    Attempt, BoundarySolution, Certificate, Condense, ContactProblem, ContactSet, Failure, Goal, InteriorPoint,
-    Iteration, Method, Path, Penalty, Prepared, ProvenSet, Seconds, Settings, Solution, SparseMatrix, Start,
-    SymmetricMatrix, Watch, solve, solve_qp,
+    Certificate, Condense, ContactProblem, ContactSet, Failure, Goal, InteriorPoint, Iteration, Method, Path, Penalty,
+    Prepared, ProvenSet, Seconds, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve, solve_qp,
 };
 pub use scene::{Model, Scene};

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use clap::{Args, Subcommand};
 use serde_json::json;
 use signorini::Scene;
+use signorini::Settings;
 use signorini::fem::MassForm;
-use signorini::qp::{Cholesky, Watch, threads_of_machine};
+use signorini::qp::{Cholesky, Watch};
 use support::modal::{Checked, checked};
 
 use crate::block::axis;
@@ -89,7 +90,7 @@ fn cost() -> Result<(), Failure> {
                 "analysis": {"modes": {"count": 20}}
             }))?;
             let model = scene.build()?;
-            let (problem, threads) = (model.problem(), threads_of_machine());
+            let (problem, threads) = (model.problem(), Settings::threads_of_machine());
             let mass = model.mass(MassForm::Consistent)?;
             let sum = problem.stiffness().combined(1.0, 1.0, &mass)?;
             let (_, factor) = fastest(RUNS, || Cholesky::on(&sum, threads))?;

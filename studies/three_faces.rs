@@ -5,7 +5,7 @@
 //! own, and its seconds are the least of several rounds, with the certificate of its answer.
 
 use serde_json::json;
-use signorini::lcp::{Lcp, LcpSettings, solve_lcp};
+use signorini::lcp::{Lcp, solve_lcp};
 use signorini::qp::{Condense, InteriorPoint};
 use signorini::{ContactProblem, Method, Prepared, Scene, Settings, solve};
 use support::floors::membrane;
@@ -16,8 +16,7 @@ use crate::process::{Failure, child, peak_bytes};
 use crate::table::table;
 
 /// Cells of each block, along its top and in its height; the last is the side of the membrane.
-const CASES: [[usize; 2]; 8] =
-    [[60, 250], [125, 80], [250, 25], [500, 10], [600, 5], [700, 2], [700, 1], [30, 0]];
+const CASES: [[usize; 2]; 8] = [[60, 250], [125, 80], [250, 25], [500, 10], [600, 5], [700, 2], [700, 1], [30, 0]];
 
 const FACES: [&str; 4] = ["kkt", "qp", "lcp", "auto"];
 
@@ -50,14 +49,16 @@ fn solved(problem: &ContactProblem, face: &str) -> Result<f64, Failure> {
     let mut settings = Settings::default();
     match face {
         "kkt" => {
-            (settings.method, settings.condense) = (Method::Qp(InteriorPoint { polish: false, ..InteriorPoint::default() }), Condense::Never);
+            (settings.method, settings.condense) =
+                (Method::Qp(InteriorPoint { polish: false, ..InteriorPoint::default() }), Condense::Never);
             settings.tolerance = None;
         }
         "qp" => (settings.method, settings.condense) = (Method::qp(), Condense::Auto),
         "lcp" => {
             let contact = Prepared::for_gaps(problem, 1, &settings)?.delassus()?;
-            let lcp = Lcp::new(contact.matrix.clone(), contact.offset.clone(), contact.lower.clone(), contact.upper.clone())?;
-            let found = solve_lcp(&lcp, &LcpSettings::default())?;
+            let lcp =
+                Lcp::new(contact.matrix.clone(), contact.offset.clone(), contact.lower.clone(), contact.upper.clone())?;
+            let found = solve_lcp(&lcp, &Settings::default())?;
             let mut multiplier = vec![0.0; problem.rows()];
             contact.rows.iter().zip(&found.z).for_each(|(&row, z)| multiplier[row] = -z);
             return Ok(problem.certify(&contact.displacement(&found.z)?, &multiplier)?.energy_error_bound);
@@ -103,7 +104,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             };
         }
         let cheapest = seconds[..3].iter().copied().fold(f64::INFINITY, f64::min);
-        rows.push(format!("{} | {} | {:.3}{cells} | {:.2}", sizes[1], sizes[0], sizes[0] / sizes[1], seconds[3] / cheapest));
+        rows.push(format!(
+            "{} | {} | {:.3}{cells} | {:.2}",
+            sizes[1],
+            sizes[0],
+            sizes[0] / sizes[1],
+            seconds[3] / cheapest
+        ));
     }
     print!("{}", table("n | m | m/n | KKT | QP | LCP | `auto`, ms | over the cheapest", &rows));
     Ok(())

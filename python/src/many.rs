@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use signorini::qp::{self, each_of_many};
+use signorini::qp;
 use signorini::{ContactProblem, ContactSet, SparseMatrix, SymmetricMatrix, Watch};
 
 use crate::arrays::{block, of_reals, of_table, of_truths};
@@ -162,7 +162,7 @@ pub fn solve_many<'py>(
     let settings = options.settings_for(Some(dofs * (dofs + 1) / 2))?;
     let family = Family { dofs, rows, stiffness, load, contact, gap, shared };
     let work = move |watch: &Watch| {
-        each_of_many(count, &settings.watched(watch), |number, settings| {
+        settings.watched(watch).each_of_many(count, |number, settings| {
             let answer = family.problem(number).and_then(|problem| qp::solve(&problem, settings));
             Kept::of(answer, dofs, rows)
         })

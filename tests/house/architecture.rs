@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::imports::{CRATES, House, rust_files};
 
 /// The rooms of each wing, by the names before those of its rooms: a room names only rooms before it.
-const WINGS: [(&[&str], &[&str]); 5] = [
+const WINGS: [(&[&str], &[&str]); 6] = [
     (
         &["qp"],
         &[
@@ -37,6 +37,24 @@ const WINGS: [(&[&str], &[&str]); 5] = [
             "modes",
         ],
     ),
+    (
+        &["lcp"],
+        &[
+            "answer",
+            "error",
+            "problem",
+            "scaled",
+            "dense",
+            "class",
+            "basis",
+            "certificate",
+            "found",
+            "pivoting",
+            "lemke",
+            "quadratic",
+            "run",
+        ],
+    ),
     (&[], &["error", "bytes", "fem", "motion", "continuum", "scene", "study"]),
     (
         &["fem"],
@@ -61,7 +79,7 @@ const WINGS: [(&[&str], &[&str]); 5] = [
 ];
 
 /// What is no room of the mechanics, whose modules have no name before theirs: the other crates.
-const BESIDE: [&str; 5] = ["qp", "output", "lib", "main", "cli"];
+const BESIDE: [&str; 6] = ["qp", "lcp", "output", "lib", "main", "cli"];
 
 #[test]
 fn a_room_names_only_rooms_before_it() {
@@ -131,7 +149,10 @@ fn only_the_ending_of_a_run_constructs_the_error_of_an_answer_that_is_not_certif
         text.match_indices(name).any(|(at, _)| !text[at..].split('}').next().unwrap().contains(".."))
     };
     let files = House::read().files.into_values().filter(|source| constructs(&source.text));
-    assert_eq!(files.map(|source| source.path).collect::<Vec<_>>(), [Path::new("qp/run/ending.rs")]);
+    assert_eq!(
+        files.map(|source| source.path).collect::<Vec<_>>(),
+        [Path::new("lcp/run.rs"), Path::new("qp/run/ending.rs")]
+    );
 }
 
 /// Fallbacks stand in the plan alone: the history compares answers, and existence alone says that there is no answer.

@@ -1,8 +1,8 @@
 //! Every variant of the one error is provoked, with its code and one sentence.
 
 use signorini::{
-    Condense, ContactProblem, Error, Method, Penalty, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve,
-    solve_qp,
+    Condense, ContactProblem, Error, Method, Penalty, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, lcp,
+    solve, solve_qp,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -149,6 +149,42 @@ fn every_variant_is_provoked_with_its_code_and_one_sentence() {
         // An error of the quadratic program comes in its wrapping.
         assert_eq!(format!("{error:?}").trim_start_matches("Qp(").split([' ', ')']).next(), Some(variant), "{error:?}");
         assert_eq!((error.code(), variants[variant].as_str()), (code, code), "{error}");
+        let sentence = error.to_string();
+        assert!(sentence.len() > 20 && sentence.lines().count() == 1 && !sentence.contains("  "), "{sentence:?}");
+    }
+}
+
+/// The errors of complementarity problems, which `signorini::lcp` has beside those of the quadratic program.
+#[test]
+fn every_error_of_a_complementarity_problem_has_its_code_and_one_sentence() {
+    let problem = |entries: &[(usize, usize, f64)], offset: &[f64]| {
+        let matrix = SparseMatrix::from_triplets(offset.len(), offset.len(), entries)?;
+        lcp::Lcp::nonnegative(matrix, offset.to_vec())
+    };
+    let solve = |entries: &[(usize, usize, f64)], offset: &[f64], change: &dyn Fn(&mut Settings)| {
+        let mut settings = Settings::default();
+        change(&mut settings);
+        lcp::solve_lcp(&problem(entries, offset)?, &settings)
+    };
+    // Met by z = (1, 1), which has z'w > 0; no pivot may lead there.
+    let open = [(0, 0, -1.0), (0, 1, 2.0), (1, 0, 2.0), (1, 1, -1.0)];
+    let thirds = [(0, 0, 3.0), (0, 1, 0.1), (1, 0, 0.7), (1, 1, 0.3)];
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/lcp/src/error.rs")).unwrap();
+    for (variant, code, error) in [
+        ("Qp", "length", problem(&[], &[]).and_then(|empty| empty.certify(&[0.0])).unwrap_err()),
+        ("Bounds", "bounds", {
+            let unit = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap();
+            lcp::Lcp::new(unit, vec![0.0], vec![1.0], vec![0.0]).unwrap_err()
+        }),
+        ("Infeasible", "infeasible", solve(&[(0, 0, -1.0)], &[-1.0], &|_| {}).unwrap_err()),
+        ("NotFound", "not-found", solve(&open, &[-1.0, -1.0], &|settings| settings.max_iterations = 1).unwrap_err()),
+        ("NotCertified", "not-certified", {
+            solve(&thirds, &[-0.1, -0.7], &|settings| settings.tolerance = Some(1e-40)).unwrap_err()
+        }),
+        ("TooLarge", "too-large", solve(&open, &[-1.0, -1.0], &|settings| settings.memory = Some(1.0)).unwrap_err()),
+    ] {
+        assert!(text.contains(&format!("Error::{variant}")), "{variant}");
+        assert!(format!("{error:?}").starts_with(variant) && error.code() == code, "{variant}: {error:?}");
         let sentence = error.to_string();
         assert!(sentence.len() > 20 && sentence.lines().count() == 1 && !sentence.contains("  "), "{sentence:?}");
     }

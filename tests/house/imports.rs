@@ -13,8 +13,9 @@ pub type Module = Vec<String>;
 type OfCrate = (&'static str, &'static str, &'static [&'static str]);
 
 /// Each crate that is published.
-pub const CRATES: [OfCrate; 4] = [
+pub const CRATES: [OfCrate; 5] = [
     ("crates/qp/src", "signorini_qp", &["qp"]),
+    ("crates/lcp/src", "signorini_lcp", &["lcp"]),
     ("crates/mechanics/src", "signorini_mechanics", &[]),
     ("crates/output/src", "signorini_output", &["output"]),
     ("src", "signorini", &[]),

@@ -2,8 +2,8 @@
 //! made from compressed columns, an error carries the best answer; and the interface stays small.
 
 use signorini::{
-    BoundarySolution, Certificate, ContactProblem, ContactSet, Error, Goal, Method, Model, Path, Penalty, Prepared,
-    ProvenSet, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, qp, solve,
+    Certificate, ContactProblem, ContactSet, Error, Goal, Method, Model, Path, Penalty, Prepared, ProvenSet, Scene,
+    Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, qp, solve,
 };
 use std::collections::BTreeSet;
 use std::fmt::Debug;
@@ -20,7 +20,7 @@ fn crosses_threads<T: Send + Sync + Debug>() {}
 fn public_types_can_be_sent_between_threads_and_debug_printed() {
     crosses_threads::<(ContactProblem, Solution, Certificate, ContactSet, ProvenSet, Goal)>();
     crosses_threads::<(Settings, Method, Watch, Error)>();
-    crosses_threads::<(Prepared, BoundarySolution, Path)>();
+    crosses_threads::<(Prepared, Path)>();
     crosses_threads::<(SparseMatrix, SymmetricMatrix)>();
     crosses_threads::<(Scene, Model, Dynamics, Mesh, ElasticBody)>();
     crosses_threads::<(DynamicProblem, Integrator, Scheme, State)>();

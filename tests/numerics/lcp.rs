@@ -1,14 +1,15 @@
 //! GOAL: no answer and no claim about a linear complementarity problem contradicts exact arithmetic.
 //!
-//! CONDITIONS: random problems of 1 to 8 unknowns from families whose class is known, with bounds on some unknowns, with
-//! ties, and without solutions; and the same with rows and unknowns scaled by 1e-12 to 1e12.
-//! REFERENCE: Lemke's method in integers for any matrix, principal minors, and the exact search for a point that meets
-//! the inequalities. The long form has 5,000 problems and 1,000 scaled ones.
+//! CONDITIONS: random problems of 1 to 8 unknowns from families whose class is known, with bounds on some unknowns,
+//! with ties, and without solutions; and the same with rows and unknowns scaled by 1e-12 to 1e12. REFERENCE: Lemke's
+//! method in integers for any matrix, principal minors, and the exact search for a point that meets the inequalities.
+//! The long form has 5,000 problems and 1,000 scaled ones.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use signorini::lcp::{Class, Error, LcpSettings, LcpSolution, Place, Uniqueness, certify, solve_lcp};
+use signorini::Settings;
+use signorini::lcp::{Error, LcpSolution, solve_lcp};
 use support::draws::Draws;
 use support::oracles::exact::complementarity::{ExactPoint, LcpCase};
 use support::oracles::exact::dyadic::{Dyadic, dot};
@@ -205,11 +206,11 @@ fn faults(
 ) -> Vec<String> {
     let mut faults = Vec::new();
     let n = case.unknowns();
-    if solution.uniqueness == Uniqueness::One && !is_p {
+    if solution.is_unique == Some(true) && !is_p {
         faults.push("M is no P-matrix".into());
     }
-    if matches!(solution.class, Class::H | Class::P) && !is_p {
-        faults.push(format!("M is not of class {:?}", solution.class));
+    if ["h-matrix", "p-matrix"].contains(&solution.class) && !is_p {
+        faults.push(format!("M is no {}", solution.class));
     }
     // The residual, from exact w: relative to the terms of its row, or to what a distance moves.
     let one = Dyadic::integer(1);
@@ -262,14 +263,12 @@ fn faults(
             faults.push(format!("the error of w_{i} is above {:e}", error[i]));
         }
         let is_at = |bound: f64| bound.is_finite() && exact.z[i] == &Dyadic::from(bound) * d;
-        let holds = match solution.proven[i] {
-            None => true,
-            Some(Place::Lower) => exact.w[i].sign() > 0,
-            Some(Place::Upper) => exact.w[i].sign() < 0,
-            Some(Place::Between) => !is_at(case.lower[i]) && !is_at(case.upper[i]),
-        };
+        let [lower, between, upper] = &solution.proven;
+        let holds = (!lower.contains(i) || exact.w[i].sign() > 0)
+            && (!upper.contains(i) || exact.w[i].sign() < 0)
+            && (!between.contains(i) || (!is_at(case.lower[i]) && !is_at(case.upper[i])));
         if !holds {
-            faults.push(format!("the place of {i} is not {:?}", solution.proven[i]));
+            faults.push(format!("the place of {i} is not proven"));
         }
     }
     faults
@@ -307,16 +306,16 @@ struct Counts {
 fn run(counts: &mut Counts, name: &str, trial: &Trial) {
     let Trial { family, case, is_decided, is_exact } = trial;
     let bounded = case.bounded();
-    let (exact, is_p, settings) = (bounded.solution(), case.is_p(), LcpSettings::default());
+    let (exact, is_p, settings) = (bounded.solution(), case.is_p(), Settings::default());
     let lcp = case.problem().unwrap();
     let mut found = Vec::new();
     let ending = match solve_lcp(&lcp, &settings) {
         Ok(solution) => {
-            found.extend(faults(&bounded, exact.as_ref(), is_p, &solution, settings.tolerance));
+            found.extend(faults(&bounded, exact.as_ref(), is_p, &solution, settings.goal().tolerance));
             if exact.is_none() && *is_decided {
                 found.push("solved, but there is no solution".into());
             }
-            let again = certify(&lcp, &solution.z).unwrap();
+            let again = lcp.certify(&solution.z).unwrap();
             if (&again.error, &again.proven, &again.residual) != (&solution.error, &solution.proven, &solution.residual)
             {
                 found.push("the certificate of the same point differs".into());
@@ -325,7 +324,7 @@ fn run(counts: &mut Counts, name: &str, trial: &Trial) {
             let mut draws = Draws::of(1, counts.endings.values().sum::<usize>() as u64);
             let moved: Vec<f64> =
                 solution.z.iter().map(|z| z * (1.0 + draws.decades(1e-14, 1e-1) * draws.signed())).collect();
-            let beside = certify(&lcp, &moved).unwrap();
+            let beside = lcp.certify(&moved).unwrap();
             let of_beside = faults(&bounded, exact.as_ref(), is_p, &beside, f64::INFINITY);
             found.extend(of_beside.into_iter().map(|fault| format!("beside: {fault}")));
             let bounds = if solution.error.is_ok() {
@@ -335,7 +334,7 @@ fn run(counts: &mut Counts, name: &str, trial: &Trial) {
             } else {
                 "-"
             };
-            format!("solved by {} as {:?}, bounds {bounds}", solution.method, solution.class)
+            format!("solved by {} as {}, bounds {bounds}", solution.method, solution.class)
         }
         Err(Error::Infeasible { ray, .. }) => {
             if *is_exact && bounded.is_feasible() {

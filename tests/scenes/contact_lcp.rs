@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use signorini::lcp::{Lcp, LcpSettings, solve_lcp};
+use signorini::lcp::{Lcp, solve_lcp};
 use signorini::qp::{Error, Failure};
 use signorini::{ContactProblem, Prepared, Scene, Settings, solve};
 use support::bodies::{difference, largest};
@@ -43,20 +43,53 @@ impl Seen {
                 return;
             }
         };
-        let made = match made { Ok(made) => made, Err(error) => { println!("XX {name}: delassus {error:.200}"); return; } };
+        let made = match made {
+            Ok(made) => made,
+            Err(error) => {
+                println!("XX {name}: delassus {error:.200}");
+                return;
+            }
+        };
         let lcp = Lcp::new(made.matrix.clone(), made.offset.clone(), made.lower.clone(), made.upper.clone()).unwrap();
         let start = std::time::Instant::now();
-        let solution = match solve_lcp(&lcp, &LcpSettings::default()) { Ok(s) => s, Err(error) => { println!("XX {name}: lcp {:.300}", error.to_string()); return; } };
+        let solution = match solve_lcp(&lcp, &Settings::default()) {
+            Ok(s) => s,
+            Err(error) => {
+                println!("XX {name}: lcp {:.300}", error.to_string());
+                return;
+            }
+        };
         let of_lcp = start.elapsed().as_secs_f64();
         let m = made.rows.len();
         let mut forces = vec![0.0; problem.inequalities()];
-        for (&row, z) in made.rows.iter().zip(&solution.z) { if row < forces.len() { forces[row] = -z; } }
+        for (&row, z) in made.rows.iter().zip(&solution.z) {
+            if row < forces.len() {
+                forces[row] = -z;
+            }
+        }
         let u = made.displacement(&solution.z).unwrap();
         let most = largest(&answer.multiplier);
         let force = difference(&forces, &answer.multiplier[..forces.len()]) / most.max(f64::MIN_POSITIVE);
         let moved = difference(&u, &answer.displacement) / largest(&answer.displacement).max(f64::MIN_POSITIVE);
-        let wrong: Vec<_> = made.rows.iter().zip(&solution.z).filter(|(row, z)| answer.contact_set.contains(**row) != (**z > 0.0)).map(|(row, z)| (*row, *z / most, answer.multiplier[*row] / most)).take(4).collect();
-        println!("{} {name}: n {} m {m} r {} eq {} force {force:.1e} u {moved:.1e} {wrong:?} {:?} {} {:.1} ms, {:.1} ms", if force > 1e-9 || moved > 1e-9 || !wrong.is_empty() {"XX"} else {"ok"}, problem.dofs(), made.motions.len(), problem.equality_rows(), solution.class, solution.method, 1e3*of_made, 1e3*of_lcp);
+        let wrong: Vec<_> = made
+            .rows
+            .iter()
+            .zip(&solution.z)
+            .filter(|(row, z)| answer.contact_set.contains(**row) != (**z > 0.0))
+            .map(|(row, z)| (*row, *z / most, answer.multiplier[*row] / most))
+            .take(4)
+            .collect();
+        println!(
+            "{} {name}: n {} m {m} r {} eq {} force {force:.1e} u {moved:.1e} {wrong:?} {:?} {} {:.1} ms, {:.1} ms",
+            if force > 1e-9 || moved > 1e-9 || !wrong.is_empty() { "XX" } else { "ok" },
+            problem.dofs(),
+            made.motions.len(),
+            problem.equality_rows(),
+            solution.class,
+            solution.method,
+            1e3 * of_made,
+            1e3 * of_lcp
+        );
     }
 }
 
@@ -77,7 +110,10 @@ fn a_scene_and_the_complementarity_problem_of_its_forces_have_one_answer() {
     let (mut seen, mut files) = (Seen::default(), Vec::new());
     scenes_in(&support::root().join("examples"), &mut files);
     for file in files {
-        let Ok(scene) = Scene::read(&file) else { println!("XX {file:?}"); continue };
+        let Ok(scene) = Scene::read(&file) else {
+            println!("XX {file:?}");
+            continue;
+        };
         if scene.analysis.is_none() {
             seen.compare(file.file_name().unwrap().to_str().unwrap(), scene.build().unwrap().problem());
         }
@@ -85,9 +121,18 @@ fn a_scene_and_the_complementarity_problem_of_its_forces_have_one_answer() {
     let first = seed(1);
     for number in 0..cases(8, 200) {
         let seed = first + number;
-        for (kind, make) in [("plane", plane_scenes::scene as fn(u64) -> _), ("pair", pair_scenes::scene), ("key", key_scenes::scene), ("axis", axis_scenes::scene), ("space", space_scenes::scene)] {
+        for (kind, make) in [
+            ("plane", plane_scenes::scene as fn(u64) -> _),
+            ("pair", pair_scenes::scene),
+            ("key", key_scenes::scene),
+            ("axis", axis_scenes::scene),
+            ("space", space_scenes::scene),
+        ] {
             let (scene, _) = make(seed);
-            let Ok(model) = scene.build() else { println!("XX {kind}"); continue };
+            let Ok(model) = scene.build() else {
+                println!("XX {kind}");
+                continue;
+            };
             seen.compare(&format!("{kind} {seed}"), model.problem());
         }
     }

@@ -1,24 +1,6 @@
-//! The settings of a solve, and the parts of an answer: plain data.
+//! The parts of an answer: plain data.
 
-use signorini_qp::Settings;
-
-/// Settings of [`solve_lcp`](crate::solve_lcp).
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct LcpSettings {
-    /// Largest residual of an answer, relative to the terms of each row.
-    pub tolerance: f64,
-    /// Largest number of pivots, and of steps of block pivoting.
-    pub max_pivots: usize,
-    /// Settings of the quadratic programs; their memory and their watch hold for pivoting as well.
-    pub qp: Settings,
-}
-
-impl Default for LcpSettings {
-    fn default() -> Self {
-        LcpSettings { tolerance: 1e-9, max_pivots: 50_000, qp: Settings::default() }
-    }
-}
+use signorini_qp::ContactSet;
 
 /// The class of M that decides the method: the first of these that it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,16 +17,16 @@ pub enum Class {
     General,
 }
 
-/// The number of solutions, as far as it is proven.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Uniqueness {
-    /// There is exactly one solution for every q: M is a P-matrix.
-    One,
-    /// All solutions have the same w, and z may be one of several: M is symmetric and semidefinite, and is not shown to
-    /// be definite.
-    Several,
-    /// Nothing is proven.
-    Unknown,
+impl Class {
+    pub fn name(self) -> &'static str {
+        match self {
+            Class::Symmetric => "symmetric",
+            Class::H => "h-matrix",
+            Class::Monotone => "monotone",
+            Class::P => "p-matrix",
+            Class::General => "general",
+        }
+    }
 }
 
 /// Where an unknown lies.
@@ -65,22 +47,27 @@ pub struct LcpSolution {
     pub z: Vec<f64>,
     /// w = M z + q, length n, in units of q; summed with twice the working precision.
     pub w: Vec<f64>,
-    /// The class of M.
-    pub class: Class,
-    /// The statement about other solutions.
-    pub uniqueness: Uniqueness,
+    /// The class of M, which decides the methods: `symmetric` and positive semidefinite to rounding, if need be after
+    /// its rows were multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector d > 0 with
+    /// `<M> d > 0` was found, `<M>` the comparison matrix); `monotone` (M + M' semidefinite to rounding, likewise); a
+    /// `p-matrix` (decided for at most 16 unknowns); or `general`.
+    pub class: &'static str,
+    /// `Some(true)` if there is proven to be one solution for every q, because M is a P-matrix; `Some(false)` if M is
+    /// symmetric and semidefinite, and not shown to be definite: all solutions then share w, and z may be one of
+    /// several; `None` if nothing is proven.
+    pub is_unique: Option<bool>,
     /// Upper bounds on `|z_i - z_i*|` of the only solution z*, one entry per unknown, in units of z; or the reason why
     /// none is known. The rounding of its computation is included.
     pub error: Result<Vec<f64>, String>,
     /// Upper bounds on `|w_i - w_i*|` for every solution w*, one entry per row, in units of w; or the reason why none
     /// is known.
     pub image_error: Result<Vec<f64>, String>,
-    /// The places that the bounds prove, one entry per unknown: of a solution with `w_i* > 0`, with `w_i* < 0`, or with
-    /// z_i* strictly between its bounds.
-    pub proven: Vec<Option<Place>>,
-    /// The residual `z - mid(l, z - w, u)`, one entry per unknown, relative, each side in its own scale: the least over the three
-    /// places of what is missing there. What w misses is relative to `t_i = |q_i| + sum |M_ij z_j|`, a distance to a bound
-    /// is taken as what it moves in any row k, relative to t_k.
+    /// The unknowns whose places the bounds prove: of every solution those with `w_i* > 0`, of the only one those
+    /// strictly between their bounds, and those with `w_i* < 0`.
+    pub proven: [ContactSet; 3],
+    /// The residual `z - mid(l, z - w, u)`, one entry per unknown, relative, each side in its own scale: the least over
+    /// the three places of what is missing there. What w misses is relative to `t_i = |q_i| + sum |M_ij z_j|`, a
+    /// distance to a bound is taken as what it moves in any row k, relative to t_k.
     pub residual: Vec<f64>,
     /// `quadratic-program`, `proximal`, `gap-program`, `principal-pivoting`, `lemke` or `given`.
     pub method: &'static str,

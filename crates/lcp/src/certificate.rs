@@ -1,16 +1,16 @@
 //! The certificate of a point, whatever it comes from: residual, bounds on the errors of z and w, proven places. All is
 //! recomputed from M, q, l and u, with rounding counted.
 //!
-//! The point z is moved onto its places, which gives x. Then x solves the problem for another offset q + d exactly: with
-//! w = M x + q, `d_i = -w_i` between the bounds, `(-w_i)+` at l, `-(w_i)+` at u. For e = x - z* that gives in each row
-//! `e_i (M e + d)_i <= 0`, and therefore, in the scaled units of A,
+//! The point z is moved onto its places, which gives x. Then x solves the problem for another offset q + d exactly:
+//! with w = M x + q, `d_i = -w_i` between the bounds, `(-w_i)+` at l, `-(w_i)+` at u. For e = x - z* that gives in each
+//! row `e_i (M e + d)_i <= 0`, and therefore, in the scaled units of A,
 //!
 //! * `e'A e <= |e| |d|`: `|e| <= |d| / a` and `e'A e <= |d|^2 / a`, a the least eigenvalue of (A + A')/2;
 //! * `A_ii |e_i| - sum |A_ij| |e_j| <= |d_i|`: `|e| <= v` for every v >= 0 with `<A> v >= |d|`, if A is an H-matrix;
 //! * `|w_i - w_i*| <= sqrt(A_ii e'A e)` for a symmetric A, by the inequality of Cauchy and Schwarz.
 //!
-//! If A is symmetric and only semidefinite, x is moved on until it meets the inequalities; then e'A e is at most the gap
-//! `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+`.
+//! If A is symmetric and only semidefinite, x is moved on until it meets the inequalities; then e'A e is at most the
+//! gap `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+`.
 //!
 //! # Source
 //! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), section 5.10; X. Chen, S. Xiang,
@@ -106,7 +106,7 @@ pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
     let error: Vec<f64> = (0..n).map(|i| in_units(i, error[i])).collect();
     let image_error = image_errors(lcp, known, (&z, &beside), &error, energy);
     let [w, ..] = lcp.image(&z);
-    let proven = (0..n)
+    let proven: Vec<Option<Place>> = (0..n)
         .map(|i| {
             let (e, of_w) = (error[i], image_error[i]);
             let is_between = z[i] - e > lcp.lower()[i] && z[i] + e < lcp.upper()[i];
@@ -124,9 +124,10 @@ pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
         image_error: said(image_error, NO_IMAGE_ERROR),
         z,
         w,
-        class: known.class,
-        uniqueness: known.uniqueness,
-        proven,
+        class: known.class.name(),
+        is_unique: known.is_unique,
+        proven: [Place::Lower, Place::Between, Place::Upper]
+            .map(|place| proven.iter().map(|proven| *proven == Some(place)).collect()),
         residual,
         method: "given",
         iterations: 0,
@@ -198,12 +199,11 @@ fn image_errors(lcp: &Lcp, known: &Known, (z, x): (&[f64], &[f64]), error: &[f64
     }
     if scaled.is_symmetric && energy.is_finite() {
         let moved = lcp.matrix().mul_abs(&z.iter().zip(x).map(|(z, x)| z - x).collect::<Vec<_>>());
-        for (i, j, value) in scaled.matrix.triplets().filter(|entry| entry.0 == entry.1) {
-            by_rows[i] = by_rows[i].min(moved[j] * OUTWARD + value.max(0.0).sqrt() * energy / scaled.row[i]);
-        }
         // A row of a semidefinite matrix without a diagonal entry is zero.
-        let diagonal = scaled.symmetric_part(0.0).map(|part| part.diagonal()).unwrap_or_default();
-        diagonal.iter().enumerate().filter(|entry| *entry.1 == 0.0).for_each(|(i, _)| by_rows[i] = 0.0);
+        for (i, value) in scaled.diagonal().into_iter().enumerate() {
+            let by_energy = if value > 0.0 { value.sqrt() * energy / scaled.row[i] } else { 0.0 };
+            by_rows[i] = by_rows[i].min(moved[i] * OUTWARD + by_energy);
+        }
     }
     let all = by_rows.iter().zip(&rounding).zip(&w);
     all.map(|((by_row, rounding), w)| (by_row + rounding + f64::EPSILON * w.abs()) * OUTWARD).collect()

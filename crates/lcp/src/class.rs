@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use signorini_qp::{Cholesky, Error as QpError, SparseMatrix, SymmetricMatrix, dot};
 
-use crate::answer::{Class, Uniqueness};
+use crate::answer::Class;
 use crate::dense::Lu;
 use crate::error::Error;
 use crate::problem::Lcp;
@@ -28,7 +28,8 @@ const SWEEPING: usize = 200_000_000;
 pub struct Known {
     pub scaled: Scaled,
     pub class: Class,
-    pub uniqueness: Uniqueness,
+    /// See the field of the answer.
+    pub is_unique: Option<bool>,
     /// A lower bound on the least eigenvalue of (A + A') / 2, if it is positive.
     pub least: Option<f64>,
     /// The factor of (A + A') / 2 with a little more on its diagonal, if that is semidefinite.
@@ -50,13 +51,13 @@ impl Known {
         let (n, matrix) = (lcp.unknowns(), lcp.matrix());
         let known = |scaled: Scaled, class: Class, found: Option<Semidefinite>| {
             let (factor, least) = found.map_or((None, None), |found| (Some(found.factor), found.least));
-            let uniqueness = match class {
-                _ if least.is_some() => Uniqueness::One,
-                Class::H | Class::P => Uniqueness::One,
-                Class::Symmetric if scaled.is_symmetric => Uniqueness::Several,
-                _ => Uniqueness::Unknown,
+            let is_unique = match class {
+                _ if least.is_some() => Some(true),
+                Class::H | Class::P => Some(true),
+                Class::Symmetric if scaled.is_symmetric => Some(false),
+                _ => None,
             };
-            Known { scaled, class, uniqueness, least, factor }
+            Known { scaled, class, is_unique, least, factor }
         };
         let mut monotone = None;
         for share in [vec![1.0; n], shares(matrix)] {
@@ -92,11 +93,13 @@ fn matrix_is_finite(matrix: &SparseMatrix) -> bool {
 /// S. M. Rump, *Verification of positive definiteness*, BIT 46 (2006) 433-452: a Cholesky factorisation that ends shows
 /// that the least eigenvalue is above -(n + 1) eps trace.
 fn semidefinite(scaled: &Scaled) -> Result<Option<Semidefinite>, Error> {
-    let part = scaled.symmetric_part(0.0)?;
-    let (n, diagonal) = (part.dim() as f64, part.diagonal());
+    let (diagonal, ones) = (scaled.diagonal(), vec![1.0; scaled.offset.len()]);
+    let n = diagonal.len() as f64;
+    // Beside a zero on its diagonal, a semidefinite matrix has zeros.
     let has_none = |i: usize| diagonal[i] == 0.0;
+    let is_coupled = |(i, j, value): (usize, usize, f64)| value != 0.0 && i != j && (has_none(i) || has_none(j));
     if diagonal.iter().any(|&value| value < 0.0)
-        || part.lower().triplets().any(|(i, j, value)| value != 0.0 && i != j && (has_none(i) || has_none(j)))
+        || (diagonal.contains(&0.0) && scaled.symmetric_part(0.0)?.lower().triplets().any(is_coupled))
     {
         return Ok(None);
     }
@@ -105,11 +108,10 @@ fn semidefinite(scaled: &Scaled) -> Result<Option<Semidefinite>, Error> {
     };
     // Rounding of the factorisation, and of the scaled entries and their means.
     let largest = |sums: Vec<f64>| sums.into_iter().fold(0.0, f64::max);
-    let ones = vec![1.0; part.dim()];
     let size = (largest(scaled.matrix.mul_abs(&ones)) * largest(scaled.matrix.mul_abs_transposed(&ones))).sqrt();
     let rounding = 1.01 * f64::EPSILON * ((n + 20.0) * diagonal.iter().sum::<f64>() + 4.0 * size);
     let softest = factor.softest_vector();
-    let estimate = dot(&softest, &part.mul(&softest)) / dot(&softest, &softest);
+    let estimate = dot(&softest, &scaled.matrix.mul(&softest)) / dot(&softest, &softest);
     for share in [0.5, 0.05] {
         let least = share * estimate;
         if least > 2.0 * rounding && if_definite(&scaled.symmetric_part(-least)?)?.is_some() {
@@ -138,8 +140,9 @@ pub fn compared(matrix: &SparseMatrix, d: &[f64]) -> Vec<f64> {
     own.iter().zip(&others).map(|(own, others)| own - others - rounding * (own + others) - f64::MIN_POSITIVE).collect()
 }
 
-/// A vector d of positive entries, for which `<A> d` is at least about `right`; `None` if none was found. Only [`compared`]
-/// shows that A is an H-matrix. The diagonal is lowered a little, so that `<A> d` stays above the rounding of its terms.
+/// A vector d of positive entries, for which `<A> d` is at least about `right`; `None` if none was found. Only
+/// [`compared`] shows that A is an H-matrix. The diagonal is lowered a little, so that `<A> d` stays above the rounding
+/// of its terms.
 pub fn comparison_solution(matrix: &SparseMatrix, right: &[f64]) -> Option<Vec<f64>> {
     let n = right.len();
     let mut diagonal = vec![0.0; n];

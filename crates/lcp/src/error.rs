@@ -21,9 +21,9 @@ pub enum Error {
     Bounds {
         /// The unknown, counted from 0.
         index: usize,
-        /// Its lower bound, in its unit.
+        /// The bound from below, in the unit of z.
         lower: f64,
-        /// Its upper bound, in its unit.
+        /// The bound from above, in the unit of z.
         upper: f64,
     },
     /// Inequalities that no point meets, so that there is no solution.
@@ -40,7 +40,7 @@ pub enum Error {
         needed: f64,
     },
     /// No point was found, and none is shown to be impossible.
-    #[error("no solution was found: {reason}; M is not monotone, so that this proves nothing")]
+    #[error("no solution was found, which proves nothing: {reason}")]
     NotFound {
         /// The methods that were tried, and how they ended, in words.
         reason: String,
@@ -56,7 +56,7 @@ pub enum Error {
         index: usize,
         /// This residual, dimensionless.
         residual: f64,
-        /// The tolerance that was requested.
+        /// The largest that the settings allow, dimensionless.
         tolerance: f64,
     },
     /// A matrix that is too large for the only method that fits its class.
@@ -70,7 +70,7 @@ pub enum Error {
         unknowns: usize,
         /// Memory of the dense matrices, in bytes.
         bytes: f64,
-        /// Memory that the solve may take, in bytes.
+        /// Bytes that they may take.
         allowed: f64,
     },
 }

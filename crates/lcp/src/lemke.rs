@@ -9,10 +9,12 @@
 
 use std::cmp::Ordering;
 
-use crate::answer::{LcpSettings, Place};
+use signorini_qp::Settings;
+
+use crate::answer::Place;
 use crate::basis::check_size;
 use crate::error::Error;
-use crate::run::Found;
+use crate::found::Found;
 use crate::scaled::Scaled;
 
 /// Entries below this share of the largest of their column, and differences of ratios below it, are rounding.
@@ -94,12 +96,12 @@ impl Tableau {
     }
 }
 
-/// A point of a problem with any matrix, if the method ends in one. Each `attempt` has its own artificial column, and so
-/// its own way; the entries of the column differ, which leaves few ties.
+/// A point of a problem with any matrix, if the method ends in one. Each `attempt` has its own artificial column, and
+/// so its own way; the entries of the column differ, which leaves few ties.
 ///
 /// # Errors
 /// [`Error::TooLarge`].
-pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &LcpSettings) -> Result<Found, Error> {
+pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &Settings) -> Result<Found, Error> {
     let (lower, upper) = (&scaled.lower, &scaled.upper);
     let mut columns = Vec::new();
     for of in 0..lower.len() {
@@ -122,8 +124,8 @@ pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &LcpSettin
     };
     let mut entering = tableau.basic[lowest] - count;
     tableau.pivot(lowest, count);
-    for step in 1..=settings.max_pivots {
-        if settings.qp.watch.is_over() {
+    for step in 1..=settings.max_iterations {
+        if settings.watch.is_over() {
             return end("was stopped");
         }
         let Some(column) = tableau.others.iter().position(|&other| other == entering) else {

@@ -3,13 +3,13 @@
 //! between them.
 //!
 //! ```
-//! use signorini_lcp::{Class, Lcp, LcpSettings, Uniqueness, solve_lcp};
-//! use signorini_qp::SparseMatrix;
+//! use signorini_lcp::{Lcp, solve_lcp};
+//! use signorini_qp::{Settings, SparseMatrix};
 //! // A plane that is pressed onto two supports with z >= 0: w = [2 -1; -1 2] z + (-1, 3).
 //! let matrix = SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 2.0)])?;
-//! let solution = solve_lcp(&Lcp::nonnegative(matrix, vec![-1.0, 3.0])?, &LcpSettings::default())?;
+//! let solution = solve_lcp(&Lcp::nonnegative(matrix, vec![-1.0, 3.0])?, &Settings::default())?;
 //! assert_eq!((&solution.z[..], &solution.w[..]), (&[0.5, 0.0][..], &[0.0, 2.5][..]));
-//! assert_eq!((solution.class, solution.uniqueness), (Class::Symmetric, Uniqueness::One));
+//! assert_eq!((solution.class, solution.is_unique), ("symmetric", Some(true)));
 //! assert!(solution.error.unwrap().iter().all(|&error| error < 1e-14));
 //! # Ok::<(), signorini_lcp::Error>(())
 //! ```
@@ -38,6 +38,7 @@ mod certificate;
 mod class;
 mod dense;
 mod error;
+mod found;
 mod lemke;
 mod pivoting;
 mod problem;
@@ -45,11 +46,14 @@ mod quadratic;
 mod run;
 mod scaled;
 
-pub use answer::{Class, LcpSettings, LcpSolution, Place, Uniqueness};
+pub use answer::LcpSolution;
 pub use error::Error;
 pub use problem::Lcp;
 
-/// Solves a linear complementarity problem; `Ok` means that the residual of every unknown meets the tolerance.
+use signorini_qp::{Error as QpError, Settings};
+
+/// Solves a linear complementarity problem; `Ok` means that the residual of every unknown meets the tolerance of the
+/// settings. Their method is that of the quadratic programs; iterations, memory and watch hold for pivoting as well.
 ///
 /// # Errors
 /// * [`Error::Infeasible`] with the ray y for inequalities that no point meets; a symmetric problem is never unbounded,
@@ -57,22 +61,25 @@ pub use problem::Lcp;
 /// * [`Error::NotCertified`] with the best point, if its residual exceeds the tolerance,
 /// * [`Error::TooLarge`] if M has no method that takes sparse matrices, and is too large for a dense one,
 /// * [`Error::Qp`] with `Setting`, `Interrupted`, `OutOfTime`, `NoRoom` or `Numerical`.
-pub fn solve_lcp(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
+pub fn solve_lcp(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     run::solved(lcp, settings)
 }
 
-/// The certificate of a point z of length n, in its units, that came from elsewhere: the same as that of
-/// [`solve_lcp`], with the method `given`.
-///
-/// # Errors
-/// [`Error::Qp`] with `Length` or `NotFinite` for a wrong z, and `Numerical` if memory does not suffice for a factor.
-pub fn certify(lcp: &Lcp, z: &[f64]) -> Result<LcpSolution, Error> {
-    signorini_qp::Error::check_length("unknowns z", z.len(), lcp.unknowns(), "rows of M")?;
-    if let Some((at, &value)) = z.iter().enumerate().find(|entry| !entry.1.is_finite()) {
-        let (name, at, allowed) = ("unknowns z", at.to_string(), "finite");
-        return Err(signorini_qp::Error::NotFinite { name, at, value, allowed }.into());
+impl Lcp {
+    /// The certificate of a point z of length n, in its units, that came from elsewhere: the same as that of
+    /// [`solve_lcp`], with the method `given`.
+    ///
+    /// # Errors
+    /// [`Error::Qp`] with `Length` or `NotFinite` for a wrong z, and `Numerical` if memory does not suffice for a
+    /// factor.
+    pub fn certify(&self, z: &[f64]) -> Result<LcpSolution, Error> {
+        QpError::check_length("unknowns z", z.len(), self.unknowns(), "rows of M")?;
+        if let Some((at, &value)) = z.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+            let (name, at, allowed) = ("unknowns z", at.to_string(), "finite");
+            return Err(QpError::NotFinite { name, at, value, allowed }.into());
+        }
+        let start = std::time::Instant::now();
+        let solution = certificate::examined(self, &class::Known::of(self)?, z.to_vec());
+        Ok(LcpSolution { seconds: start.elapsed().as_secs_f64(), ..solution })
     }
-    let start = std::time::Instant::now();
-    let solution = certificate::examined(lcp, &class::Known::of(lcp)?, z.to_vec());
-    Ok(LcpSolution { seconds: start.elapsed().as_secs_f64(), ..solution })
 }

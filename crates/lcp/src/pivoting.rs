@@ -4,15 +4,17 @@
 //!
 //! # Source
 //! J. J. Judice, F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
-//! complementarity problems*, Comput. Oper. Res. 21 (1994) 587-596; K. G. Murty, *Note on a Bard-type scheme for solving
-//! the complementarity problem*, Opsearch 11 (1974) 123-130.
+//! complementarity problems*, Comput. Oper. Res. 21 (1994) 587-596; K. G. Murty, *Note on a Bard-type scheme for
+//! solving the complementarity problem*, Opsearch 11 (1974) 123-130.
 
-use crate::answer::{LcpSettings, Place, Uniqueness};
+use signorini_qp::Settings;
+
+use crate::answer::Place;
 use crate::basis::settled;
 use crate::class::Known;
 use crate::error::Error;
+use crate::found::Found;
 use crate::problem::Lcp;
-use crate::run::Found;
 
 /// Steps of all exchanges at once that may fail to lower the number of wrong signs.
 const PATIENCE: usize = 10;
@@ -32,13 +34,14 @@ pub fn principal_pivoting(
     known: &Known,
     mut places: Vec<Place>,
     allowed: f64,
-    settings: &LcpSettings,
+    settings: &Settings,
 ) -> Result<Found, Error> {
     let (lower, upper) = (lcp.lower(), lcp.upper());
     let (mut least, mut patience) = (usize::MAX, PATIENCE);
-    let most = if known.uniqueness == Uniqueness::One { settings.max_pivots } else { TRIALS.min(settings.max_pivots) };
+    let most =
+        if known.is_unique == Some(true) { settings.max_iterations } else { TRIALS.min(settings.max_iterations) };
     for step in 1..=most {
-        if settings.qp.watch.is_over() {
+        if settings.watch.is_over() {
             break;
         }
         let Some(z) = settled(lcp, known, &places, allowed)? else {

@@ -1,6 +1,6 @@
 //! The complementarity problem, checked once.
 
-use signorini_qp::{Accumulator, Error as QpError, SparseMatrix};
+use signorini_qp::{Error as QpError, SparseMatrix};
 
 use crate::error::Error;
 
@@ -11,12 +11,12 @@ const INFINITE: f64 = 1e20;
 /// `z_i = l_i`, `w_i <= 0` if `z_i = u_i`, and `w_i = 0` between them.
 ///
 /// ```
-/// use signorini_lcp::{Lcp, LcpSettings, solve_lcp};
-/// use signorini_qp::SparseMatrix;
+/// use signorini_lcp::{Lcp, solve_lcp};
+/// use signorini_qp::{Settings, SparseMatrix};
 ///
 /// // z >= 0, w = [2 1; 1 2] z + (-4, 1) >= 0, z'w = 0.
 /// let matrix = SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (0, 1, 1.0), (1, 0, 1.0), (1, 1, 2.0)])?;
-/// let solution = solve_lcp(&Lcp::nonnegative(matrix, vec![-4.0, 1.0])?, &LcpSettings::default())?;
+/// let solution = solve_lcp(&Lcp::nonnegative(matrix, vec![-4.0, 1.0])?, &Settings::default())?;
 /// assert_eq!((solution.z, solution.w), (vec![2.0, 0.0], vec![0.0, 3.0]));
 /// # Ok::<(), signorini_lcp::Error>(())
 /// ```
@@ -29,8 +29,8 @@ pub struct Lcp {
 }
 
 impl Lcp {
-    /// The problem of M (n x n, any real matrix, both triangles), q (length n, in units of w), and bounds l and u (length n, in units
-    /// of z); a bound of magnitude 1e20 or more is infinite.
+    /// The problem of M (n x n, any real matrix, both triangles), q (length n, in units of w), and bounds l and u
+    /// (length n, in units of z); a bound of magnitude 1e20 or more is infinite.
     ///
     /// # Errors
     /// [`Error::Qp`] with `Shape` or `Length` for sizes that do not fit and `NotFinite` for an offset that is not
@@ -96,9 +96,7 @@ impl Lcp {
     /// w = M z + q, summed with twice the working precision, its terms t = |q| + |M| |z|, and a bound on the rounding
     /// of each entry of w.
     pub(crate) fn image(&self, z: &[f64]) -> [Vec<f64>; 3] {
-        let mut sums = Accumulator::new(&self.offset);
-        sums.add_columns(|column| self.matrix.column(column), z);
-        let w = sums.into_sums();
+        let w = self.matrix.mul_added(z, &self.offset);
         let mut terms = self.matrix.mul_abs(z);
         terms.iter_mut().zip(&self.offset).for_each(|(terms, q)| *terms += q.abs());
         // Ogita, Rump, Oishi (2005), Proposition 4.5; products that underflow lose less than the smallest double each.

@@ -1,13 +1,14 @@
 //! The convex programs behind a complementarity problem, solved by the QP: the energy of a symmetric M, the gap of a
 //! monotone one. The rays that show that there is no point at all are found and checked here.
 
-use signorini_qp::{ContactProblem, Error as QpError, Prepared, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini_qp::{
+    ContactProblem, Error as QpError, Prepared, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
+};
 
-use crate::answer::LcpSettings;
 use crate::error::Error;
+use crate::found::Found;
 use crate::lemke::lemke;
 use crate::problem::Lcp;
-use crate::run::Found;
 use crate::scaled::Scaled;
 
 /// What each proximal step adds to the unit diagonal of a symmetric matrix.
@@ -104,18 +105,18 @@ fn negative(values: &[f64]) -> Vec<f64> {
 ///
 /// # Errors
 /// Those of the QP that are not about this problem.
-pub fn quadratic_program(scaled: &Scaled, settings: &LcpSettings) -> Result<Found, Error> {
+pub fn quadratic_program(scaled: &Scaled, settings: &Settings) -> Result<Found, Error> {
     let problem = Rows::of_bounds(scaled).problem(scaled.symmetric_part(0.0)?, negative(&scaled.offset))?;
-    found(scaled, solve(&problem, &settings.qp), "quadratic program")
+    found(scaled, solve(&problem, settings), "quadratic program")
 }
 
 /// The same for a singular A: by steps with a regular matrix, each from the last point, on one factor.
 ///
 /// # Errors
 /// As [`quadratic_program`].
-pub fn proximal(scaled: &Scaled, settings: &LcpSettings) -> Result<Found, Error> {
+pub fn proximal(scaled: &Scaled, settings: &Settings) -> Result<Found, Error> {
     let problem = Rows::of_bounds(scaled).problem(scaled.symmetric_part(STEP)?, negative(&scaled.offset))?;
-    let prepared = Prepared::new(&problem, &settings.qp)?;
+    let prepared = Prepared::new(&problem, settings)?;
     let mut x = vec![0.0_f64; scaled.offset.len()];
     let mut last = Found::Nothing("no proximal step".into());
     for _ in 0..STEPS {
@@ -137,7 +138,7 @@ pub fn proximal(scaled: &Scaled, settings: &LcpSettings) -> Result<Found, Error>
 ///
 /// # Errors
 /// As [`quadratic_program`].
-pub fn gap_program(scaled: &Scaled, settings: &LcpSettings) -> Result<Found, Error> {
+pub fn gap_program(scaled: &Scaled, settings: &Settings) -> Result<Found, Error> {
     let (n, lower, upper) = (scaled.offset.len(), &scaled.lower, &scaled.upper);
     let boxed: Vec<usize> = (0..n).filter(|&i| lower[i].is_finite() && upper[i].is_finite()).collect();
     let base = |i: usize| [lower[i], upper[i]].into_iter().find(|bound| bound.is_finite()).unwrap_or(0.0);
@@ -154,7 +155,7 @@ pub fn gap_program(scaled: &Scaled, settings: &LcpSettings) -> Result<Found, Err
         load.push(lower[i] - upper[i]);
     }
     let stiffness = scaled.symmetric_part(0.0)?.times(2.0)?.with_empty(boxed.len());
-    match rows.problem(stiffness, load).and_then(|problem| solve(&problem, &settings.qp)) {
+    match rows.problem(stiffness, load).and_then(|problem| solve(&problem, settings)) {
         Err(QpError::Infeasible { rows, weights, .. }) => {
             let mut ray = vec![0.0; n];
             for (row, weight) in rows.into_iter().zip(weights) {
@@ -173,7 +174,7 @@ pub fn gap_program(scaled: &Scaled, settings: &LcpSettings) -> Result<Found, Err
 ///
 /// # Errors
 /// Those of Lemke's method.
-pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &LcpSettings) -> Result<Option<Error>, Error> {
+pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &Settings) -> Result<Option<Error>, Error> {
     let n = scaled.offset.len();
     let mut rows = Rows::of_bounds(scaled);
     let bounds = rows.gaps.len();

@@ -2,27 +2,18 @@
 
 use std::time::Instant;
 
-use signorini_qp::memory;
+use signorini_qp::{Settings, memory};
 
-use crate::answer::{Class, LcpSettings, LcpSolution, Place, Uniqueness};
+use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::settled;
 use crate::certificate::{examined, onto, placed};
 use crate::class::Known;
 use crate::error::Error;
+use crate::found::Found;
 use crate::lemke::lemke;
 use crate::pivoting::principal_pivoting;
 use crate::problem::Lcp;
 use crate::quadratic::{contradiction, gap_program, infeasible, proximal, quadratic_program};
-
-/// The end of a method.
-pub enum Found {
-    /// A point, in units of z, perhaps a rough one; if the method ends with a basis, with the places in it.
-    Point { z: Vec<f64>, places: Option<Vec<Place>>, iterations: usize },
-    /// A ray in scaled units that may show that there is no solution.
-    Ray(Vec<f64>),
-    /// Nothing, for this reason.
-    Nothing(String),
-}
 
 /// The methods.
 #[derive(Clone, Copy)]
@@ -61,13 +52,16 @@ impl Way {
         }
     }
 
-    fn found(self, lcp: &Lcp, known: &Known, allowed: f64, settings: &LcpSettings) -> Result<Found, Error> {
+    fn found(self, lcp: &Lcp, known: &Known, allowed: f64, settings: &Settings) -> Result<Found, Error> {
         let scaled = &known.scaled;
         match self {
             Way::QuadraticProgram => quadratic_program(scaled, settings),
             Way::Proximal => proximal(scaled, settings),
             Way::GapProgram => gap_program(scaled, settings),
             Way::PrincipalPivoting => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
+            Way::Lemke(_) if known.class != Class::General && lcp.unknowns() > DENSE => {
+                Ok(Found::Nothing(format!("Lemke's method is not tried on more than {DENSE} unknowns of this class")))
+            }
             Way::Lemke(attempt) => lemke(scaled, attempt, allowed, settings),
         }
     }
@@ -90,6 +84,9 @@ const ROUNDING: f64 = 1e-15;
 /// along a ray, where terms are large, all conditions hold relative to them.
 const SHARP: f64 = 1e-13;
 
+/// Most unknowns for a dense tableau where it is not the only method, and for the search for a ray.
+const DENSE: usize = 1000;
+
 /// Unknowns below this share of the largest, in scaled units, may be zero.
 const DUST: f64 = 1e-14;
 
@@ -99,10 +96,10 @@ fn polished(
     known: &Known,
     places: Vec<Place>,
     allowed: f64,
-    settings: &LcpSettings,
+    settings: &Settings,
 ) -> Result<Option<Vec<f64>>, Error> {
-    match known.uniqueness {
-        Uniqueness::One => match principal_pivoting(lcp, known, places, allowed, settings)? {
+    match known.is_unique {
+        Some(true) => match principal_pivoting(lcp, known, places, allowed, settings)? {
             Found::Point { z, .. } => Ok(Some(z)),
             _ => Ok(None),
         },
@@ -118,14 +115,11 @@ fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
 }
 
 /// See [`solve_lcp`](crate::solve_lcp).
-pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
+pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     let start = Instant::now();
-    let tolerance = settings.tolerance;
-    if !(tolerance > 0.0 && tolerance.is_finite()) {
-        let (name, allowed) = ("tolerance", "positive and finite");
-        return Err(signorini_qp::Error::Setting { name, value: tolerance, allowed }.into());
-    }
-    let allowed = memory::allowed(settings.qp.memory);
+    let settings = &settings.started().map_err(Error::Qp)?;
+    let tolerance = settings.goal().tolerance;
+    let allowed = memory::allowed(settings.memory);
     let known = Known::of(lcp)?;
     let (mut best, mut reasons): (Option<LcpSolution>, Vec<String>) = (None, Vec::new());
     for way in Way::of(&known) {
@@ -169,7 +163,9 @@ pub fn solved(lcp: &Lcp, settings: &LcpSettings) -> Result<LcpSolution, Error> {
             return Ok(LcpSolution { seconds: start.elapsed().as_secs_f64(), ..solution });
         }
     }
-    if let Some(error) = contradiction(lcp, &known.scaled, allowed, settings)? {
+    if lcp.unknowns() <= DENSE
+        && let Some(error) = contradiction(lcp, &known.scaled, allowed, settings)?
+    {
         return Err(error);
     }
     let best = best.map(|best| LcpSolution { seconds: start.elapsed().as_secs_f64(), ..best });

@@ -84,18 +84,30 @@ impl Scaled {
         Scaled::new(lcp, row, column)
     }
 
+    /// The diagonal of A.
+    pub fn diagonal(&self) -> Vec<f64> {
+        let mut diagonal = vec![0.0; self.offset.len()];
+        self.matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = value);
+        diagonal
+    }
+
     /// The symmetric part (A + A') / 2, with this number added to its diagonal.
     pub fn symmetric_part(&self, shift: f64) -> Result<SymmetricMatrix, Error> {
         let n = self.offset.len();
-        let entry = |(i, j, value): (usize, usize, f64)| (i.max(j), i.min(j), if i == j { value } else { 0.5 * value });
-        let mut entries: Vec<_> = self.matrix.triplets().map(entry).collect();
-        entries.extend((0..n).map(|i| (i, i, shift)));
+        let half = |(i, j, value): (usize, usize, f64)| (i.max(j), i.min(j), if i == j { value } else { 0.5 * value });
+        let mut entries: Vec<_> = match self.is_symmetric {
+            true => self.matrix.triplets().filter(|entry| entry.0 >= entry.1).collect(),
+            false => self.matrix.triplets().map(half).collect(),
+        };
+        if shift != 0.0 {
+            entries.extend((0..n).map(|i| (i, i, shift)));
+        }
         SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries)?)
     }
 }
 
-/// Exponents of rows and columns for entries of order one, after each row was multiplied by its share: the least squares
-/// of their logarithms, nearly.
+/// Exponents of rows and columns for entries of order one, after each row was multiplied by its share: the least
+/// squares of their logarithms, nearly.
 ///
 /// # Source
 /// A. R. Curtis, J. K. Reid, *On the automatic scaling of matrices for Gaussian elimination*, IMA J. Appl. Math. 10

@@ -57,19 +57,17 @@ pub use derivative::{Adjoint, Change, Derivative, Derivatives, Tangent};
 pub use directory::read_problem;
 pub use error::{Error, Failure};
 pub use linear::multigrid::{Multigrid, NearNullSpace};
-pub use linear::{
-    Accumulator, Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest, threads_of_machine,
-};
+pub use linear::{Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest};
 pub use matrix_market::{format_vector, read_vector};
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;
 pub use method::penalty::Penalty;
 pub use method::{Ending, Outcome, Start};
 pub use petsc::Layout as PetscLayout;
-pub use prepared::{BoundarySolution, Delassus, Path, Prepared};
+pub use prepared::{Delassus, Path, Prepared};
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Settings};
-pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution, Why};
+pub use solution::{Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution, Why};
 pub use watch::{Activity, Part, Watch};
 
 use certificate::Bounding;
@@ -126,18 +124,7 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
 /// # Ok::<(), signorini_qp::Error>(())
 /// ```
 pub fn solve_many(problems: &[ContactProblem], settings: &Settings) -> Vec<Result<Solution, Error>> {
-    each_of_many(problems.len(), settings, |number, settings| solve(&problems[number], settings))
-}
-
-/// The results of `solved` for each number below `count`, as [`solve_many`] shares problems out: for problems that are
-/// made one by one.
-#[doc(hidden)]
-pub fn each_of_many<T: Send>(
-    count: usize,
-    settings: &Settings,
-    solved: impl Fn(usize, &Settings) -> T + Sync,
-) -> Vec<T> {
-    run::each(count, settings, solved)
+    settings.each_of_many(problems.len(), |number, settings| solve(&problems[number], settings))
 }
 
 /// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
@@ -148,10 +135,31 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
     solve(problem, &Settings::with_method(Method::qp()))
 }
 
+impl Settings {
+    /// The results of `solved` for each number below `count`, as [`solve_many`] shares problems out: for problems that
+    /// are made one by one.
+    #[doc(hidden)]
+    pub fn each_of_many<T: Send>(&self, count: usize, solved: impl Fn(usize, &Settings) -> T + Sync) -> Vec<T> {
+        run::each(count, self, solved)
+    }
+
+    /// The threads that one problem takes if none are named: those of the machine, at most 8.
+    pub fn threads_of_machine() -> usize {
+        linear::threads_of_machine()
+    }
+}
+
 impl SymmetricMatrix {
     /// The matrix as a Matrix Market file of this name, by its lower triangle.
     pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
         matrix_market::symmetric_file(name, self)
+    }
+}
+
+impl SparseMatrix {
+    /// The matrix as a Matrix Market file of this name.
+    pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
+        matrix_market::general_file(name, self)
     }
 }
 

@@ -192,7 +192,7 @@ impl ModalAnalysis {
         // A travel without mass is determined by the rows of its obstacle.
         let unknowns = &model.parts.unknowns;
         let travels: Vec<usize> = unknowns.pressed.iter().filter_map(|&obstacle| unknowns.travel(obstacle)).collect();
-        let threads = settings.threads.unwrap_or_else(qp::threads_of_machine);
+        let threads = settings.threads.unwrap_or_else(qp::Settings::threads_of_machine);
         let lowest = |closed: &[usize]| problem.modes(&mass, (closed, &travels), count, threads, &settings.watch);
         let found = lowest(&all)?;
         let open = if undecided.is_empty() { None } else { Some(lowest(&closed)?) };

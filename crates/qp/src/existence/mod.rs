@@ -184,9 +184,9 @@ impl Existence {
         ))
     }
 
-    /// As many dofs as there are motions without energy, which hold all of them, each with the stiffness of a dof of its
-    /// kind.
-    pub fn springs(&self) -> Vec<(usize, f64)> {
+    /// As many springs at dofs as there are motions without energy, which hold all of them: their places in a matrix,
+    /// and the stiffness of a dof of their kind.
+    pub fn springs(&self) -> Vec<(usize, usize, f64)> {
         let (kind, mut springs) = (self.scaling.identity(0), Vec::new());
         let mut motions: Vec<Vec<f64>> =
             self.null.vectors.iter().map(|vector| vector.iter().map(|value| value.rounded()).collect()).collect();
@@ -196,7 +196,7 @@ impl Existence {
                 let share = other[dof] / motion[dof];
                 subtract(other, share, &motion);
             }
-            springs.push((dof, kind[dof]));
+            springs.push((dof, dof, kind[dof]));
         }
         springs
     }

@@ -296,6 +296,13 @@ impl SparseMatrix {
         self.product(x, |value| value)
     }
 
+    /// The sum A x + b, length `rows`, with twice the working precision; `x` has length `columns`.
+    pub fn mul_added(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
+        let mut sums = Accumulator::new(b);
+        sums.add_columns(|column| self.column(column), x);
+        sums.into_sums()
+    }
+
     /// The product A' y, length `columns`; `y` has length `rows`.
     pub fn mul_transposed(&self, y: &[f64]) -> Vec<f64> {
         self.transposed_product(y, |value| value)

@@ -30,6 +30,11 @@ pub fn symmetric_file<'a>(name: &'static str, matrix: &'a SymmetricMatrix) -> St
     Streamed::new(name, |out| write_entries(out, matrix.lower(), "symmetric"))
 }
 
+/// A matrix by all its entries, under this name.
+pub fn general_file<'a>(name: &'static str, matrix: &'a SparseMatrix) -> Streamed<'a> {
+    Streamed::new(name, |out| write_entries(out, matrix, "general"))
+}
+
 /// Writes a sparse matrix with `symmetry` `general`, or the lower triangle of a matrix with `symmetry` `symmetric`.
 fn write_entries(out: &mut dyn Write, matrix: &SparseMatrix, symmetry: &str) -> io::Result<()> {
     writeln!(out, "%%MatrixMarket matrix coordinate real {symmetry}")?;

@@ -1,11 +1,10 @@
 //! A contact problem as a linear complementarity problem in its contact forces z = -lambda and the gaps w = g - B u.
 //!
-//! A definite K gives `w = W z + g - B K^-1 f` with the Delassus operator `W = B K^-1 B'`. With motions R without energy,
-//! `u = K+ (f - B'z) + R a`, and the forces balance on the motions:
+//! With motions R without energy, `u = K+ (f - B'z) + R a`, and the forces balance on each motion:
 //!
 //! ```text
-//! [ w ]   [ W     -B R ] [ z ]   [ g - B K+ f ]
-//! [ 0 ] = [ R'B'    0  ] [ a ] + [   -R'f     ]
+//! [ w ]   [ B K+ B'  -B R ] [ z ]   [ g - B K+ f ]
+//! [ 0 ] = [  R'B'      0  ] [ a ] + [   -R'f     ]
 //! ```
 //!
 //! As many springs N as there are motions, if they hold all, give a generalised inverse `K+ = (K + N)^-1`, exactly.
@@ -15,7 +14,7 @@ use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{Kept, check_memory};
 use crate::error::Error;
 use crate::existence::Existence;
-use crate::linear::{SparseMatrix, dot};
+use crate::linear::{SparseMatrix, SymmetricMatrix, check_vector, dot, subtract};
 use crate::memory;
 use crate::problem::ContactProblem;
 use crate::run::solve_any;
@@ -30,36 +29,29 @@ const CORRECTIONS: usize = 2;
 /// `w >= 0` and z'w = 0. Equalities are eliminated.
 #[derive(Clone, Debug)]
 pub struct Delassus {
-    /// M, (m + r) x (m + r): the compliance W of m contact rows, symmetric to the last bit, in length over force; with r
-    /// motions without energy a monotone matrix.
+    /// M, (m + r) x (m + r), for m rows and r motions: first the compliance of the rows, symmetric to the last bit, in
+    /// length over force.
     pub matrix: SparseMatrix,
-    /// q, length m + r: the gaps of the body without contact, in length, then the work of the load on each motion,
-    /// negative.
+    /// q, length m + r: the gaps without contact, in length, and the work of the load on each motion, negative.
     pub offset: Vec<f64>,
     /// The lower bounds of x, length m + r: zero for forces z, `-inf` for a.
     pub lower: Vec<f64>,
     /// The upper bounds of x, length m + r: `+inf`.
     pub upper: Vec<f64>,
-    /// The contact row of each z, length m, increasing: all rows that can close, except for pairs that are equalities.
-    /// Equalities that cannot be eliminated are two rows each, in the order of [`ContactProblem::gap`].
+    /// The contact row of each z, length m, increasing: those that can close. Two opposed rows that are an equality are
+    /// eliminated; equalities that cannot be are two rows each, after those of B.
     pub rows: Vec<usize>,
-    /// The motions R, each of length n, dimensionless: one at one dof that stays, zero at those of the others.
+    /// The motions R, each of length n, dimensionless: one at a dof of its own.
     pub motions: Vec<Vec<f64>>,
     inverse: Inverse,
-    load: Vec<f64>,
-    /// R in the dofs that stay.
-    staying: Vec<Vec<f64>>,
     elimination: Option<Elimination>,
 }
 
-/// A generalised inverse of the stiffness.
+/// A generalised inverse of the stiffness: that of the problem with springs, without equalities.
 #[derive(Clone, Debug)]
 struct Inverse {
-    /// The stiffness with its springs, and the rows, without load and gap.
     held: ContactProblem,
     norm: EnergyNorm,
-    /// The dofs with a spring, and its stiffness.
-    springs: Vec<(usize, f64)>,
 }
 
 impl Prepared {
@@ -73,7 +65,6 @@ impl Prepared {
     /// let problem = ContactProblem::new(SymmetricMatrix::from_lower(one(2.0)?)?, vec![3.0], one(1.0)?, vec![1.0])?;
     /// let lcp = Prepared::new(&problem, &Settings::default())?.delassus()?;
     /// assert_eq!((&lcp.matrix, &lcp.offset[..]), (&one(0.5)?, &[-0.5][..]));
-    /// // z = 1 gives w = 0, and the displacement of the wall.
     /// assert_eq!(lcp.displacement(&[1.0])?, [1.0]);
     /// # Ok::<(), signorini_qp::Error>(())
     /// ```
@@ -86,54 +77,41 @@ impl Prepared {
         let (problem, settings) = (&self.problem, &self.settings.started()?);
         problem.check_rows()?;
         let elimination = if problem.equalities().is_empty() { None } else { Elimination::of(problem)? };
-        let rest = match &elimination {
-            Some(elimination) => elimination.problem(problem)?,
-            None => problem.clone(),
-        };
+        let rest = elimination.as_ref().map_or(Ok(problem.clone()), |elimination| elimination.problem(problem))?;
         let selection = RowSelection::of(&rest);
         let (contact, gap) = (selection.contact(rest.contact()), selection.gap(rest.gap()));
         let kept = Kept::Compliance { boundary: contact.columns_with_entries().len(), rows: gap.len() };
         check_memory(&rest, kept, Some(memory::allowed(settings.memory)))?;
+        let with = |stiffness| ContactProblem::computed(stiffness, rest.load().to_vec(), contact, gap);
         let at_hand = self.bench.as_ref().filter(|_| elimination.is_none()).map(|bench| &bench.engine);
-        let inverse = match at_hand.map(|engine| engine.bounding(&Watch::default())) {
-            Some(Bounding::Factor(norm)) => {
-                let (load, gap) = (vec![0.0; rest.dofs()], vec![0.0; gap.len()]);
-                let held = ContactProblem::computed(rest.stiffness().clone(), load, contact, gap)?;
-                Inverse { held, norm, springs: Vec::new() }
+        let (inverse, springs) = match at_hand.map(|engine| engine.bounding(&Watch::default())) {
+            Some(Bounding::Factor(norm)) => (Inverse { held: with(rest.stiffness().clone())?, norm }, Vec::new()),
+            _ => {
+                let failed = |reason: String| Error::Numerical { step: "the Delassus operator", reason };
+                let many = || failed("the stiffness has more than 256 motions, or leaves the range of doubles".into());
+                let existence = Existence::of(&rest, settings, solve_any)?.ok_or_else(many)?;
+                let springs = existence.springs();
+                let added = SparseMatrix::from_triplets(rest.dofs(), rest.dofs(), &springs)?;
+                let held = with(rest.stiffness().combined(1.0, 1.0, &SymmetricMatrix::from_lower(added)?)?)?;
+                let by_factor = Settings { method: Method::ActiveSet, ..settings.clone() };
+                let bench = Self::for_gaps(&held, 1, &by_factor)?.bench;
+                let Some(Bounding::Factor(norm)) = bench.as_ref().map(|bench| bench.engine.bounding(&Watch::default()))
+                else {
+                    return Err(failed(existence.doubt().unwrap_or("the stiffness is not safely definite".into())));
+                };
+                (Inverse { held, norm }, springs)
             }
-            _ => Inverse::of(&rest, contact, settings)?,
         };
-        let rows = elimination.as_ref().map_or(selection.kept().to_vec(), |elimination| {
-            selection.kept().iter().map(|&row| elimination.rows()[row]).collect()
-        });
-        Delassus::of(inverse, rest.load().to_vec(), &gap, rows, elimination)
+        let row = |&row: &usize| elimination.as_ref().map_or(row, |elimination| elimination.rows()[row]);
+        let rows = selection.kept().iter().map(row).collect();
+        Delassus::of(inverse, &springs, rows, elimination)
     }
 }
 
 impl Inverse {
-    fn of(rest: &ContactProblem, contact: SparseMatrix, settings: &Settings) -> Result<Self, Error> {
-        let failed = |reason: String| Error::Numerical { step: "the Delassus operator", reason };
-        let many =
-            || failed("the stiffness has more than 256 motions without energy, or leaves the range of doubles".into());
-        let existence = Existence::of(rest, settings, solve_any)?.ok_or_else(many)?;
-        let springs = existence.springs();
-        let (dofs, rows) = (rest.dofs(), contact.rows());
-        let places: Vec<_> = springs.iter().enumerate().map(|(motion, spring)| (motion, spring.0, 1.0)).collect();
-        let weights: Vec<f64> = springs.iter().map(|spring| spring.1).collect();
-        let places = SparseMatrix::from_triplets(springs.len(), dofs, &places)?;
-        let stiffness = rest.stiffness().plus_squares(&places, &weights)?;
-        let held = ContactProblem::computed(stiffness, vec![0.0; dofs], contact, vec![0.0; rows])?;
-        let by_factor = Settings { method: Method::ActiveSet, ..settings.clone() };
-        let prepared = Prepared::for_gaps(&held, 1, &by_factor)?;
-        match prepared.bench.as_ref().map(|bench| bench.engine.bounding(&Watch::default())) {
-            Some(Bounding::Factor(norm)) => Ok(Inverse { held, norm, springs }),
-            _ => Err(failed(existence.doubt().unwrap_or("the stiffness is not definite to working precision".into()))),
-        }
-    }
-
-    /// `K+ (f + B' lambda)`, length n.
-    fn displacement(&self, load: Vec<f64>, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
-        let (loaded, mut u) = (self.held.with_load(load)?, vec![0.0; self.held.dofs()]);
+    /// `K+ (f + B' lambda)` of the dofs that stay.
+    fn moved(&self, load: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+        let (loaded, mut u) = (self.held.with_load(load.to_vec())?, vec![0.0; load.len()]);
         for _ in 0..=CORRECTIONS {
             let correction = self.norm.displacement(&loaded.accurate_residual(&u, multiplier));
             u.iter_mut().zip(correction).for_each(|(u, change)| *u += change);
@@ -141,63 +119,63 @@ impl Inverse {
         Ok(u)
     }
 
-    /// The lower triangle of W, column by column.
+    /// The lower triangle of the compliance, column by column.
     fn compliance(&self) -> Result<Vec<Vec<f64>>, Error> {
-        let contact = self.held.contact();
+        let (m, contact) = (self.held.rows(), self.held.contact());
         if let Some(entry) = self.norm.compliances(contact) {
-            return Ok((0..contact.rows()).map(|j| (j..contact.rows()).map(|i| entry(i, j)).collect()).collect());
+            return Ok((0..m).map(|j| (j..m).map(|i| entry(i, j)).collect()).collect());
         }
-        let column = |row: usize| {
-            let mut force = vec![0.0; contact.rows()];
-            force[row] = 1.0;
-            Ok(contact.mul(&self.displacement(vec![0.0; contact.columns()], &force)?).split_off(row))
+        let column = |j: usize| {
+            let pressed: Vec<f64> = (0..m).map(|i| f64::from(i == j)).collect();
+            Ok(contact.mul(&self.moved(&vec![0.0; contact.columns()], &pressed)?).split_off(j))
         };
-        (0..contact.rows()).map(column).collect()
+        (0..m).map(column).collect()
     }
 }
 
 impl Delassus {
+    /// M, q, bounds and motions, for springs at these places of the diagonal.
     fn of(
         inverse: Inverse,
-        load: Vec<f64>,
-        gap: &[f64],
+        springs: &[(usize, usize, f64)],
         rows: Vec<usize>,
         elimination: Option<Elimination>,
     ) -> Result<Self, Error> {
-        let (m, contact) = (rows.len(), inverse.held.contact());
-        let motion = |&(dof, stiffness): &(usize, f64)| {
-            let mut force = vec![0.0; load.len()];
-            force[dof] = stiffness;
-            inverse.displacement(force, &vec![0.0; m])
+        let (m, contact, load) = (rows.len(), inverse.held.contact(), inverse.held.load());
+        let no_force = vec![0.0; m];
+        let motion = |&(own, _, stiffness): &(usize, usize, f64)| {
+            let load: Vec<f64> = (0..contact.columns()).map(|dof| if dof == own { stiffness } else { 0.0 }).collect();
+            inverse.moved(&load, &no_force)
         };
-        let staying: Vec<Vec<f64>> = inverse.springs.iter().map(motion).collect::<Result<_, Error>>()?;
-        let (closing, compliance): (Vec<_>, _) =
-            (staying.iter().map(|r| contact.mul(r)).collect(), inverse.compliance()?);
+        let motions: Vec<Vec<f64>> = springs.iter().map(motion).collect::<Result<_, Error>>()?;
+        let (closing, below): (Vec<_>, _) = (motions.iter().map(|r| contact.mul(r)).collect(), inverse.compliance()?);
+        let size = m + motions.len();
+        let entry = |i: usize, j: usize| match (i < m, j < m) {
+            (true, true) => below[i.min(j)][i.abs_diff(j)],
+            (true, false) => -closing[j - m][i],
+            (false, true) => closing[i - m][j],
+            (false, false) => 0.0,
+        };
         let (mut starts, mut places, mut values) = (vec![0], Vec::new(), Vec::new());
-        let mut column = |entries: &mut dyn Iterator<Item = f64>| {
-            for (place, value) in entries.enumerate().filter(|entry| entry.1 != 0.0) {
-                places.push(place);
+        for j in 0..size {
+            for (i, value) in (0..size).map(|i| (i, entry(i, j))).filter(|entry| entry.1 != 0.0) {
+                places.push(i);
                 values.push(value);
             }
             starts.push(values.len());
-        };
-        for j in 0..m {
-            let above = compliance[..j].iter().enumerate().map(|(i, of_row)| of_row[j - i]);
-            column(&mut above.chain(compliance[j].iter().copied()).chain(closing.iter().map(|r| r[j])));
         }
-        closing.iter().for_each(|of_motion| column(&mut of_motion.iter().map(|value| -value)));
-        let size = m + staying.len();
         let matrix = SparseMatrix::from_csc(size, starts, places, values)?;
-        let free = inverse.displacement(load.clone(), &vec![0.0; m])?;
-        let violation = inverse.held.with_gap(gap.to_vec())?.accurate_violation(&free);
-        let offset = violation.into_iter().chain(staying.iter().map(|motion| dot(motion, &load))).map(|v| -v).collect();
-        let lower = (0..size).map(|place| if place < m { 0.0 } else { f64::NEG_INFINITY }).collect();
-        let whole = |motion: &Vec<f64>| match &elimination {
-            Some(elimination) => elimination.motion(motion).into_iter().map(|value| value.rounded()).collect(),
-            None => motion.clone(),
+        let free = inverse.held.accurate_violation(&inverse.moved(load, &no_force)?);
+        let works = motions.iter().map(|motion| dot(motion, load));
+        let offset = free.into_iter().chain(works).map(|value| -value).collect();
+        let (mut lower, upper) = (vec![0.0; m], vec![f64::INFINITY; size]);
+        lower.resize(size, f64::NEG_INFINITY);
+        let whole = |motion: Vec<f64>| match &elimination {
+            Some(elimination) => elimination.motion(&motion).into_iter().map(|value| value.rounded()).collect(),
+            None => motion,
         };
-        let (upper, motions) = (vec![f64::INFINITY; size], staying.iter().map(whole).collect());
-        Ok(Delassus { matrix, offset, lower, upper, rows, motions, inverse, load, staying, elimination })
+        let motions = motions.into_iter().map(whole).collect();
+        Ok(Delassus { matrix, offset, lower, upper, rows, motions, inverse, elimination })
     }
 
     /// The displacement u of all dofs, length n, in length, of x = (z, a), length m + r, in force and in length:
@@ -206,16 +184,11 @@ impl Delassus {
     /// # Errors
     /// [`Error::Length`] and [`Error::NotFinite`] for an x that does not fit.
     pub fn displacement(&self, x: &[f64]) -> Result<Vec<f64>, Error> {
-        Error::check_length("unknowns x", x.len(), self.offset.len(), "rows of M")?;
-        if let Some((at, &value)) = x.iter().enumerate().find(|entry| !entry.1.is_finite()) {
-            return Err(Error::NotFinite { name: "unknowns x", at: at.to_string(), value, allowed: "finite" });
-        }
+        check_vector("unknowns x", x, (self.offset.len(), "rows of M"), f64::is_finite, "finite")?;
         let (z, a) = x.split_at(self.rows.len());
-        let multiplier: Vec<f64> = z.iter().map(|z| -z).collect();
-        let mut u = self.inverse.displacement(self.load.clone(), &multiplier)?;
-        for (a, motion) in a.iter().zip(&self.staying) {
-            u.iter_mut().zip(motion).for_each(|(u, r)| *u += a * r);
-        }
-        Ok(self.elimination.as_ref().map_or_else(|| u.clone(), |elimination| elimination.displacement(&u)))
+        let u = self.inverse.moved(self.inverse.held.load(), &z.iter().map(|z| -z).collect::<Vec<_>>())?;
+        let mut u = self.elimination.as_ref().map_or_else(|| u.clone(), |elimination| elimination.displacement(&u));
+        a.iter().zip(&self.motions).for_each(|(a, motion)| subtract(&mut u, -a, motion));
+        Ok(u)
     }
 }

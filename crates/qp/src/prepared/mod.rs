@@ -5,7 +5,6 @@ mod delassus;
 mod path;
 mod reuse;
 
-pub use boundary::BoundarySolution;
 pub use delassus::Delassus;
 pub use path::Path;
 pub(crate) use path::between;
