@@ -186,7 +186,7 @@ pub enum Error {
         dofs: f64,
         /// Number of entries of the stiffness of the refused problem, both triangles.
         stiffness_entries: f64,
-        /// Number of values of the Cholesky factor of the refused stiffness, or of its Delassus operator.
+        /// Number of values of the Cholesky factor of the refused stiffness.
         factor_entries: f64,
         /// Memory for everything, estimated, in bytes.
         bytes: f64,

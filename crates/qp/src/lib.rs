@@ -159,7 +159,7 @@ impl SymmetricMatrix {
 impl SparseMatrix {
     /// The matrix as a Matrix Market file of this name.
     pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
-        matrix_market::general_file(name, self)
+        file::Streamed::new(name, |out| matrix_market::write_entries(out, self, "general"))
     }
 }
 

@@ -80,12 +80,3 @@ pub(crate) fn of_springs(values: f64, entries: f64) -> f64 {
 pub(crate) fn of_boundary(contact_dofs: f64) -> f64 {
     OF_BOUNDARY * contact_dofs * contact_dofs
 }
-
-/// Bytes of an entry of a Delassus operator: as products, as a triangle, as a matrix with its indices, and in the tests
-/// of that.
-const OF_COMPLIANCE: f64 = 44.0;
-
-/// Bytes of the dense Delassus operator of this number of rows, and of `L^-1 B'` on the contact dofs.
-pub(crate) fn of_compliance(contact_dofs: f64, rows: f64) -> f64 {
-    size_of::<f64>() as f64 * contact_dofs * rows + OF_COMPLIANCE * rows * rows
-}

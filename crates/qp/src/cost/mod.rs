@@ -136,8 +136,6 @@ pub(crate) enum Kept {
     Factors { values: usize, last: usize, by_interior_point: bool },
     /// The factor of one contact set, with `values` values.
     OneFactor { values: usize },
-    /// The compliance of all rows, dense, on this number of contact dofs.
-    Compliance { boundary: usize, rows: usize },
     /// A hierarchy instead of a factor.
     Multigrid,
 }
@@ -177,12 +175,11 @@ pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f6
             let beside = bytes::OF_SETS * stiffness_entries + bytes::of_boundary(last as f64);
             (values, factors + beside + of_interior_point(values as f64, by_interior_point))
         }
-        Kept::Compliance { boundary, rows } => (rows * rows, bytes::of_compliance(boundary as f64, rows as f64)),
         Kept::OneFactor { values } => {
             (values, bytes::of_next_factor(values as f64) + bytes::OF_SET * stiffness_entries)
         }
     };
-    let is_factor = !matches!(kept, Kept::Nothing | Kept::Multigrid | Kept::Compliance { .. });
+    let is_factor = !matches!(kept, Kept::Nothing | Kept::Multigrid);
     let bytes = match kept {
         Kept::Multigrid => multigrid_bytes(problem),
         _ => bytes::START + bytes::of_problem(dofs, stiffness_entries) + beside,

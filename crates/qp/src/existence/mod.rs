@@ -184,12 +184,11 @@ impl Existence {
         ))
     }
 
-    /// As many springs at dofs as there are motions without energy, which hold all of them: their places in a matrix,
-    /// and the stiffness of a dof of their kind.
+    /// Springs at as many dofs as there are motions without energy, which hold all: their entries of a matrix.
     pub fn springs(&self) -> Vec<(usize, usize, f64)> {
         let (kind, mut springs) = (self.scaling.identity(0), Vec::new());
-        let mut motions: Vec<Vec<f64>> =
-            self.null.vectors.iter().map(|vector| vector.iter().map(|value| value.rounded()).collect()).collect();
+        let rounded = |motion: &Vec<Twice>| motion.iter().map(|value| value.rounded()).collect();
+        let mut motions: Vec<Vec<f64>> = self.null.vectors.iter().map(rounded).collect();
         while let Some(motion) = motions.pop() {
             let dof = place_of_largest(&motion);
             for other in &mut motions {

@@ -43,15 +43,10 @@ pub struct Delassus {
     pub rows: Vec<usize>,
     /// The motions R, each of length n, dimensionless: one at a dof of its own.
     pub motions: Vec<Vec<f64>>,
-    inverse: Inverse,
-    elimination: Option<Elimination>,
-}
-
-/// A generalised inverse of the stiffness: that of the problem with springs, without equalities.
-#[derive(Clone, Debug)]
-struct Inverse {
+    /// The rest without equalities, with springs.
     held: ContactProblem,
     norm: EnergyNorm,
+    elimination: Option<Elimination>,
 }
 
 impl Prepared {
@@ -80,12 +75,14 @@ impl Prepared {
         let rest = elimination.as_ref().map_or(Ok(problem.clone()), |elimination| elimination.problem(problem))?;
         let selection = RowSelection::of(&rest);
         let (contact, gap) = (selection.contact(rest.contact()), selection.gap(rest.gap()));
-        let kept = Kept::Compliance { boundary: contact.columns_with_entries().len(), rows: gap.len() };
+        // W, and L^-1 B' on the contact dofs.
+        let (boundary, m) = (contact.columns_with_entries().len(), gap.len());
+        let kept = Kept::Condensed { values: boundary * m, contact_dofs: m, by_interior_point: false };
         check_memory(&rest, kept, Some(memory::allowed(settings.memory)))?;
         let with = |stiffness| ContactProblem::computed(stiffness, rest.load().to_vec(), contact, gap);
         let at_hand = self.bench.as_ref().filter(|_| elimination.is_none()).map(|bench| &bench.engine);
-        let (inverse, springs) = match at_hand.map(|engine| engine.bounding(&Watch::default())) {
-            Some(Bounding::Factor(norm)) => (Inverse { held: with(rest.stiffness().clone())?, norm }, Vec::new()),
+        let (held, norm, springs) = match at_hand.map(|engine| engine.bounding(&Watch::default())) {
+            Some(Bounding::Factor(norm)) => (with(rest.stiffness().clone())?, norm, Vec::new()),
             _ => {
                 let failed = |reason: String| Error::Numerical { step: "the Delassus operator", reason };
                 let many = || failed("the stiffness has more than 256 motions, or leaves the range of doubles".into());
@@ -99,16 +96,54 @@ impl Prepared {
                 else {
                     return Err(failed(existence.doubt().unwrap_or("the stiffness is not safely definite".into())));
                 };
-                (Inverse { held, norm }, springs)
+                (held, norm, springs)
             }
         };
-        let row = |&row: &usize| elimination.as_ref().map_or(row, |elimination| elimination.rows()[row]);
+        let row = |&row: &usize| elimination.as_ref().map_or(row, |elimination| elimination.rows[row]);
         let rows = selection.kept().iter().map(row).collect();
-        Delassus::of(inverse, &springs, rows, elimination)
+        let (matrix, offset, motions) = (SparseMatrix::from_triplets(0, 0, &[])?, Vec::new(), Vec::new());
+        let (mut lower, upper) = (vec![0.0; m], vec![f64::INFINITY; m + springs.len()]);
+        lower.resize(upper.len(), f64::NEG_INFINITY);
+        Delassus { matrix, offset, lower, upper, rows, motions, held, norm, elimination }.made(&springs)
     }
 }
 
-impl Inverse {
+impl Delassus {
+    /// The same with M, q and motions, for springs at these places of the diagonal.
+    fn made(mut self, springs: &[(usize, usize, f64)]) -> Result<Self, Error> {
+        let (m, contact, load) = (self.rows.len(), self.held.contact(), self.held.load());
+        let motion = |&(own, _, stiffness): &(usize, usize, f64)| {
+            let load: Vec<f64> = (0..load.len()).map(|dof| if dof == own { stiffness } else { 0.0 }).collect();
+            self.moved(&load, &vec![0.0; m])
+        };
+        let motions: Vec<Vec<f64>> = springs.iter().map(motion).collect::<Result<_, Error>>()?;
+        let (closing, below): (Vec<_>, _) = (motions.iter().map(|r| contact.mul(r)).collect(), self.compliance()?);
+        let entry = |i: usize, j: usize| match (i < m, j < m) {
+            (true, true) => below[i.min(j)][i.abs_diff(j)],
+            (true, false) => -closing[j - m][i],
+            (false, true) => closing[i - m][j],
+            (false, false) => 0.0,
+        };
+        let (size, mut starts, mut places, mut values) = (self.lower.len(), vec![0], Vec::new(), Vec::new());
+        for j in 0..size {
+            for (i, value) in (0..size).map(|i| (i, entry(i, j))).filter(|entry| entry.1 != 0.0) {
+                places.push(i);
+                values.push(value);
+            }
+            starts.push(values.len());
+        }
+        let free = self.held.accurate_violation(&self.moved(load, &vec![0.0; m])?);
+        let works = motions.iter().map(|motion| dot(motion, load));
+        self.offset = free.into_iter().chain(works).map(|value| -value).collect();
+        self.matrix = SparseMatrix::from_csc(size, starts, places, values)?;
+        let whole = |motion: Vec<f64>| match &self.elimination {
+            Some(elimination) => elimination.motion(&motion).into_iter().map(|value| value.rounded()).collect(),
+            None => motion,
+        };
+        self.motions = motions.into_iter().map(whole).collect();
+        Ok(self)
+    }
+
     /// `K+ (f + B' lambda)` of the dofs that stay.
     fn moved(&self, load: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         let (loaded, mut u) = (self.held.with_load(load.to_vec())?, vec![0.0; load.len()]);
@@ -119,9 +154,9 @@ impl Inverse {
         Ok(u)
     }
 
-    /// The lower triangle of the compliance, column by column.
+    /// The lower triangle of W, column by column.
     fn compliance(&self) -> Result<Vec<Vec<f64>>, Error> {
-        let (m, contact) = (self.held.rows(), self.held.contact());
+        let (m, contact) = (self.rows.len(), self.held.contact());
         if let Some(entry) = self.norm.compliances(contact) {
             return Ok((0..m).map(|j| (j..m).map(|i| entry(i, j)).collect()).collect());
         }
@@ -130,52 +165,6 @@ impl Inverse {
             Ok(contact.mul(&self.moved(&vec![0.0; contact.columns()], &pressed)?).split_off(j))
         };
         (0..m).map(column).collect()
-    }
-}
-
-impl Delassus {
-    /// M, q, bounds and motions, for springs at these places of the diagonal.
-    fn of(
-        inverse: Inverse,
-        springs: &[(usize, usize, f64)],
-        rows: Vec<usize>,
-        elimination: Option<Elimination>,
-    ) -> Result<Self, Error> {
-        let (m, contact, load) = (rows.len(), inverse.held.contact(), inverse.held.load());
-        let no_force = vec![0.0; m];
-        let motion = |&(own, _, stiffness): &(usize, usize, f64)| {
-            let load: Vec<f64> = (0..contact.columns()).map(|dof| if dof == own { stiffness } else { 0.0 }).collect();
-            inverse.moved(&load, &no_force)
-        };
-        let motions: Vec<Vec<f64>> = springs.iter().map(motion).collect::<Result<_, Error>>()?;
-        let (closing, below): (Vec<_>, _) = (motions.iter().map(|r| contact.mul(r)).collect(), inverse.compliance()?);
-        let size = m + motions.len();
-        let entry = |i: usize, j: usize| match (i < m, j < m) {
-            (true, true) => below[i.min(j)][i.abs_diff(j)],
-            (true, false) => -closing[j - m][i],
-            (false, true) => closing[i - m][j],
-            (false, false) => 0.0,
-        };
-        let (mut starts, mut places, mut values) = (vec![0], Vec::new(), Vec::new());
-        for j in 0..size {
-            for (i, value) in (0..size).map(|i| (i, entry(i, j))).filter(|entry| entry.1 != 0.0) {
-                places.push(i);
-                values.push(value);
-            }
-            starts.push(values.len());
-        }
-        let matrix = SparseMatrix::from_csc(size, starts, places, values)?;
-        let free = inverse.held.accurate_violation(&inverse.moved(load, &no_force)?);
-        let works = motions.iter().map(|motion| dot(motion, load));
-        let offset = free.into_iter().chain(works).map(|value| -value).collect();
-        let (mut lower, upper) = (vec![0.0; m], vec![f64::INFINITY; size]);
-        lower.resize(size, f64::NEG_INFINITY);
-        let whole = |motion: Vec<f64>| match &elimination {
-            Some(elimination) => elimination.motion(&motion).into_iter().map(|value| value.rounded()).collect(),
-            None => motion,
-        };
-        let motions = motions.into_iter().map(whole).collect();
-        Ok(Delassus { matrix, offset, lower, upper, rows, motions, inverse, elimination })
     }
 
     /// The displacement u of all dofs, length n, in length, of x = (z, a), length m + r, in force and in length:
@@ -186,7 +175,7 @@ impl Delassus {
     pub fn displacement(&self, x: &[f64]) -> Result<Vec<f64>, Error> {
         check_vector("unknowns x", x, (self.offset.len(), "rows of M"), f64::is_finite, "finite")?;
         let (z, a) = x.split_at(self.rows.len());
-        let u = self.inverse.moved(self.inverse.held.load(), &z.iter().map(|z| -z).collect::<Vec<_>>())?;
+        let u = self.moved(self.held.load(), &z.iter().map(|z| -z).collect::<Vec<_>>())?;
         let mut u = self.elimination.as_ref().map_or_else(|| u.clone(), |elimination| elimination.displacement(&u));
         a.iter().zip(&self.motions).for_each(|(a, motion)| subtract(&mut u, -a, motion));
         Ok(u)

@@ -48,7 +48,7 @@ pub struct Elimination {
     place: Vec<Result<usize, usize>>,
     /// The dofs and sums, and the rows, that stay, in increasing order.
     dofs: Vec<usize>,
-    rows: Vec<usize>,
+    pub rows: Vec<usize>,
 }
 
 impl Elimination {
@@ -260,11 +260,6 @@ impl Elimination {
             all.push(sum.iter().fold(Twice::ZERO, |all_terms, &(dof, a)| all_terms + a * all[dof].into()).rounded());
         }
         self.dofs.iter().map(|&dof| all[dof]).collect()
-    }
-
-    /// The rows that stay, increasing.
-    pub fn rows(&self) -> &[usize] {
-        &self.rows
     }
 
     /// The set of the rows that stay, from one of all rows.
