@@ -10,6 +10,7 @@ from functools import partial
 import cvxpy
 import numpy as np
 import osqp
+import signorini as sg
 from scipy import sparse
 
 from problem import Answer, Problem
@@ -86,6 +87,36 @@ def by_cvxpy(data: Problem, solver: str, **settings) -> Raw:
     if u.value is None or apart.dual_value is None:
         raise NoAnswer(f"status {program.status}")
     return Raw(Answer(u.value, -apart.dual_value), program.status)
+
+
+def by_complementarity(problem: Problem) -> Raw:
+    """Solves the complementarity problem of the contact forces, as the package makes it, by cvxpy with Clarabel.
+
+    Without motions it is that of a quadratic program in z >= 0; the rows of the motions are its equalities, and their coordinates the
+    multipliers.
+    """
+    lcp = sg.prepare(sg.Problem(problem.stiffness, problem.load, problem.contact, problem.gap)).delassus()
+    m = len(lcp.rows)
+    compliance, balance, gap, work = lcp.M[:m, :m], lcp.M[m:, :m], lcp.q[:m], -lcp.q[m:]
+    unit = abs(compliance).max()
+    force = max(abs(gap).max() / unit, abs(work).max(initial=0.0)) or 1.0
+    z = cvxpy.Variable(m)
+    constraints = [z >= 0] + ([balance @ z == work / force] if len(work) else [])
+    energy = 0.5 * cvxpy.quad_form(z, cvxpy.psd_wrap(compliance / unit)) + (gap / (unit * force)) @ z
+    program = cvxpy.Problem(cvxpy.Minimize(energy), constraints)
+    for tolerance in INTERIOR_POINT_TOLERANCES:
+        tolerances = dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), tolerance)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            program.solve(solver="CLARABEL", accept_unknown=True, **tolerances)
+        if program.status == cvxpy.OPTIMAL:
+            break
+    if z.value is None:
+        raise NoAnswer(f"status {program.status}")
+    forces, multiplier = force * z.value, np.zeros(problem.rows)
+    multiplier[lcp.rows] = -forces
+    motions = -unit * force * constraints[1].dual_value if len(work) else []
+    return Raw(Answer(lcp.displacement(np.concatenate([forces, motions])), multiplier), program.status)
 
 
 def by_osqp(data: Problem) -> Raw:

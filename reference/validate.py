@@ -23,7 +23,7 @@ from kkt import Rejected
 from problem import Answer, Problem
 from program import METHODS, ProgramFailed, bound_faults, condensation_faults, problem_of_scene, report_faults, solve, write_files
 from settle import Settled, Unsettled, contact_set, settle
-from solvers import SOLVERS, NoAnswer
+from solvers import SOLVERS, NoAnswer, by_complementarity
 from twin import twin_faults
 from vtu import vtu_faults
 
@@ -127,6 +127,11 @@ def run_case(
         verdicts.append(judge(case.name, "results.json", problem, result.answer, references, EXACT, failures=faults))
     if program:
         verdicts += [tested(case, problem, references, method) for method in METHODS]
+        try:
+            forces = by_complementarity(problem)
+            verdicts.append(judge(case.name, "cvxpy on the LCP", problem, forces.answer, references, RAW, False, note=forces.status))
+        except (NoAnswer, sg.SignoriniError) as error:
+            verdicts.append(broken(case.name, "cvxpy on the LCP", str(error)))
     if scene:
         verdicts.append(pictured(case, scene, program, folder / "scene", problem, references))
     return verdicts, snapshot.record(problem, result, solver)

@@ -24,6 +24,7 @@ mod random;
 mod small_problems;
 mod surface_speed;
 mod table;
+mod three_faces;
 mod verification;
 
 use std::process::ExitCode;
@@ -52,6 +53,7 @@ enum Study {
     SmallProblems,
     /// Seconds to read a surface of a million triangles, and to find the closest points of 50,000 places
     SurfaceSpeed,
+    ThreeFaces(three_faces::Options),
     Verification(verification::Options),
 }
 
@@ -72,6 +74,7 @@ fn main() -> ExitCode {
         Study::Multigrid(options) => multigrid::run(&options),
         Study::SmallProblems => small_problems::run(),
         Study::SurfaceSpeed => surface_speed::run(),
+        Study::ThreeFaces(options) => three_faces::run(&options),
         Study::Verification(options) => verification::run(&options),
     };
     match ended {

@@ -7,6 +7,7 @@
 mod answered;
 mod arrays;
 mod complementarity;
+mod delassus;
 mod derivative;
 mod errors;
 mod exceptions;
@@ -41,6 +42,7 @@ fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<derivative::Jvp>()?;
     module.add_class::<prepared::Prepared>()?;
     module.add_class::<prepared::Path>()?;
+    module.add_class::<delassus::Delassus>()?;
     module.add_class::<prepared::Event>()?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<scene::SceneSolution>()?;

@@ -9,6 +9,7 @@ use signorini::{ContactProblem, Settings, Watch};
 
 use crate::answered::{answered, start_of};
 use crate::arrays::{of_reals, reals};
+use crate::delassus::Delassus;
 use crate::errors::bad_input;
 use crate::exceptions::plain_exception;
 use crate::exceptions::signalled;
@@ -142,6 +143,29 @@ impl Prepared {
         let walk = move |watch: &Watch| watched(&prepared, settings, watch)?.path(&from, &to);
         match run(py, Place::for_problem(&self.problem), walk)? {
             End::Done(Ok(inner)) => Ok(Path { source: self.source(), inner: Arc::new(inner) }),
+            End::Done(Err(error)) => Err(plain_exception(py, error)),
+            End::Signalled(signal, _) => Err(signalled(py, signal, None)),
+        }
+    }
+
+    /// Makes the linear complementarity problem of the contact forces, at the load and the gaps of the problem.
+    ///
+    /// Returns
+    /// -------
+    /// Delassus
+    ///     Its matrix M is dense. Equality rows are eliminated.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     M does not fit into memory; nothing is made then.
+    /// SignoriniError or Interrupted
+    ///     As `signorini.solve`.
+    fn delassus(&self, py: Python<'_>) -> PyResult<Delassus> {
+        let (prepared, settings) = (self.inner.clone(), self.settings.clone());
+        let make = move |watch: &Watch| watched(&prepared, settings, watch)?.delassus();
+        match run(py, Place::for_problem(&self.problem), make)? {
+            End::Done(Ok(inner)) => Ok(Delassus::new(inner)),
             End::Done(Err(error)) => Err(plain_exception(py, error)),
             End::Signalled(signal, _) => Err(signalled(py, signal, None)),
         }

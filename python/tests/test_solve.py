@@ -75,6 +75,24 @@ def test_one_factor_serves_gaps_loads_and_starts() -> None:
     assert repr(prepared).startswith("<signorini.Prepared: 6 dofs")
 
 
+def test_a_contact_problem_is_a_complementarity_problem_in_its_forces() -> None:
+    K, f, B, g = membrane(8)
+    problem = sg.Problem(K, f, B, g)
+    lcp, answer = sg.prepare(problem).delassus(), sg.solve(problem)
+    W = lcp.M.toarray()
+    assert np.array_equal(W, W.T) and lcp.rows.tolist() == list(range(len(g))) and len(lcp.motions) == 0
+    assert np.allclose(W, problem.B @ np.linalg.solve(problem.K.toarray(), problem.B.T.toarray()), rtol=1e-11, atol=0)
+    z = -answer.multiplier
+    w = W @ z + lcp.q
+    assert w.min() > -1e-12 and abs(w * z).max() < 1e-12 and answer.contact_set.size > 0
+    assert np.allclose(lcp.displacement(z), answer.u, rtol=0, atol=1e-12)
+    assert (lcp.lower == 0).all() and np.isinf(lcp.upper).all()
+    with pytest.raises(sg.BadInput, match="unknowns x"):
+        lcp.displacement([0.0])
+    with pytest.raises(sg.TooLarge):
+        sg.prepare(problem, memory=1e3).delassus()
+
+
 def test_a_path_finds_the_gap_at_which_the_end_touches() -> None:
     K, f, B, _ = bar(4)
     path = sg.prepare(sg.Problem(K, f, B, [4.0])).path([4.0], [2.0])

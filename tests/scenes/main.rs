@@ -3,6 +3,7 @@
 mod between_bodies;
 mod concave_obstacles;
 mod contact_area;
+mod contact_lcp;
 mod contact_scenes;
 mod contacts_found;
 mod corners;

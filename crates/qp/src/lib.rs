@@ -64,7 +64,7 @@ pub use method::parametric::Event;
 pub use method::penalty::Penalty;
 pub use method::{Ending, Outcome, Start};
 pub use petsc::Layout as PetscLayout;
-pub use prepared::{Path, Prepared};
+pub use prepared::{Delassus, Path, Prepared};
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Settings};
 pub use solution::{Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution, Why};
@@ -174,6 +174,13 @@ impl SymmetricMatrix {
     /// The matrix as a Matrix Market file of this name, by its lower triangle.
     pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
         matrix_market::symmetric_file(name, self)
+    }
+}
+
+impl SparseMatrix {
+    /// The matrix as a Matrix Market file of this name.
+    pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
+        file::Streamed::new(name, |out| matrix_market::write_entries(out, self, "general"))
     }
 }
 

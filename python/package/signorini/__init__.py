@@ -45,6 +45,7 @@ from signorini._mortar import MortarRows, mortar_rows
 from signorini._signorini import (
     Certificate,
     Comparison,
+    Delassus,
     Event,
     Gradient,
     Jvp,
@@ -78,6 +79,7 @@ __all__ = [
     "BeyondSmallDisplacements",
     "Certificate",
     "Comparison",
+    "Delassus",
     "Event",
     "FileError",
     "Gradient",

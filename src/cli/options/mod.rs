@@ -468,7 +468,7 @@ impl Ccx {
 
 #[derive(Debug, Args)]
 pub(super) struct Export {
-    /// Scene (a JSON file)
+    /// Scene (a JSON file); for the form lcp also a problem directory
     pub scene: PathBuf,
     /// Folder for K, f, B, g and the other files of the problem; made if missing
     pub directory: PathBuf,
@@ -484,6 +484,9 @@ pub(super) struct Export {
 pub(super) enum Form {
     /// Text: K.mtx, f.mtx, B.mtx, g.mtx, near_null.mtx
     MatrixMarket,
+    /// The complementarity problem of the contact forces z = -lambda, dense: M.mtx, q.mtx, rows.mtx with the contact row
+    /// of each z; for bodies that only contact holds also lower.mtx, upper.mtx and their motions R.mtx
+    Lcp,
     /// Binary, in blocks of nodes: K.petsc, f.petsc, B.petsc, g.petsc, coordinates.petsc, free.petsc, near_null.petsc
     Petsc,
 }

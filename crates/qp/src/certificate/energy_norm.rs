@@ -160,6 +160,14 @@ impl EnergyNorm {
         self.known.as_ref()?.rows.compliance.as_deref()
     }
 
+    /// The entries of `B K^-1 B'` for these rows; `None` if the boundary is not known, or if a row reaches beyond it.
+    pub fn compliances(&self, contact: &SparseMatrix) -> Option<impl Fn(usize, usize) -> f64 + use<>> {
+        let RowsOnBoundary { by_row, shift, compliance } = self.rows_on_boundary(contact, |_| true)?;
+        let compliance = compliance.unwrap_or_else(|| Arc::new(Compliance::on(&self.cholesky, by_row)));
+        let unit = self.equilibration.factor;
+        Some(move |a: usize, b: usize| ldexp(compliance.product(a, b), unit - shift[a] - shift[b]))
+    }
+
     /// The energy norm of the equilibrated stiffness itself.
     pub fn equilibrated(&self) -> Self {
         EnergyNorm { equilibration: Equilibration::none(self.cholesky.dim()), ..self.clone() }
@@ -223,7 +231,7 @@ impl EnergyNorm {
     }
 
     /// The displacement that the force r causes: `K^-1 r`.
-    pub(super) fn displacement(&self, force: &[f64]) -> Vec<f64> {
+    pub fn displacement(&self, force: &[f64]) -> Vec<f64> {
         let scaled = self.cholesky.solve(&self.scaled(force));
         let exponents = self.equilibration.diagonal.iter().map(|d| d + self.equilibration.factor);
         scaled.iter().zip(exponents).map(|(&value, exponent)| ldexp(value, exponent)).collect()

@@ -23,7 +23,9 @@ use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
 use crate::certificate::{NullMode, Rounding};
 use crate::error::Error;
-use crate::linear::{Analysis, FactorError, NullSpace, SparseMatrix, SymmetricMatrix, Twice, generic, largest, twice};
+use crate::linear::{
+    Analysis, FactorError, NullSpace, SparseMatrix, SymmetricMatrix, Twice, generic, largest, subtract, twice,
+};
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
 use crate::transform::Scaling;
@@ -180,6 +182,22 @@ impl Existence {
              entries, {:.1e}; give the rigid-body modes if the body floats",
             NullSpace::OF_ENTRIES
         ))
+    }
+
+    /// Springs at as many dofs as there are motions without energy, which hold all: their entries of a matrix.
+    pub fn springs(&self) -> Vec<(usize, usize, f64)> {
+        let (kind, mut springs) = (self.scaling.identity(0), Vec::new());
+        let rounded = |motion: &Vec<Twice>| motion.iter().map(|value| value.rounded()).collect();
+        let mut motions: Vec<Vec<f64>> = self.null.vectors.iter().map(rounded).collect();
+        while let Some(motion) = motions.pop() {
+            let dof = place_of_largest(&motion);
+            for other in &mut motions {
+                let share = other[dof] / motion[dof];
+                subtract(other, share, &motion);
+            }
+            springs.push((dof, dof, kind[dof]));
+        }
+        springs
     }
 
     /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and

@@ -33,7 +33,7 @@ pub fn symmetric_file<'a>(name: &'static str, matrix: &'a SymmetricMatrix) -> St
 }
 
 /// Writes a sparse matrix with `symmetry` `general`, or the lower triangle of a matrix with `symmetry` `symmetric`.
-fn write_entries(out: &mut dyn Write, matrix: &SparseMatrix, symmetry: &str) -> io::Result<()> {
+pub fn write_entries(out: &mut dyn Write, matrix: &SparseMatrix, symmetry: &str) -> io::Result<()> {
     writeln!(out, "%%MatrixMarket matrix coordinate real {symmetry}")?;
     writeln!(out, "{} {} {}", matrix.rows(), matrix.columns(), matrix.entries())?;
     matrix.triplets().try_for_each(|(row, column, value)| writeln!(out, "{} {} {value:e}", row + 1, column + 1))

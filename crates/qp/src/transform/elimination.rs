@@ -48,7 +48,7 @@ pub struct Elimination {
     place: Vec<Result<usize, usize>>,
     /// The dofs and sums, and the rows, that stay, in increasing order.
     dofs: Vec<usize>,
-    rows: Vec<usize>,
+    pub rows: Vec<usize>,
 }
 
 impl Elimination {
@@ -281,7 +281,7 @@ impl Elimination {
     }
 
     /// The displacement of all dofs, length n, from that of those that stay.
-    fn displacement(&self, y: &[f64]) -> Vec<f64> {
+    pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
         self.of_all(y, 1.0).map(Twice::rounded).collect()
     }
 

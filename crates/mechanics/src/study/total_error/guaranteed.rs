@@ -237,7 +237,7 @@ impl Search<'_> {
         let parts = self.given.model.parts_of_whole();
         let of_whole = |interval: [f64; 2]| interval.map(|force| parts * force);
         // The force is of second order in the error.
-        let enough = goal.force_error.unwrap_or(goal.total_error.powi(2));
+        let enough = goal.force_error.unwrap_or(f64::INFINITY).min(goal.total_error.powi(2));
         let force_interval = if is_last { bracket.force_interval(enough)?.map(of_whole) } else { None };
         Ok(Level {
             elements: bracket.mesh.count(),
