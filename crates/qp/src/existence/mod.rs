@@ -120,16 +120,15 @@ pub(super) struct Existence {
     /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with
     /// which.
     within_rounding: Option<(usize, f64)>,
-    /// Springs at as many dofs as there are motions without energy, also within rounding, which hold all of them: their
-    /// entries of a matrix.
+    /// Springs at as many dofs as there are motions without energy to rounding, which hold all: their entries of a
+    /// matrix.
     pub springs: Vec<(usize, usize, f64)>,
     solve: Solve,
 }
 
-/// Springs that hold all vectors of a null space, one for each, with the stiffness of `kind` at their dofs.
-fn springs(null: &NullSpace, kind: &[f64]) -> Vec<(usize, usize, f64)> {
-    let rounded = |motion: &Vec<Twice>| motion.iter().map(|value| value.rounded()).collect();
-    let (mut springs, mut motions) = (Vec::new(), null.vectors.iter().map(rounded).collect::<Vec<Vec<f64>>>());
+/// Springs that hold some motions, one for each, with the stiffness of `kind` at their dofs.
+fn springs(mut motions: Vec<Vec<f64>>, kind: &[f64]) -> Vec<(usize, usize, f64)> {
+    let mut springs = Vec::new();
     while let Some(motion) = motions.pop() {
         let dof = place_of_largest(&motion);
         for other in &mut motions {
@@ -168,7 +167,7 @@ impl Existence {
         };
         let softest = null.shares.iter().zip(&null.vectors).max_by(|a, b| a.0.total_cmp(b.0));
         let dof = softest.map_or(0, |(_, vector)| place_of_largest(&expanded(vector)));
-        let springs = springs(&null, &scaling.identity(0));
+        let springs = springs(null.found.clone(), &scaling.identity(0));
         let (null, share) = null.declared(|vector| is_rigid(problem, &expanded(vector), &bodies));
         let within_rounding = (share > 0.0).then_some((dof, share));
         Ok(Some(Existence { within_rounding, springs, ..Self::with(scaled, scaling, null, solve) }))
