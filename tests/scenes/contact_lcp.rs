@@ -24,7 +24,8 @@ const TOLERANCE: f64 = 1e-9;
 /// most of it cancels. One of 2,349 reached 1.0e-9, all others 2e-10.
 const RANDOM: f64 = 1e-8;
 
-/// The tolerance of displacements, the largest differences, and the numbers of problems, of those with motions, and of those with equalities.
+/// The tolerance of displacements, the largest differences, and the numbers of problems: all, with motions, with
+/// equalities.
 #[derive(Debug)]
 struct Seen {
     tolerance: f64,
