@@ -29,6 +29,9 @@ from vtu import vtu_faults
 
 ROOT = Path(__file__).resolve().parent.parent
 
+COMPLEMENTARITY_ROWS = 2_000
+"""Rows of the largest complementarity problem: its matrix is dense."""
+
 
 def independent(case: Case, problem: Problem) -> tuple[dict[str, Settled], list[Verdict]]:
     """Returns the settled answer of each solver by its name, and the verdicts on raw and settled answers."""
@@ -104,6 +107,16 @@ def pictured(case: Case, scene: Path, program: Path, folder: Path, problem: Prob
         return broken(case.name, "signorini scene, .vtu", str(error))
 
 
+def of_forces(case: Case, problem: Problem, references: list[Answer]) -> Verdict:
+    """Judges the answer of cvxpy to the complementarity problem of the contact forces, as the package makes it."""
+    name = "cvxpy on the LCP"
+    try:
+        raw = by_complementarity(problem)
+        return judge(case.name, name, problem, raw.answer, references, RAW, False, note=raw.status)
+    except (NoAnswer, sg.SignoriniError) as error:
+        return broken(case.name, name, str(error))
+
+
 def run_case(
     case: Case, program: Path | None, examples: Path, folder: Path, stored: dict
 ) -> tuple[list[Verdict], dict]:
@@ -127,11 +140,8 @@ def run_case(
         verdicts.append(judge(case.name, "results.json", problem, result.answer, references, EXACT, failures=faults))
     if program:
         verdicts += [tested(case, problem, references, method) for method in METHODS]
-        try:
-            forces = by_complementarity(problem)
-            verdicts.append(judge(case.name, "cvxpy on the LCP", problem, forces.answer, references, RAW, False, note=forces.status))
-        except (NoAnswer, sg.SignoriniError) as error:
-            verdicts.append(broken(case.name, "cvxpy on the LCP", str(error)))
+        if problem.rows <= COMPLEMENTARITY_ROWS:
+            verdicts.append(of_forces(case, problem, references))
     if scene:
         verdicts.append(pictured(case, scene, program, folder / "scene", problem, references))
     return verdicts, snapshot.record(problem, result, solver)

@@ -2,8 +2,8 @@
 //! on the contact dofs, and the complementarity problem of its forces, for shares of contact rows from 0.002 to 1.
 //!
 //! Blocks of cells under a parabola, and a membrane with an obstacle below every node. Each face has a process of its
-//! own. Its seconds are the least of several rounds, with the certificate that belongs to it, its error is the bound of the
-//! certificate of the contact problem, relative in energy, and its memory the peak of the process.
+//! own. Its seconds are the least of several rounds, with the certificate that belongs to it; its error is the bound of
+//! the certificate of the contact problem, relative in energy; its memory is the peak of the process.
 
 use serde_json::json;
 use signorini::lcp::{Lcp, solve_lcp};

@@ -21,8 +21,8 @@ impl Delassus {
 
 #[pymethods]
 impl Delassus {
-    /// Matrix M, a scipy.sparse.csc_array of shape (m + r, m + r), for m rows and r motions without energy; for r = 0 it is
-    /// symmetric to the last bit.
+    /// Matrix M, a scipy.sparse.csc_array of shape (m + r, m + r), for m rows and r motions without energy. For r = 0
+    /// it is symmetric to the last bit.
     #[getter]
     #[pyo3(name = "M")]
     fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

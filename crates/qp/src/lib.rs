@@ -60,7 +60,6 @@ pub use linear::multigrid::{Multigrid, NearNullSpace};
 pub use linear::{Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest};
 pub use matrix_market::{format_vector, read_vector};
 pub use method::interior_point::InteriorPoint;
-pub use method::parametric::Event;
 pub use method::penalty::Penalty;
 pub use method::{Ending, Outcome, Start};
 pub use petsc::Layout as PetscLayout;

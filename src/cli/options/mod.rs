@@ -484,8 +484,8 @@ pub(super) struct Export {
 pub(super) enum Form {
     /// Text: K.mtx, f.mtx, B.mtx, g.mtx, near_null.mtx
     MatrixMarket,
-    /// The complementarity problem of the contact forces z = -lambda, dense: M.mtx, q.mtx, rows.mtx with the contact row
-    /// of each z; for bodies that only contact holds also lower.mtx, upper.mtx and their motions R.mtx
+    /// The complementarity problem of the forces z = -lambda, dense: M.mtx, q.mtx, and rows.mtx with the contact row of
+    /// each z; for bodies that only contact holds also lower.mtx, upper.mtx, and the motions R.mtx
     Lcp,
     /// Binary, in blocks of nodes: K.petsc, f.petsc, B.petsc, g.petsc, coordinates.petsc, free.petsc, near_null.petsc
     Petsc,

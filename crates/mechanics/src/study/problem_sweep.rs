@@ -69,7 +69,10 @@ impl ProblemSweep {
         let points = points("point", &Sweep::even_gaps(0.0, 1.0, count), settings, solved_at, point)?;
         let is_known = same_load && !settings.watch.acknowledge() && prepared.hierarchy().is_none();
         let path = if is_known { prepared.path(first.gap(), last.gap()).ok() } else { None };
-        let event = |event: &signorini_qp::Event| ProblemEvent { t: event.at, row: event.row, touches: event.touches };
-        Ok(ProblemSweep { points, events: path.map(|path| path.events().iter().map(event).collect()) })
+        let of_path = path.as_ref().map(|path| path.events().iter());
+        let events = of_path.map(|events| {
+            events.map(|event| ProblemEvent { t: event.at, row: event.row, touches: event.touches }).collect()
+        });
+        Ok(ProblemSweep { points, events })
     }
 }

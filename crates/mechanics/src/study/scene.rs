@@ -15,7 +15,7 @@ use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::scene::{Answer, ContactExtent, Model};
-use signorini_qp::{ContactSet, Event, Goal, Prepared, Settings, Solution, Start, solve};
+use signorini_qp::{ContactSet, Goal, Prepared, Settings, Solution, Start, solve};
 
 /// Gaps at the middle that differ by more than this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT_LINE: f64 = 1e-12;
@@ -316,11 +316,11 @@ fn between(prepared: &Prepared, at_first: &Model, last: f64) -> Result<Option<Ex
 
 /// The rows that touch or release on an exact path.
 fn events(path: &ExactPath, model: &Model) -> Vec<SweepEvent> {
-    let event = |event: &Event| {
+    let found = path.path.events().iter().map(|event| {
         let node = model.rows()[event.row].node;
         SweepEvent { gap: path.gap(event.at), row: event.row, node, touches: event.touches }
-    };
-    path.path.events().iter().map(event).collect()
+    });
+    found.collect()
 }
 
 /// Force, width and pressure at both ends of every stretch of an exact path.

@@ -120,7 +120,24 @@ pub(super) struct Existence {
     /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with
     /// which.
     within_rounding: Option<(usize, f64)>,
+    /// Springs at as many dofs as there are motions without energy to rounding, which hold all: their entries of a
+    /// matrix.
+    pub springs: Vec<(usize, usize, f64)>,
     solve: Solve,
+}
+
+/// Springs that hold some motions, one for each, with the stiffness of `kind` at their dofs.
+fn springs(mut motions: Vec<Vec<f64>>, kind: &[f64]) -> Vec<(usize, usize, f64)> {
+    let mut springs = Vec::new();
+    while let Some(motion) = motions.pop() {
+        let dof = place_of_largest(&motion);
+        for other in &mut motions {
+            let share = other[dof] / motion[dof];
+            subtract(other, share, &motion);
+        }
+        springs.push((dof, dof, kind[dof]));
+    }
+    springs
 }
 
 impl Existence {
@@ -150,9 +167,10 @@ impl Existence {
         };
         let softest = null.shares.iter().zip(&null.vectors).max_by(|a, b| a.0.total_cmp(b.0));
         let dof = softest.map_or(0, |(_, vector)| place_of_largest(&expanded(vector)));
+        let springs = springs(null.found.clone(), &scaling.identity(0));
         let (null, share) = null.declared(|vector| is_rigid(problem, &expanded(vector), &bodies));
         let within_rounding = (share > 0.0).then_some((dof, share));
-        Ok(Some(Existence { within_rounding, ..Self::with(scaled, scaling, null, solve) }))
+        Ok(Some(Existence { within_rounding, springs, ..Self::with(scaled, scaling, null, solve) }))
     }
 
     fn with(scaled: ContactProblem, scaling: Scaling, null: NullSpace, solve: Solve) -> Self {
@@ -160,7 +178,17 @@ impl Existence {
         let bounded = (0..scaled.rows()).filter(|&row| scaled.gap()[row].is_finite());
         let rows = bounded.map(|row| (row, coordinates(&null, || by_row.column(row), rounding))).collect();
         let against_load = coordinates(&null, || scaled.load().iter().map(|f| -f).enumerate(), rounding);
-        Existence { scaled, scaling, null, rounding, rows, against_load, within_rounding: None, solve }
+        Existence {
+            scaled,
+            scaling,
+            null,
+            rounding,
+            rows,
+            against_load,
+            within_rounding: None,
+            springs: Vec::new(),
+            solve,
+        }
     }
 
     /// Checks that the load drives no mode without energy that no row stops.
@@ -182,22 +210,6 @@ impl Existence {
              entries, {:.1e}; give the rigid-body modes if the body floats",
             NullSpace::OF_ENTRIES
         ))
-    }
-
-    /// Springs at as many dofs as there are motions without energy, which hold all: their entries of a matrix.
-    pub fn springs(&self) -> Vec<(usize, usize, f64)> {
-        let (kind, mut springs) = (self.scaling.identity(0), Vec::new());
-        let rounded = |motion: &Vec<Twice>| motion.iter().map(|value| value.rounded()).collect();
-        let mut motions: Vec<Vec<f64>> = self.null.vectors.iter().map(rounded).collect();
-        while let Some(motion) = motions.pop() {
-            let dof = place_of_largest(&motion);
-            for other in &mut motions {
-                let share = other[dof] / motion[dof];
-                subtract(other, share, &motion);
-            }
-            springs.push((dof, dof, kind[dof]));
-        }
-        springs
     }
 
     /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and

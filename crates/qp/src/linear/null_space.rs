@@ -39,6 +39,9 @@ pub struct NullSpace {
     /// exactly, for the doubles of the matrix. Otherwise it would vanish with the entries rounded in another way, and
     /// the vector has no more digits than the entries.
     pub shares: Vec<f64>,
+    /// All vectors without energy to rounding: also those that are left out because a change of entries by their own
+    /// rounding does not explain it.
+    pub found: Vec<Vec<f64>>,
 }
 
 impl NullSpace {
@@ -102,6 +105,7 @@ impl SymmetricMatrix {
                 basis.shares.push(share);
             }
         }
+        basis.found = found;
         Ok(Some(basis))
     }
 

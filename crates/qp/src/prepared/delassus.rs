@@ -7,7 +7,8 @@
 //! [ 0 ] = [  R'B'      0  ] [ a ] + [   -R'f     ]
 //! ```
 //!
-//! As many springs N as there are motions, if they hold all, give a generalised inverse `K+ = (K + N)^-1`, exactly.
+//! As many springs N as there are motions, if they hold all, give a generalised inverse `K+ = (K + N)^-1`, exactly. A
+//! motion that K holds by no more than the rounding of its entries counts as one without energy.
 
 use super::reuse::Prepared;
 use crate::certificate::{Bounding, EnergyNorm};
@@ -34,9 +35,9 @@ pub struct Delassus {
     pub matrix: SparseMatrix,
     /// q, length m + r: the gaps without contact, in length, and the work of the load on each motion, negative.
     pub offset: Vec<f64>,
-    /// The lower bounds of x, length m + r: zero for forces z, `-inf` for a.
+    /// The lower bounds of x, length m + r, in force and in length: zero for z, `-inf` for a.
     pub lower: Vec<f64>,
-    /// The upper bounds of x, length m + r: `+inf`.
+    /// The upper bounds of x, length m + r, in force and in length: `+inf`.
     pub upper: Vec<f64>,
     /// The contact row of each z, length m, increasing: those that can close. Two opposed rows that are an equality are
     /// eliminated; equalities that cannot be are two rows each, after those of B.
@@ -66,8 +67,8 @@ impl Prepared {
     ///
     /// # Errors
     /// [`Error::TooLarge`] before M, which is dense, is made; [`Error::Infeasible`] and [`Error::NotConvex`] as
-    /// [`solve`](crate::solve()); [`Error::Numerical`] for a stiffness that is singular only within rounding, or with
-    /// more than 256 motions; those of [`Prepared::new`].
+    /// [`solve`](crate::solve()); [`Error::Numerical`] for a stiffness that is not definite to working precision
+    /// without a motion, or with more than 256; those of [`Prepared::new`].
     pub fn delassus(&self) -> Result<Delassus, Error> {
         let (problem, settings) = (&self.problem, &self.settings.started()?);
         problem.check_rows()?;
@@ -87,16 +88,15 @@ impl Prepared {
                 let failed = |reason: String| Error::Numerical { step: "the Delassus operator", reason };
                 let many = || failed("the stiffness has more than 256 motions, or leaves the range of doubles".into());
                 let existence = Existence::of(&rest, settings, solve_any)?.ok_or_else(many)?;
-                let springs = existence.springs();
-                let added = SparseMatrix::from_triplets(rest.dofs(), rest.dofs(), &springs)?;
+                let added = SparseMatrix::from_triplets(rest.dofs(), rest.dofs(), &existence.springs)?;
                 let held = with(rest.stiffness().combined(1.0, 1.0, &SymmetricMatrix::from_lower(added)?)?)?;
                 let by_factor = Settings { method: Method::ActiveSet, ..settings.clone() };
                 let bench = Self::for_gaps(&held, 1, &by_factor)?.bench;
                 let Some(Bounding::Factor(norm)) = bench.as_ref().map(|bench| bench.engine.bounding(&Watch::default()))
                 else {
-                    return Err(failed(existence.doubt().unwrap_or("the stiffness is not safely definite".into())));
+                    return Err(failed("the stiffness is not safely definite".into()));
                 };
-                (held, norm, springs)
+                (held, norm, existence.springs)
             }
         };
         let row = |&row: &usize| elimination.as_ref().map_or(row, |elimination| elimination.rows[row]);
