@@ -31,7 +31,11 @@ impl Coarsest {
     /// # Errors
     /// [`FactorError`] if it has a negative eigenvalue, or if memory does not suffice.
     pub fn of<T: Real>(blocks: &BlockMatrix<T>) -> Result<Self, FactorError> {
-        let matrix = lower_part(blocks, |_| true);
+        Self::analysed(blocks, |_| true)
+    }
+
+    fn analysed<T: Real>(blocks: &BlockMatrix<T>, kept: fn(f64) -> bool) -> Result<Self, FactorError> {
+        let matrix = lower_part(blocks, kept);
         let analysis = Analysis::of(&matrix)?;
         Self::factorised::<T>(&matrix, analysis)
     }
@@ -76,9 +80,10 @@ impl Coarsest {
                 }
             }
         }
-        match rest.indices.len() == matrix.indices.len() {
+        // Without the unknowns that are gone, another order has less fill.
+        match rest.indices.len() == matrix.indices.len() && !is_gone.contains(&true) {
             true => Self::factorised::<T>(&lower_part(&rest, |_| true), self.analysis.clone()),
-            false => Self::of(&rest),
+            false => Self::analysed(&rest, |value| value != 0.0),
         }
     }
 
