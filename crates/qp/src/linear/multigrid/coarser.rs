@@ -3,7 +3,7 @@
 //! The weights of the bounds and the share of closed parents were chosen by measurement on obstacle problems:
 //! unweighted means cost a few cycles more, and every share from 0.5 to 0.99 works.
 
-use super::coarsest::lower_part;
+use super::coarsest::{is_not_zero, lower_part};
 use super::hierarchy::{Hierarchy, Level};
 use super::{Levels, Multigrid};
 use crate::linear::real::Real;
@@ -54,7 +54,7 @@ fn coarser_of<T: Real>(hierarchy: &Hierarchy<T>, levels: fn(Hierarchy<T>) -> Lev
         return None;
     }
     let matrix = below.levels.first().map_or(&*below.coarsest_matrix, |level| &level.matrix);
-    let matrix = lower_part(matrix, |value| value != 0.0);
+    let matrix = lower_part(matrix, is_not_zero);
     let prolongator = first.prolongator.unshared();
     Some(Coarser {
         matrix: matrix.clone(),

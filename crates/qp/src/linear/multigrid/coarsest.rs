@@ -26,15 +26,12 @@ pub(super) struct Coarsest {
 }
 
 impl Coarsest {
-    /// Factorises a coarsest matrix; one that is singular to the precision of its entries is held by a shift.
+    /// Factorises a coarsest matrix from the entries that are `kept`, as in [`lower_part`]: all of them, if a face will
+    /// change them. One that is singular to the precision of its entries is held by a shift.
     ///
     /// # Errors
     /// [`FactorError`] if it has a negative eigenvalue, or if memory does not suffice.
-    pub fn of<T: Real>(blocks: &BlockMatrix<T>) -> Result<Self, FactorError> {
-        Self::analysed(blocks, |_| true)
-    }
-
-    fn analysed<T: Real>(blocks: &BlockMatrix<T>, kept: fn(f64) -> bool) -> Result<Self, FactorError> {
+    pub fn of<T: Real>(blocks: &BlockMatrix<T>, kept: fn(f64) -> bool) -> Result<Self, FactorError> {
         let matrix = lower_part(blocks, kept);
         let analysis = Analysis::of(&matrix)?;
         Self::factorised::<T>(&matrix, analysis)
@@ -83,7 +80,7 @@ impl Coarsest {
         // Without the unknowns that are gone, another order has less fill.
         match rest.indices.len() == matrix.indices.len() && !is_gone.contains(&true) {
             true => Self::factorised::<T>(&lower_part(&rest, |_| true), self.analysis.clone()),
-            false => Self::analysed(&rest, |value| value != 0.0),
+            false => Self::of(&rest, is_not_zero),
         }
     }
 
@@ -99,6 +96,11 @@ impl Coarsest {
             force.iter().zip(scale).map(|(&f, &d)| ldexp(f, d + self.equilibration.factor)).collect();
         self.cholesky.solve(&scaled).iter().zip(scale).map(|(&u, &d)| ldexp(u, d)).collect()
     }
+}
+
+/// For a matrix whose entries will not be others.
+pub(super) fn is_not_zero(value: f64) -> bool {
+    value != 0.0
 }
 
 /// The matrix of the blocks, one unknown after another: its diagonal, and the entries that are `kept`.

@@ -19,7 +19,7 @@
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
-use super::coarsest::Coarsest;
+use super::coarsest::{Coarsest, is_not_zero};
 use super::held::{Held, Hold, ways};
 use super::hierarchy::{Hierarchy, Level};
 use crate::linear::FactorError;
@@ -70,7 +70,7 @@ impl<T: Real> FaceLevels<T> {
             hierarchy.levels.iter().skip(1).zip(&changes).map(|(level, change)| smoother(level, change)).collect();
         let coarsest = match matrices().last() {
             Some((matrix, change)) => hierarchy.coarsest.in_face(matrix, change)?,
-            None => Coarsest::of(&held.held_matrix(&hierarchy.coarsest_matrix, &hierarchy.nodes, holds))?,
+            None => Coarsest::of(&held.held_matrix(&hierarchy.coarsest_matrix, &hierarchy.nodes, holds), is_not_zero)?,
         };
         Ok(FaceLevels { held, finest, changes, smoothers, coarsest })
     }

@@ -165,7 +165,7 @@ impl<T: Real> Hierarchy<T> {
             blocks = next;
             threshold /= 2.0;
         }
-        let coarsest = Arc::new(Coarsest::of(&blocks)?);
+        let coarsest = Arc::new(Coarsest::of(&blocks, |_| true)?);
         let (coarsest_matrix, spare) = (Arc::new(blocks), Spare::default());
         Ok(Hierarchy { nodes, shift, exact, levels, coarsest_matrix, coarsest, threads, spare })
     }
