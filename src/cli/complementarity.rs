@@ -94,7 +94,9 @@ impl Case {
                 "certificate",
                 vec![
                     verdict,
-                    format!("residual z - mid(l, z - w, u)   {residual:.1e}, at unknown {unknown} (indices from 0)"),
+                    format!(
+                        "residual z - mid(l, z - w, u)   {residual:.1e} of its terms, at unknown {unknown} (from 0)"
+                    ),
                     format!("error |z - z*|   {}", Bound::of(&solution.error).in_words()),
                     format!("error |w - w*|   {}", Bound::of(&solution.image_error).in_words()),
                 ],
@@ -188,7 +190,7 @@ impl<'a> Bound<'a> {
 
     fn in_words(&self) -> String {
         match self.0 {
-            Ok((at, error)) => format!("at most {error:.1e}, at unknown {at}"),
+            Ok((at, error)) => format!("at most {error:.1e}, absolute, at unknown {at}"),
             Err(reason) => format!("no bound: {reason}"),
         }
     }

@@ -2,18 +2,13 @@
 
 use signorini_qp::ContactSet;
 
-/// The class of M that decides the method: the first of these that it belongs to.
+/// The class of M that decides the methods, as [`LcpSolution::class`] says: the first that M belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Symmetric, if need be after its rows were scaled by powers of two, and positive semidefinite to rounding.
     Symmetric,
-    /// An H-matrix with positive diagonal: a vector d > 0 with `<M> d > 0` was found, `<M>` the comparison matrix.
     H,
-    /// M + M' is positive semidefinite to rounding, if need be after the rows of M were scaled.
     Monotone,
-    /// All principal minors are positive; decided for at most 16 unknowns.
     P,
-    /// Any other matrix, or one that was not recognised.
     General,
 }
 
@@ -80,8 +75,13 @@ pub struct LcpSolution {
 impl LcpSolution {
     /// The unknown with the largest residual, and this residual.
     pub fn worst(&self) -> (usize, f64) {
-        let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
-        let worst = self.residual.iter().copied().map(rank).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        worst.unwrap_or((0, 0.0))
+        worst(&self.residual)
     }
+}
+
+/// The largest residual and its unknown; one that is not a number counts as infinite.
+pub fn worst(residual: &[f64]) -> (usize, f64) {
+    let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
+    let worst = residual.iter().copied().map(rank).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    worst.unwrap_or((0, 0.0))
 }

@@ -20,6 +20,7 @@ use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::held;
 use crate::class::{Known, compared, comparison_solution};
 use crate::problem::Lcp;
+use crate::scaled::diagonal;
 
 /// Sums and products of bounds are enlarged by this, which exceeds their rounding for any number of terms in memory.
 const OUTWARD: f64 = 1.0 + 1e-6;
@@ -211,7 +212,7 @@ fn image_errors(lcp: &Lcp, known: &Known, (z, x): (&[f64], &[f64]), error: &[f64
     if scaled.is_symmetric && energy.is_finite() {
         let moved = lcp.matrix().mul_abs(&z.iter().zip(x).map(|(z, x)| z - x).collect::<Vec<_>>());
         // A row of a semidefinite matrix without a diagonal entry is zero.
-        for (i, value) in scaled.diagonal().into_iter().enumerate() {
+        for (i, value) in diagonal(&scaled.matrix).into_iter().enumerate() {
             let by_energy = if value > 0.0 { value.sqrt() * energy / scaled.row[i] } else { 0.0 };
             by_rows[i] = by_rows[i].min(moved[i] * OUTWARD + by_energy);
         }

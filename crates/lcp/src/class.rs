@@ -8,7 +8,7 @@ use crate::answer::Class;
 use crate::dense::Lu;
 use crate::error::Error;
 use crate::problem::Lcp;
-use crate::scaled::{Scaled, shares};
+use crate::scaled::{Scaled, diagonal, shares};
 
 /// On a diagonal of order one, a negative eigenvalue above this is rounding of the entries and of the factor.
 const LEAST_NEGATIVE: f64 = 1e-12;
@@ -93,7 +93,7 @@ fn matrix_is_finite(matrix: &SparseMatrix) -> bool {
 /// S. M. Rump, *Verification of positive definiteness*, BIT 46 (2006) 433-452: a Cholesky factorisation that ends shows
 /// that the least eigenvalue is above -(n + 1) eps trace.
 fn semidefinite(scaled: &Scaled) -> Result<Option<Semidefinite>, Error> {
-    let (diagonal, ones) = (scaled.diagonal(), vec![1.0; scaled.offset.len()]);
+    let (diagonal, ones) = (diagonal(&scaled.matrix), vec![1.0; scaled.offset.len()]);
     let n = diagonal.len() as f64;
     // Beside a zero on its diagonal, a semidefinite matrix has zeros.
     let has_none = |i: usize| diagonal[i] == 0.0;
@@ -145,8 +145,7 @@ pub fn compared(matrix: &SparseMatrix, d: &[f64]) -> Vec<f64> {
 /// of its terms.
 pub fn comparison_solution(matrix: &SparseMatrix, right: &[f64]) -> Option<Vec<f64>> {
     let n = right.len();
-    let mut diagonal = vec![0.0; n];
-    matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = (1.0 - MARGIN) * value);
+    let diagonal: Vec<f64> = diagonal(matrix).iter().map(|value| (1.0 - MARGIN) * value).collect();
     if !matrix_is_finite(matrix) || diagonal.iter().any(|&value| value <= 0.0) {
         return None;
     }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use signorini_qp::{Error as QpError, Method, Settings, memory};
 
-use crate::answer::{Class, LcpSolution, Place};
+use crate::answer::{Class, LcpSolution, Place, worst};
 use crate::basis::settled;
 use crate::certificate::{examined, onto, placed};
 use crate::class::Known;
@@ -125,6 +125,22 @@ fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
     z.iter().zip(&known.scaled.column).map(|entry| if size(entry) <= DUST * largest { 0.0 } else { *entry.0 }).collect()
 }
 
+/// The point with the smallest residual so far, and the method that found it.
+struct Best {
+    z: Vec<f64>,
+    residual: f64,
+    method: &'static str,
+    iterations: usize,
+}
+
+impl Best {
+    fn certified(self, lcp: &Lcp, known: &Known, start: Instant) -> LcpSolution {
+        let Best { z, method, iterations, .. } = self;
+        let solution = examined(lcp, known, z);
+        LcpSolution { method, iterations, seconds: start.elapsed().as_secs_f64(), ..solution }
+    }
+}
+
 /// See [`solve_lcp`](crate::solve_lcp).
 pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     let start = Instant::now();
@@ -132,7 +148,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     let tolerance = settings.goal().tolerance;
     let allowed = memory::allowed(settings.memory);
     let known = Known::of(lcp)?;
-    let (mut best, mut reasons): (Option<LcpSolution>, Vec<String>) = (None, Vec::new());
+    let (mut best, mut reasons): (Option<Best>, Vec<String>) = (None, Vec::new());
     for way in Way::of(&known, settings.method) {
         let (z, places, iterations) = match way.found(lcp, &known, allowed, settings)? {
             Found::Point { z, places, iterations } => (z, places, iterations),
@@ -148,18 +164,6 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
                 continue;
             }
         };
-        let mut is_sharp = false;
-        let mut examine = |z: &[f64]| {
-            if is_sharp {
-                return;
-            }
-            let mut solution = examined(lcp, &known, z.to_vec());
-            (solution.method, solution.iterations) = (way.name(), iterations);
-            is_sharp = solution.worst().1 <= tolerance.min(SHARP);
-            if best.as_ref().is_none_or(|best| solution.worst().1 < best.worst().1) {
-                best = Some(solution);
-            }
-        };
         let rough = placed(lcp, &z);
         let is_rough = rough.residual.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
         let mut points = vec![onto(lcp, &rough.places, &z)];
@@ -168,10 +172,18 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             points.extend(places.and_then(|places| settled(lcp, &known, &places, allowed).ok()?));
             points.reverse();
         }
-        points.iter().for_each(|z| examine(z));
-        points.iter().for_each(|z| examine(&without_dust(&known, z)));
-        if let Some(solution) = best.take_if(|_| is_sharp) {
-            return Ok(LcpSolution { seconds: start.elapsed().as_secs_f64(), ..solution });
+        let dusted: Vec<_> = points.iter().map(|z| without_dust(&known, z)).collect();
+        for z in points.into_iter().chain(dusted) {
+            let residual = worst(&placed(lcp, &z).residual).1;
+            if best.as_ref().is_none_or(|best| residual < best.residual) {
+                best = Some(Best { z, residual, method: way.name(), iterations });
+            }
+            if residual <= tolerance.min(SHARP) {
+                break;
+            }
+        }
+        if let Some(best) = best.take_if(|best| best.residual <= tolerance.min(SHARP)) {
+            return Ok(best.certified(lcp, &known, start));
         }
     }
     if lcp.unknowns() <= DENSE
@@ -181,8 +193,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     }
     // Attempts of one method end alike.
     reasons.dedup();
-    let best = best.map(|best| LcpSolution { seconds: start.elapsed().as_secs_f64(), ..best });
-    Err(match best {
+    Err(match best.map(|best| best.certified(lcp, &known, start)) {
         Some(solution) if solution.worst().1 <= tolerance => return Ok(solution),
         Some(solution) => {
             let (index, residual) = solution.worst();

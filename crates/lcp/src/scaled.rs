@@ -32,6 +32,13 @@ fn power(exponent: f64) -> f64 {
     exponent.round().clamp(-300.0, 300.0).exp2()
 }
 
+/// The diagonal of a square matrix.
+pub fn diagonal(matrix: &SparseMatrix) -> Vec<f64> {
+    let mut diagonal = vec![0.0; matrix.columns()];
+    matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = value);
+    diagonal
+}
+
 fn is_power(value: f64) -> bool {
     value.to_bits() & ((1 << 52) - 1) == 0
 }
@@ -64,10 +71,10 @@ impl Scaled {
 
     /// Unit diagonals after each row was multiplied by its share.
     pub fn by_diagonal(lcp: &Lcp, share: &[f64]) -> Self {
-        let (n, matrix) = (lcp.unknowns(), lcp.matrix());
-        let mut unit = vec![0.0; n];
-        let own = matrix.triplets().filter(|(i, j, value)| i == j && *value != 0.0);
-        own.for_each(|(i, _, value)| unit[i] = power(-0.5 * (share[i].log2() + value.abs().log2())));
+        let matrix = lcp.matrix();
+        let of_own =
+            |own: f64, share: f64| if own == 0.0 { 0.0 } else { power(-0.5 * (share.log2() + own.abs().log2())) };
+        let mut unit: Vec<f64> = diagonal(matrix).iter().zip(share).map(|(own, share)| of_own(*own, *share)).collect();
         if unit.contains(&0.0) {
             let [row, column] = fit(matrix, share);
             let means = row.iter().zip(&column).map(|(row, column)| power(0.5 * (row + column)));
@@ -82,13 +89,6 @@ impl Scaled {
         let powers = |exponents: Vec<f64>| exponents.into_iter().map(power).collect();
         let [row, column] = fit(lcp.matrix(), &vec![1.0; lcp.unknowns()]).map(powers);
         Scaled::new(lcp, row, column)
-    }
-
-    /// The diagonal of A.
-    pub fn diagonal(&self) -> Vec<f64> {
-        let mut diagonal = vec![0.0; self.offset.len()];
-        self.matrix.triplets().filter(|entry| entry.0 == entry.1).for_each(|(i, _, value)| diagonal[i] = value);
-        diagonal
     }
 
     /// The symmetric part (A + A') / 2, with this number added to its diagonal.

@@ -167,19 +167,17 @@ impl SparseMatrix {
     pub fn read_bounds(file: &std::path::Path) -> Result<Vec<f64>, Error> {
         matrix_market::read_bounds(file)
     }
+
+    /// The matrix as a Matrix Market file of this name.
+    pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
+        file::Streamed::new(name, |out| matrix_market::write_entries(out, self, "general"))
+    }
 }
 
 impl SymmetricMatrix {
     /// The matrix as a Matrix Market file of this name, by its lower triangle.
     pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
         matrix_market::symmetric_file(name, self)
-    }
-}
-
-impl SparseMatrix {
-    /// The matrix as a Matrix Market file of this name.
-    pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
-        file::Streamed::new(name, |out| matrix_market::write_entries(out, self, "general"))
     }
 }
 

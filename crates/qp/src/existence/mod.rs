@@ -120,24 +120,7 @@ pub(super) struct Existence {
     /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with
     /// which.
     within_rounding: Option<(usize, f64)>,
-    /// Springs at as many dofs as there are motions without energy to rounding, which hold all: their entries of a
-    /// matrix.
-    pub springs: Vec<(usize, usize, f64)>,
     solve: Solve,
-}
-
-/// Springs that hold some motions, one for each, with the stiffness of `kind` at their dofs.
-fn springs(mut motions: Vec<Vec<f64>>, kind: &[f64]) -> Vec<(usize, usize, f64)> {
-    let mut springs = Vec::new();
-    while let Some(motion) = motions.pop() {
-        let dof = place_of_largest(&motion);
-        for other in &mut motions {
-            let share = other[dof] / motion[dof];
-            subtract(other, share, &motion);
-        }
-        springs.push((dof, dof, kind[dof]));
-    }
-    springs
 }
 
 impl Existence {
@@ -167,10 +150,9 @@ impl Existence {
         };
         let softest = null.shares.iter().zip(&null.vectors).max_by(|a, b| a.0.total_cmp(b.0));
         let dof = softest.map_or(0, |(_, vector)| place_of_largest(&expanded(vector)));
-        let springs = springs(null.found.clone(), &scaling.identity(0));
         let (null, share) = null.declared(|vector| is_rigid(problem, &expanded(vector), &bodies));
         let within_rounding = (share > 0.0).then_some((dof, share));
-        Ok(Some(Existence { within_rounding, springs, ..Self::with(scaled, scaling, null, solve) }))
+        Ok(Some(Existence { within_rounding, ..Self::with(scaled, scaling, null, solve) }))
     }
 
     fn with(scaled: ContactProblem, scaling: Scaling, null: NullSpace, solve: Solve) -> Self {
@@ -178,17 +160,22 @@ impl Existence {
         let bounded = (0..scaled.rows()).filter(|&row| scaled.gap()[row].is_finite());
         let rows = bounded.map(|row| (row, coordinates(&null, || by_row.column(row), rounding))).collect();
         let against_load = coordinates(&null, || scaled.load().iter().map(|f| -f).enumerate(), rounding);
-        Existence {
-            scaled,
-            scaling,
-            null,
-            rounding,
-            rows,
-            against_load,
-            within_rounding: None,
-            springs: Vec::new(),
-            solve,
+        Existence { scaled, scaling, null, rounding, rows, against_load, within_rounding: None, solve }
+    }
+
+    /// Springs at as many dofs as there are motions without energy to rounding, which hold all of them: their entries
+    /// of a matrix.
+    pub fn springs(&self) -> Vec<(usize, usize, f64)> {
+        let (kind, mut motions, mut springs) = (self.scaling.identity(0), self.null.found.clone(), Vec::new());
+        while let Some(motion) = motions.pop() {
+            let dof = place_of_largest(&motion);
+            for other in &mut motions {
+                let share = other[dof] / motion[dof];
+                subtract(other, share, &motion);
+            }
+            springs.push((dof, dof, kind[dof]));
         }
+        springs
     }
 
     /// Checks that the load drives no mode without energy that no row stops.

@@ -60,7 +60,7 @@ impl NullSpace {
 
     /// The vectors on which A vanishes exactly and those that `is_declared`, and the largest share of the others.
     pub fn declared(self, is_declared: impl Fn(&[Twice]) -> bool) -> (Self, f64) {
-        let (mut kept, mut most) = (NullSpace::default(), 0.0_f64);
+        let (mut kept, mut most) = (NullSpace { found: self.found, ..NullSpace::default() }, 0.0_f64);
         for (vector, share) in self.vectors.into_iter().zip(self.shares) {
             if share == 0.0 || is_declared(&vector) {
                 kept.vectors.push(vector);

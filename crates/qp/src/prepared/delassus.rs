@@ -88,7 +88,8 @@ impl Prepared {
                 let failed = |reason: String| Error::Numerical { step: "the Delassus operator", reason };
                 let many = || failed("the stiffness has more than 256 motions, or leaves the range of doubles".into());
                 let existence = Existence::of(&rest, settings, solve_any)?.ok_or_else(many)?;
-                let added = SparseMatrix::from_triplets(rest.dofs(), rest.dofs(), &existence.springs)?;
+                let springs = existence.springs();
+                let added = SparseMatrix::from_triplets(rest.dofs(), rest.dofs(), &springs)?;
                 let held = with(rest.stiffness().combined(1.0, 1.0, &SymmetricMatrix::from_lower(added)?)?)?;
                 let by_factor = Settings { method: Method::ActiveSet, ..settings.clone() };
                 let bench = Self::for_gaps(&held, 1, &by_factor)?.bench;
@@ -96,7 +97,7 @@ impl Prepared {
                 else {
                     return Err(failed("the stiffness is not safely definite".into()));
                 };
-                (held, norm, existence.springs)
+                (held, norm, springs)
             }
         };
         let row = |&row: &usize| elimination.as_ref().map_or(row, |elimination| elimination.rows[row]);
