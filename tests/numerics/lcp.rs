@@ -320,13 +320,16 @@ fn run(counts: &mut Counts, name: &str, trial: &Trial) {
             {
                 found.push("the certificate of the same point differs".into());
             }
-            // A point beside the answer has bounds as well.
+            // Points beside the answer have bounds as well, also far from unknowns that are zero.
             let mut draws = Draws::of(1, counts.endings.values().sum::<usize>() as u64);
-            let moved: Vec<f64> =
-                solution.z.iter().map(|z| z * (1.0 + draws.decades(1e-14, 1e-1) * draws.signed())).collect();
-            let beside = lcp.certify(&moved).unwrap();
-            let of_beside = faults(&bounded, exact.as_ref(), is_p, &beside, f64::INFINITY);
-            found.extend(of_beside.into_iter().map(|fault| format!("beside: {fault}")));
+            let size = draws.decades(1e-3, 1e3);
+            for share in [0.0, size] {
+                let moved =
+                    |z: &f64| z * (1.0 + draws.decades(1e-14, 1e-1) * draws.signed()) + share * draws.signed().max(0.0);
+                let beside = lcp.certify(&solution.z.iter().map(moved).collect::<Vec<_>>()).unwrap();
+                let of_beside = faults(&bounded, exact.as_ref(), is_p, &beside, f64::INFINITY);
+                found.extend(of_beside.into_iter().map(|fault| format!("beside: {fault}")));
+            }
             let bounds = if solution.error.is_ok() {
                 "z"
             } else if solution.image_error.is_ok() {
@@ -370,7 +373,8 @@ fn all(count: u64, seed: u64, draw: fn(u64, u64) -> Trial) {
 
 #[test]
 fn no_answer_contradicts_exact_arithmetic() {
-    all(cases(400, 5000), seed(76), draw);
+    // Beside the answer of number 65 the gap is the energy: half the bound would be wrong there.
+    all(cases(400, 5000), seed(105), draw);
 }
 
 #[test]
