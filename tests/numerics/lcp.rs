@@ -373,7 +373,7 @@ fn all(count: u64, seed: u64, draw: fn(u64, u64) -> Trial) {
 
 #[test]
 fn no_answer_contradicts_exact_arithmetic() {
-    // Beside the answer of number 65 the gap is the energy: half the bound would be wrong there.
+    // Beside the answer of number 65 the gap is nearly the energy: a tenth of the bound would be wrong there.
     all(cases(400, 5000), seed(105), draw);
 }
 
