@@ -3,7 +3,7 @@
 //!
 //! CONDITIONS: two blocks with faces that do not match, pressed together so that they part at one side; the upper one
 //! with the finer or the coarser mesh, as wide as the lower one or wider; rows on the softer or on the stiffer body;
-//! beside rigid and pressed obstacles; one block on two.
+//! beside rigid and pressed obstacles; one block on two; towers of blocks that contact alone holds.
 
 use serde_json::{Value, json};
 use signorini::qp::Estimate;
@@ -127,4 +127,41 @@ fn multigrid_is_chosen_where_it_is_the_faster_way() {
     };
     assert!(prefers([14, 20]) && prefers([20, 14]));
     assert!(!prefers([2, 3]));
+}
+
+/// A tower of blocks in the plane: the lowest is held, contact and a roller hold each of the others.
+fn tower(blocks: usize, cells: usize) -> Value {
+    let of = |i: usize, boundary: &str| if i == 0 { boundary.to_string() } else { format!("b{i}.{boundary}") };
+    let body =
+        |i: usize| json!({"rectangle": {"x": lines(0.0, 1.0, cells), "y": lines(i as f64, i as f64 + 1.0, cells)}});
+    let material = json!({"young": 1e6, "poisson": 0.3});
+    let further = |i: usize| json!({"name": format!("b{i}"), "material": material, "body": body(i)});
+    let roller = |i: usize| json!({"on": {"boundary": of(i, "left")}, "x": 0});
+    let joint = |i: usize| {
+        let below = json!({"body": {"boundary": of(i, "bottom")}});
+        json!({"boundary": of(i - 1, "top"), "approach": "+y", "shape": below})
+    };
+    let mut supports = vec![json!({"on": {"boundary": "bottom"}, "y": 0})];
+    supports.extend((0..blocks).map(roller));
+    json!({
+        "model": "plane-strain",
+        "body": body(0),
+        "material": material,
+        "further-bodies": (1..blocks).map(further).collect::<Vec<_>>(),
+        "supports": supports,
+        "obstacles": (1..blocks).map(joint).collect::<Vec<_>>(),
+        "loads": [{"pressure": {"boundary": of(blocks - 1, "top"), "value": 1000}}],
+        "gap": 0
+    })
+}
+
+/// Springs hold the blocks in the bound of the error, and no level of the hierarchy has them: the cycles that the bound
+/// takes grow with the number of blocks.
+#[test]
+fn cycles_are_not_chosen_for_a_tower_of_so_many_blocks_that_they_do_not_bound_its_error() {
+    let [few, many] = [12, 40].map(|blocks| built(&tower(blocks, 14)));
+    let [of_few, of_many] = [&few, &many].map(|model| Estimate::of(model.problem()).prefers_multigrid(f64::INFINITY));
+    assert!(of_few && !of_many);
+    let found = solve(few.problem(), &Settings::with_method(Method::Mprgp)).unwrap();
+    assert!(found.certificate.meets(1e-9), "{:?}", found.certificate);
 }

@@ -40,14 +40,15 @@ pub(super) struct BodyFactor {
 }
 
 impl BodyFactor {
-    /// By the number of unknowns, with the law of a bar, a square or a cube.
+    /// By the number of unknowns of each body, with the law of a bar, a square or a cube.
     pub fn by_size(problem: &ContactProblem) -> Self {
-        let dofs = problem.dofs() as f64;
-        let (multiplications, entries) = match problem.near_null().map(|near_null| near_null.count()) {
-            Some(1) if is_line(problem) => (0.0, ALONG_A_LINE * dofs),
-            Some(MODES_IN_SPACE..) => (10.0 * dofs.powi(2), 23.0 * dofs.powf(4.0 / 3.0)),
-            _ => (in_the_plane(problem), 6.0 * dofs * dofs.max(2.0).log2()),
+        let law: fn(f64) -> [f64; 2] = match problem.near_null().map(|near_null| near_null.count()) {
+            Some(1) if is_line(problem) => |dofs| [0.0, ALONG_A_LINE * dofs],
+            Some(MODES_IN_SPACE..) => |dofs| [10.0 * dofs.powi(2), 23.0 * dofs.powf(4.0 / 3.0)],
+            _ => |dofs| [34.0 * dofs.powf(1.5), 6.0 * dofs * dofs.max(2.0).log2()],
         };
+        let bodies = problem.parts().dofs_of_bodies().into_iter().map(|dofs| law(dofs as f64));
+        let [multiplications, entries] = bodies.fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
         let seconds = factor_seconds(multiplications, entries);
         BodyFactor { entries, seconds, ordering_seconds: seconds::ordering(problem) }
     }
@@ -74,11 +75,6 @@ impl BodyFactor {
 /// Returns `true` if an unknown is coupled to two others at most, as along a bar.
 fn is_line(problem: &ContactProblem) -> bool {
     problem.stiffness().lower().entries() <= 2 * problem.dofs()
-}
-
-/// Multiplications of a factor in the plane; each part has its own.
-fn in_the_plane(problem: &ContactProblem) -> f64 {
-    34.0 * problem.parts().sums(|_| 1.0).into_iter().map(|dofs| dofs.powf(1.5)).sum::<f64>()
 }
 
 /// The estimated costs of the direct path.

@@ -18,7 +18,11 @@ const TURNED: f64 = 1.6;
 
 /// A singular stiffness takes this many times the seconds: factors for the start and for the sets of rows that hold the
 /// body.
-const SINGULAR: f64 = 2.5;
+const SINGULAR: f64 = 4.0;
+
+/// If contact holds more motions of bodies than this one by the other, cycles do not settle the bound: the springs that
+/// hold them are in no level of the hierarchy.
+const MOST_MOTIONS: usize = 24;
 
 /// If a cube would take less than this many times the seconds of multigrid, a slender body may take less than
 /// multigrid: the order by minimum degree is then computed.
@@ -58,6 +62,8 @@ pub struct Estimate {
     pub(super) shared_seconds: f64,
     /// The near-null space that a hierarchy is given.
     pub(super) smooth: Smooth,
+    /// `true` if cycles can bound the error.
+    pub(super) has_bound: bool,
     /// Number of cycles in the seconds of multigrid.
     pub(super) cycles: f64,
 }
@@ -101,7 +107,8 @@ impl Estimate {
         }
         let times_multigrid = direct.seconds / multigrid_seconds;
         let matters = times_multigrid < SINGULAR && times_multigrid * SINGULAR > 1.0;
-        let times = if matters && problem.has_free_mode() { SINGULAR } else { 1.0 };
+        let motions = if matters || problem.parts().of_bodies().len() > 1 { problem.free_motions() } else { 0 };
+        let times = if motions > 0 { SINGULAR } else { 1.0 };
         Estimate {
             direct_bytes: bytes::START
                 + bytes::of_problem(dofs, problem.stiffness().entries() as f64)
@@ -113,6 +120,7 @@ impl Estimate {
             hierarchy_seconds,
             shared_seconds: times * direct.shared_seconds,
             smooth,
+            has_bound: motions <= MOST_MOTIONS,
             cycles,
         }
     }

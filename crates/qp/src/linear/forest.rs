@@ -2,6 +2,7 @@
 
 /// Connected components by union and find: each unknown points towards the first of its tree. For the crates of this
 /// workspace.
+#[derive(Clone)]
 pub struct Forest {
     parent: Vec<usize>,
     trees: usize,

@@ -51,7 +51,8 @@ impl Estimate {
         let ratio = self.direct_seconds / self.multigrid_seconds;
         let fits = self.direct_bytes <= most_bytes;
         // For a body, constants alone give a poor hierarchy.
-        if ratio > CLEARLY && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes {
+        let may_iterate = self.has_bound || !fits;
+        if ratio > CLEARLY && may_iterate && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes {
             let reason = format!("by multigrid: a factorisation would take about {ratio:.1} times as long");
             let of_cycles = OUTRUN * self.direct_seconds - self.hierarchy_seconds;
             let cycle_seconds = (self.multigrid_seconds - self.hierarchy_seconds) / self.cycles;
@@ -75,10 +76,13 @@ impl Estimate {
                 let [of_multigrid, allowed] = [self.multigrid_bytes, most_bytes].map(written);
                 format!("with a factor: multigrid would take about {of_multigrid}, {allowed} are allowed")
             }
+            _ if !self.has_bound => {
+                "with a factor: cycles do not bound the error of so many bodies that only contact holds".to_string()
+            }
             _ if slower > 1.0 => format!("with a factor: multigrid would take about {slower:.1} times as long"),
             _ => format!("with a factor: its bound is proven, and multigrid is not {CLEARLY} times as fast"),
         };
-        let takes_both = self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes;
+        let takes_both = self.has_bound && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes;
         let most_seconds = if takes_both { OUTRUN * self.multigrid_seconds } else { f64::INFINITY };
         Ok(Choice::Factor { reason, most_seconds })
     }

@@ -18,7 +18,7 @@ use opposed::OpposedRows;
 use crate::error::Error;
 use crate::linear::equations::Following;
 use crate::linear::multigrid::NearNullSpace;
-use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_vector, largest};
+use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_vector};
 
 /// Frictionless unilateral contact as a convex quadratic program:
 ///
@@ -56,7 +56,7 @@ pub struct ContactProblem {
     diagonal: FoundOnce<Diagonal>,
     semidefinite: FoundOnce<bool>,
     parts: FoundOnce<Parts>,
-    free_mode: FoundOnce<bool>,
+    free_motions: FoundOnce<usize>,
     opposed: FoundOnce<OpposedRows>,
     equalities: FoundOnce<Vec<Equality>>,
     /// The number of equality rows: the last rows are as many, and the same from the other side.
@@ -140,7 +140,7 @@ impl ContactProblem {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
         let without_entries: Arc<[usize]> = empty_rows::without_entries(&contact).into();
-        let (diagonal, parts, free_mode) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
+        let (diagonal, parts, free_motions) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
         let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
         let semidefinite = FoundOnce::default();
         let near_null = None;
@@ -153,7 +153,7 @@ impl ContactProblem {
             diagonal,
             semidefinite,
             parts,
-            free_mode,
+            free_motions,
             opposed,
             equalities,
             equality_rows: 0,
@@ -175,7 +175,7 @@ impl ContactProblem {
         if found != expected {
             return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
         }
-        Ok(ContactProblem { near_null: Some(near_null), free_mode: FoundOnce::default(), ..self })
+        Ok(ContactProblem { near_null: Some(near_null), free_motions: FoundOnce::default(), ..self })
     }
 
     /// The near-null space, if one was given.
@@ -274,13 +274,34 @@ impl ContactProblem {
         (0..self.dofs()).filter(|&dof| self.diagonal().values[dof] == 0.0).collect()
     }
 
-    /// Returns `true` if one of the vectors of the near-null space has no energy: supports do not hold the body.
-    /// Computed at its first use.
+    /// The motions of whole bodies without energy that contact joins: the most of any part. A motion is a vector of the
+    /// near-null space on one body. Computed at its first use.
+    pub(crate) fn free_motions(&self) -> usize {
+        let count = || {
+            let parts = self.parts();
+            let part_of_body = parts.of_bodies();
+            let largest = |forces: &[f64]| {
+                let mut of_body = vec![0.0_f64; part_of_body.len()];
+                for (dof, force) in forces.iter().enumerate() {
+                    let largest = &mut of_body[parts.body_of_dof(dof)];
+                    *largest = largest.max(force.abs());
+                }
+                of_body
+            };
+            let mut motions = vec![0; parts.count()];
+            for mode in self.near_null().map_or(&[][..], |modes| modes.vectors()) {
+                let (forces, terms) = (largest(&self.stiffness.mul(mode)), largest(&self.stiffness.mul_abs(mode)));
+                let is_free = |body: &usize| terms[*body] > 0.0 && forces[*body] <= FREE * terms[*body];
+                (0..part_of_body.len()).filter(is_free).for_each(|body| motions[part_of_body[body]] += 1);
+            }
+            motions.into_iter().max().unwrap_or(0)
+        };
+        *self.free_motions.get_or_init(count)
+    }
+
+    /// Returns `true` if a vector of the near-null space has no energy on one of the bodies: supports do not hold it.
     pub(crate) fn has_free_mode(&self) -> bool {
-        let is_free =
-            |mode: &Vec<f64>| largest(&self.stiffness.mul(mode)) <= FREE * largest(&self.stiffness.mul_abs(mode));
-        let any_is_free = || self.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free));
-        *self.free_mode.get_or_init(any_is_free)
+        self.free_motions() > 0
     }
 
     /// Returns `true` if the stiffness is known to be singular: contact alone holds a dof or a mode.

@@ -17,6 +17,8 @@ pub(crate) struct Parts {
     /// The part of each row; 0 for a row without dofs.
     of_row: Vec<usize>,
     count: usize,
+    /// The body of each dof: the connected components of K alone, numbered in the same way; empty if there is but one.
+    body_of_dof: Vec<usize>,
 }
 
 impl Parts {
@@ -35,6 +37,7 @@ impl Parts {
                 }
             }
         }
+        let body_of_dof = if forest.is_one_tree() { Vec::new() } else { forest.clone().into_trees().0 };
         let mut first: Vec<Option<usize>> = vec![None; contact.rows()];
         let dofs = if forest.is_one_tree() { 0 } else { roots.len() };
         for dof in 0..dofs {
@@ -48,7 +51,7 @@ impl Parts {
         if count > 1 {
             contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, dof, _)| of_row[row] = of_dof[dof]);
         }
-        Parts { of_dof, of_row, count }
+        Parts { of_dof, of_row, count, body_of_dof }
     }
 
     /// Number of parts, at least one: a problem without dofs has an empty one.
@@ -74,6 +77,25 @@ impl Parts {
     /// Returns `true` if the stiffness has no coupling of two parts, not even a weak one.
     pub fn are_apart(&self, stiffness: &SymmetricMatrix) -> bool {
         stiffness.lower().triplets().all(|(row, column, value)| value == 0.0 || self.of_dof[row] == self.of_dof[column])
+    }
+
+    /// The body of a dof: K alone joins its dofs.
+    pub fn body_of_dof(&self, dof: usize) -> usize {
+        self.body_of_dof.get(dof).copied().unwrap_or(0)
+    }
+
+    /// The part of each body.
+    pub fn of_bodies(&self) -> Vec<usize> {
+        let mut parts = vec![0; self.body_of_dof.iter().max().map_or(1, |last| last + 1)];
+        self.body_of_dof.iter().zip(&self.of_dof).for_each(|(&body, &part)| parts[body] = part);
+        parts
+    }
+
+    /// Number of dofs of each body.
+    pub fn dofs_of_bodies(&self) -> Vec<usize> {
+        let mut dofs = vec![0; self.of_bodies().len()];
+        (0..self.of_dof.len()).for_each(|dof| dofs[self.body_of_dof(dof)] += 1);
+        dofs
     }
 
     /// The sum of `term(dof)` over the dofs of each part.
