@@ -12,10 +12,72 @@ use super::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix};
 pub struct AugmentedMatrix {
     /// K with a place for each entry of B'B and of the diagonal. Every column begins with its diagonal.
     stiffness: SparseMatrix,
-    /// Row i of B adds `products[k].1 * w_i` to entry `products[k].0`, for k in `row_starts[i]..row_starts[i + 1]`.
-    row_starts: Vec<usize>,
-    products: Vec<(usize, f64)>,
+    squares: Squares,
     analysis: Analysis,
+}
+
+/// The squares b b' of the rows b of B.
+#[derive(Clone, Debug)]
+enum Squares {
+    /// Row i of B adds `products[k].1 * w_i` to entry `products[k].0`, for k in `row_starts[i]..row_starts[i + 1]`.
+    Products { row_starts: Vec<usize>, products: Vec<(usize, f64)> },
+    /// B', for a K with all entries whose rows would have more products than K has entries.
+    Rows(SparseMatrix),
+}
+
+impl Squares {
+    /// The squares of the columns of `by_row`, in a matrix that has a place for each of their products.
+    fn of(by_row: SparseMatrix, matrix: &SparseMatrix) -> Self {
+        let of_row = |row: usize| triangle(by_row.column(row).count());
+        if matrix.entries() == triangle(matrix.columns())
+            && (0..by_row.columns()).map(of_row).sum::<usize>() > matrix.entries()
+        {
+            return Squares::Rows(by_row);
+        }
+        let mut search = Search::of(matrix);
+        let (mut row_starts, mut products) = (vec![0], Vec::new());
+        for row in 0..by_row.columns() {
+            products.extend(by_row.square(row).map(|(second, first, product)| {
+                let (Ok(place) | Err(place)) = search.place(first, second);
+                (matrix.column_starts()[first] + place, product)
+            }));
+            row_starts.push(products.len());
+        }
+        Squares::Products { row_starts, products }
+    }
+
+    /// Adds B' diag(weight(i)) B to the entries of the matrix, whose columns begin at `starts`.
+    fn add_to(&self, values: &mut [f64], starts: &[usize], weight: impl Fn(usize) -> f64) {
+        match self {
+            Squares::Products { row_starts, products } => {
+                for (row, places) in row_starts.windows(2).enumerate() {
+                    let factor = weight(row);
+                    if factor != 0.0 {
+                        for &(entry, product) in &products[places[0]..places[1]] {
+                            values[entry] += factor * product;
+                        }
+                    }
+                }
+            }
+            Squares::Rows(by_row) => {
+                let mut row_values = vec![0.0; by_row.rows()];
+                for row in (0..by_row.columns()).filter(|&row| weight(row) != 0.0) {
+                    let factor = weight(row);
+                    by_row.column(row).for_each(|(dof, b)| row_values[dof] = b);
+                    for (dof, b) in by_row.column(row) {
+                        let column = &mut values[starts[dof]..starts[dof + 1]];
+                        column.iter_mut().zip(&row_values[dof..]).for_each(|(value, c)| *value += factor * b * c);
+                    }
+                    by_row.column(row).for_each(|(dof, _)| row_values[dof] = 0.0);
+                }
+            }
+        }
+    }
+}
+
+/// The number of entries of a lower triangle.
+fn triangle(columns: usize) -> usize {
+    columns * (columns + 1) / 2
 }
 
 impl AugmentedMatrix {
@@ -57,22 +119,11 @@ impl AugmentedMatrix {
         analyse: impl FnOnce(&SymmetricMatrix) -> Result<Analysis, FactorError>,
     ) -> Result<Self, FactorError> {
         let by_row = rows.transposed();
-        let mut squares = Vec::new();
-        let mut row_starts = vec![0];
-        for row in 0..by_row.columns() {
-            squares.extend(by_row.square(row));
-            row_starts.push(squares.len());
-        }
-        let stiffness = with_places(stiffness.lower(), squares.iter().map(|&(second, first, _)| (first, second)));
-        let mut search = Search::of(&stiffness);
-        let products = (squares.iter())
-            .map(|&(second, first, product)| {
-                let (Ok(place) | Err(place)) = search.place(first, second);
-                (stiffness.column_starts()[first] + place, product)
-            })
-            .collect();
+        let squares = (0..by_row.columns()).flat_map(|row| by_row.square(row));
+        let stiffness = with_places(stiffness.lower(), squares.map(|(second, first, _)| (first, second)));
+        let squares = Squares::of(by_row, &stiffness);
         let analysis = analyse(&SymmetricMatrix::from_sorted_lower(stiffness.clone()))?;
-        Ok(Self { stiffness, row_starts, products, analysis })
+        Ok(Self { stiffness, squares, analysis })
     }
 
     /// The same matrices, factorised with this number of threads.
@@ -88,14 +139,7 @@ impl AugmentedMatrix {
     /// The matrix K + shift I + B' diag(weight(i)) B.
     pub fn matrix(&self, weight: impl Fn(usize) -> f64, shift: f64) -> SymmetricMatrix {
         let mut values = self.stiffness.values().to_vec();
-        for row in 0..self.row_starts.len() - 1 {
-            let factor = weight(row);
-            if factor != 0.0 {
-                for &(entry, product) in &self.products[self.row_starts[row]..self.row_starts[row + 1]] {
-                    values[entry] += factor * product;
-                }
-            }
-        }
+        self.squares.add_to(&mut values, self.stiffness.column_starts(), weight);
         if shift != 0.0 {
             for &start in &self.stiffness.column_starts()[..self.stiffness.columns()] {
                 values[start] += shift;
@@ -156,6 +200,9 @@ impl Augmented {
 /// A lower triangle with a place, zero if it had none, for every `(column, row)` of `added` and of the diagonal; the
 /// same memory if nothing was missing.
 fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>) -> SparseMatrix {
+    if lower.entries() == triangle(lower.columns()) {
+        return lower.clone();
+    }
     let mut search = Search::of(lower);
     let diagonal = (0..lower.columns()).map(|column| (column, column));
     let is_missing = |&(column, row): &(usize, usize)| search.place(column, row).is_err();
@@ -229,6 +276,29 @@ mod tests {
         let pairs = all.iter().flat_map(|&first| all.iter().flat_map(move |&second| [first, second]));
         for (column, row) in all.iter().copied().chain(pairs) {
             assert_eq!(search.place(column, row), rows[column].binary_search(&row), "{column} {row}");
+        }
+    }
+
+    #[test]
+    fn full_rows_are_added_without_a_list_of_their_products() {
+        let (dofs, rows, shift) = (5, 4, 0.5);
+        let b = |row: usize, dof: usize| ((3 * row + 2 * dof) % 7) as f64 - 3.0;
+        let k = |i: usize, j: usize| if i == j { 9.0 } else { 1.0 / (1 + i + j) as f64 };
+        let weight = |row: usize| row as f64;
+        let all = |of: &dyn Fn(usize, usize) -> f64, count: usize, first: bool| -> Vec<(usize, usize, f64)> {
+            let columns = |i: usize| if first { i + 1 } else { dofs };
+            (0..count).flat_map(|i| (0..columns(i)).map(move |j| (i, j))).map(|(i, j)| (i, j, of(i, j))).collect()
+        };
+        let stiffness = SparseMatrix::from_triplets(dofs, dofs, &all(&k, dofs, true)).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
+        let contact = SparseMatrix::from_triplets(rows, dofs, &all(&b, rows, false)).unwrap();
+        let augmented = AugmentedMatrix::new(&stiffness, &contact).unwrap();
+        assert!(matches!(augmented.squares, Squares::Rows(_)));
+        for (i, j, value) in augmented.matrix(weight, shift).lower().triplets() {
+            let squares: f64 = (0..rows).map(|row| weight(row) * b(row, i) * b(row, j)).sum();
+            let expected = k(i, j) + squares + if i == j { shift } else { 0.0 };
+            // Sums of four products of small integers.
+            assert!((value - expected).abs() <= 1e-14 * expected.abs().max(1.0), "{i} {j}: {value} {expected}");
         }
     }
 }
