@@ -86,10 +86,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     if watch.acknowledge() && outcome.is_ok() {
         warn(&interrupt::sentence(&watch));
     }
-    let outcome = outcome.unwrap_or_else(|error| {
-        warn(&format!("error: {}\n", sentence(&error)));
-        failed(&error, format)
-    });
+    let outcome = outcome.unwrap_or_else(|error| failed(&error, format));
+    if let Some(error) = &outcome.error {
+        warn(&format!("error: {error}\n"));
+    }
     let printed = io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush());
     if let Err(error) = printed
         && error.kind() != io::ErrorKind::BrokenPipe
