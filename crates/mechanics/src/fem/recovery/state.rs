@@ -43,8 +43,8 @@ pub(crate) struct Deformation {
     pub widespread: f64,
 }
 
-/// About a singular point, such as a clamped corner, strain and rotation grow with every refinement. If they are large on
-/// no more than this share of the volume and of the energy, the answer does not depend on it.
+/// About a singular point, such as a clamped corner, strain and rotation grow with every refinement. If they are large
+/// on no more than this share of the volume and of the energy, the answer hardly depends on it.
 const SINGULAR: f64 = 1e-3;
 
 /// What the centre of an element tells.
