@@ -162,5 +162,6 @@ fn solved(
     let outcome = reported(&input, (solved, Some(answer.clone())), settings.goal(), (about, &solve), watch)?;
     outcome.pictures.map_or(Ok(()), |pictures| pictures())?;
     *text += &outcome.text;
+    *text += &outcome.error.map_or_else(String::new, |error| format!(" *ERROR: {error}\n"));
     Ok((outcome.ending, answer))
 }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::failure::{ended, sentence};
 use super::options::{Common, Compare, Format, Solve, Verify};
-use super::outcome::{Outcome, Report, unfit, warn};
+use super::outcome::{Outcome, Report, unfit};
 use super::settings::settings;
 use crate::Error;
 use crate::lcp::{Error as LcpError, Lcp, LcpSolution, solve_lcp};
@@ -226,11 +226,7 @@ fn uniqueness_in_words(solution: &LcpSolution) -> &'static str {
 fn refused(error: LcpError, format: Format) -> Result<Outcome, Error> {
     match error {
         LcpError::Qp(error) => Err(error.into()),
-        error => {
-            let message = sentence(&error);
-            warn(&format!("error: {message}\n"));
-            Ok(ended(&message, (error.status(), error.code()), error.failure(), format))
-        }
+        error => Ok(ended(&sentence(&error), (error.status(), error.code()), error.failure(), format)),
     }
 }
 
@@ -269,9 +265,9 @@ pub(super) fn solve(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let solution = match solve_lcp(&case.lcp, &settings(options.method, common, watch)) {
         Ok(solution) => solution,
         Err(error @ LcpError::NotCertified { .. }) => {
-            warn(&format!("error: {error}\n"));
+            let why = sentence(&error);
             let LcpError::NotCertified { solution, .. } = error else { return refused(error, common.format) };
-            *solution
+            return Ok(reported(&case, &solution, common)?.because(Some(why)));
         }
         Err(error) => {
             if let (LcpError::Infeasible { ray, .. }, Some(folder)) = (&error, &common.out) {

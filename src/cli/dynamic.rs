@@ -47,9 +47,8 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     };
     run.advance(watch)?;
     let Run { summary, folder, .. } = run;
-    if summary.steps < dynamics.steps && !watch.is_stopped() {
-        warn(&format!("out of time after step {} of {}\n", summary.steps, dynamics.steps));
-    }
+    let is_late = summary.steps < dynamics.steps && !watch.is_stopped();
+    let why = is_late.then(|| format!("out of time after step {} of {}", summary.steps, dynamics.steps));
     watch.step("report", 0);
     warn(&summary.warnings(&model).iter().map(|warning| format!("warning: {}\n", warning.message)).collect::<String>());
     let seconds = RunSeconds::new(assemble, factor, clock.elapsed().as_secs_f64());
@@ -63,12 +62,12 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let report = Report::new(&motion, motion.text(&title))?;
     let (format, status) = (options.common.format, motion.status());
     let (Some(folder), Some(path)) = (folder, &options.common.out) else {
-        return Ok(report.outcome(format, status));
+        return Ok(report.outcome(format, status).because(why));
     };
     report.write(path)?;
     let value = report.value()?;
     let Wanted { pictures, medium } = options.common.wanted(Pictures::Answer);
-    Ok(report.outcome(format, status).with_pictures(move || {
+    Ok(report.outcome(format, status).because(why).with_pictures(move || {
         folder.write_page(&model, &about, &value)?;
         match pictures {
             Pictures::None => Ok(()),

@@ -42,5 +42,5 @@ pub(super) fn ended(message: &str, (status, code): (&str, &str), failure: Failur
             format!("{report:#}\n")
         }
     };
-    Outcome { ending, ..Outcome::done(text) }
+    Outcome { ending, error: Some(message.into()), ..Outcome::done(text) }
 }

@@ -83,13 +83,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     drop(shown);
     // If the program is being ended with a kept report, it waits here.
     kept.take_to(drop);
-    if watch.acknowledge() && outcome.is_ok() {
-        warn(&interrupt::sentence(&watch));
+    let is_cut = watch.acknowledge() && outcome.is_ok();
+    let outcome = outcome.unwrap_or_else(|error| failed(&error, format));
+    match &outcome.error {
+        _ if is_cut => warn(&interrupt::sentence(&watch)),
+        Some(error) => warn(&format!("error: {error}\n")),
+        None => {}
     }
-    let outcome = outcome.unwrap_or_else(|error| {
-        warn(&format!("error: {}\n", sentence(&error)));
-        failed(&error, format)
-    });
     let printed = io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush());
     if let Err(error) = printed
         && error.kind() != io::ErrorKind::BrokenPipe

@@ -20,9 +20,12 @@ pub(super) enum Ending {
     NotCertified = 4,
 }
 
-/// The output of a command: the text for standard output, the exit code, and the pictures to draw after the text.
+/// The output of a command: the text for standard output, the exit code with the sentence about it for standard error,
+/// and the pictures to draw after the text.
 pub(super) struct Outcome {
     pub text: String,
+    /// `None` if there is no error.
+    pub error: Option<String>,
     pub ending: Ending,
     pub pictures: Option<Pictures>,
 }
@@ -119,14 +122,20 @@ impl Report {
             Status::Certified => Ending::Certified,
             Status::NotCertified | Status::Unstable | Status::BeyondSmallDisplacements => Ending::NotCertified,
         };
-        Outcome { ending, ..self.printed(format) }
+        let error = (ending != Ending::Certified).then(|| format!("{}; the report says why", status.words()));
+        Outcome { ending, error, ..self.printed(format) }
     }
 }
 
 impl Outcome {
     /// The outcome of a successful command without a report.
     pub fn done(text: String) -> Self {
-        Outcome { text, ending: Ending::Certified, pictures: None }
+        Outcome { text, error: None, ending: Ending::Certified, pictures: None }
+    }
+
+    /// The same with a sentence that says more of its error.
+    pub fn because(self, error: Option<String>) -> Self {
+        Outcome { error: error.or(self.error), ..self }
     }
 
     pub fn with_pictures(self, pictures: impl FnOnce() -> Result<(), Error> + 'static) -> Self {

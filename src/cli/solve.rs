@@ -86,13 +86,13 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         return Ok(Outcome::done(plan));
     }
     let about = about(&input.title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
-    let solution = best_of(&input, &start, &settings)?;
+    let (solution, why) = best_of(&input, &start, &settings)?;
     if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
         warn(&format!("warning: --extrapolate changes nothing: the method is {method}; it needs --method penalty\n"));
     }
     let answer = input.answer(&solution)?;
-    reported(&input, (solution, answer), settings.goal(), (about, options), watch)
+    Ok(reported(&input, (solution, answer), settings.goal(), (about, options), watch)?.because(why))
 }
 
 /// Refuses options that have no effect on what is solved for.
@@ -151,15 +151,15 @@ pub(super) fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) ->
     }
 }
 
-/// The answer, certified or not; a refusal of the certificate becomes a warning.
-fn best_of(input: &Input, start: &Start, settings: &Settings) -> Result<Solution, Error> {
+/// The answer, certified or not, and why it is not.
+fn best_of(input: &Input, start: &Start, settings: &Settings) -> Result<(Solution, Option<String>), Error> {
     match input.problem().solve_from(start, settings) {
         Err(error @ qp::Error::NotCertified { .. }) => {
-            warn(&format!("error: {error}\n"));
+            let why = error.to_string();
             let qp::Error::NotCertified { solution, .. } = error else { return Err(error.into()) };
-            Ok(*solution)
+            Ok((*solution, Some(why)))
         }
-        solved => solved.map_err(|error| input.explain(error)),
+        solved => solved.map(|solution| (solution, None)).map_err(|error| input.explain(error)),
     }
 }
 

@@ -144,7 +144,8 @@ fn an_answer_beyond_small_displacements_ends_with_exit_code_4_and_its_likely_cau
         warning["code"] == code && warning["message"].to_string().contains("do not fit the stiffness")
     };
     assert!(report["warnings"].as_array().unwrap().iter().any(is_warned), "{report}");
-    let compared = run(&scene, &["compare"]).ends_with(4).stdout;
+    run(&scene, &["solve"]).fails_with(4, &["beyond small displacements"]);
+    let compared = run(&scene, &["compare"]).fails_with(4, &["beyond small displacements"]).stdout;
     assert!(compared.contains("small displacements do not"), "{compared}");
     run(&scene, &["compare", "--linear"]).ends_with(0);
     scene["loads"][0]["force"]["value"] = json!([0]);

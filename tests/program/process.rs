@@ -300,7 +300,7 @@ fn a_motion_ends_at_its_time_limit() {
         .iter()
         .map(|limit| desk.run(&["solve", "bar.json", "--time-limit", limit, "--format", "json"]).ends_with(4));
     let run = runs
-        .find(|run| run.stderr.starts_with("out of time after step "))
+        .find(|run| run.stderr.starts_with("error: out of time after step "))
         .expect("no motion began before its time limit");
     assert_eq!(run.json()["status"], "not_certified");
 }

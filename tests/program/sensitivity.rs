@@ -61,3 +61,26 @@ fn a_scene_without_contact_has_plain_derivatives() {
     // The energy is proportional to the square of the load, over the modulus.
     assert!((relative(0) - 2.0).abs() < 1e-9 && (relative(1) + 1.0).abs() < 1e-9, "{report}");
 }
+
+/// A cap that only its tie holds, before a plane: the force is proportional to the depth.
+#[test]
+fn a_body_that_only_ties_hold_has_proven_derivatives() {
+    let desk = Desk::new();
+    let block = |from: f64, divisions: usize| {
+        let axis = |from: f64| json!({"points": [from, from + 1.0], "divisions": [divisions]});
+        json!({"rectangle": {"x": axis(0.0), "y": axis(from)}})
+    };
+    let material = json!({"young": 1e6, "poisson": 0.3});
+    let tied = json!({
+        "model": "plane-strain", "body": block(0.0, 4), "material": material, "gap": -0.01,
+        "further-bodies": [{"name": "cap", "body": block(1.0, 3), "material": material}],
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "ties": [{"surfaces": {"boundary": "cap.bottom", "to": "top"}}],
+        "obstacles": [{"boundary": "cap.top", "approach": "+y", "shape": {"plane": {"point": [0, 2], "normal": [0, 1]}}}]
+    });
+    let arguments = ["--of", "force", "--to", "gap", "--format", "json"];
+    let report = derivatives(&desk, &tied, &arguments).ends_with(0).json();
+    let by_gap = &report["sensitivities"][0]["by"][0];
+    assert_eq!(by_gap["derivative"]["verdict"], "proven", "{by_gap}");
+    assert!((by_gap["relative"]["value"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{by_gap}");
+}

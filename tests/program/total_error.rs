@@ -186,7 +186,8 @@ fn a_requested_force_error_is_reached() {
 
 #[test]
 fn a_total_error_that_the_time_does_not_allow_ends_with_exit_code_4() {
-    let (code, report, _) = solved(&classical(0.3), &["--total-error", "1e-7", "--time", "1"]);
+    let (code, report, message) = solved(&classical(0.3), &["--total-error", "1e-7", "--time", "1"]);
+    assert!(message.starts_with("error: not certified"), "{message}");
     assert_eq!((code, &report["status"], &report["ended"]), (4, &json!("not_certified"), &json!("time")));
     assert!(report["total_error"]["bound"].as_f64().unwrap() < 0.5 && report["next_triangles"].as_u64().unwrap() > 64);
 }

@@ -386,3 +386,30 @@ fn ends(scene: &Value, named: Option<&str>, case: &str) {
         (ended, _) => panic!("{case}: {ended:?}, not {named:?}"),
     }
 }
+
+/// Frictionless walls on both sides and a floor leave the way up: a load that lifts drives it, and none lets it be.
+#[test]
+fn a_body_between_walls_may_leave_upwards() {
+    for (element, lift) in ["t3", "q4", "t6", "q8"].into_iter().flat_map(|element| [(element, 0.0), (element, 1e3)]) {
+        let axis = |to: f64, divisions: usize| json!({"points": [0, to], "divisions": [divisions]});
+        let wall = |boundary: &str, approach: &str, point: [f64; 2], normal: [f64; 2]| json!({"boundary": boundary, "approach": approach, "shape": {"plane": {"point": point, "normal": normal}}});
+        let scene = json!({
+            "model": "plane-strain", "material": {"young": 1e7, "poisson": 0.3},
+            "body": {"rectangle": {"x": axis(1.0, 13), "y": axis(0.5, 7), "element": element}},
+            "loads": [{"force": {"boundary": "top", "value": [0, lift]}}],
+            "obstacles": [
+                wall("bottom", "-y", [0.0, 0.0], [0.0, -1.0]),
+                wall("left", "-x", [0.0, 0.0], [-1.0, 0.0]),
+                wall("right", "+x", [1.0, 0.0], [1.0, 0.0])
+            ]
+        });
+        let error = solve_qp(build(&scene).unwrap().problem()).unwrap_err();
+        let (is_driven, direction) = match &error {
+            qp::Error::Unbounded { direction, .. } => (true, direction),
+            qp::Error::UnderHeld { direction, .. } => (false, direction),
+            _ => panic!("{element}: {error:.300}"),
+        };
+        assert_eq!(is_driven, lift > 0.0, "{element}");
+        assert!(direction.chunks(2).all(|of_node| of_node[0] == 0.0 && of_node[1] > 0.99), "{element}: {error:.300}");
+    }
+}

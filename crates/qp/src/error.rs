@@ -177,16 +177,17 @@ pub enum Error {
     /// A scene or a problem that needs more memory than it may take.
     #[error(
         "the problem needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} \
-         entries of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more memory",
+         entries of the stiffness, {}; take larger cells, or allow more memory",
         memory(*bytes),
-        memory(*allowed)
+        memory(*allowed),
+        if *factor_entries > 0.0 { format!("{factor_entries:.0e} of its factor") } else { "its factor not counted".into() }
     )]
     TooLarge {
         /// Number of unknowns of the refused problem.
         dofs: f64,
         /// Number of entries of the stiffness of the refused problem, both triangles.
         stiffness_entries: f64,
-        /// Number of values of the Cholesky factor of the refused stiffness.
+        /// Number of values of the Cholesky factor of the refused stiffness; zero if the rest alone is too large.
         factor_entries: f64,
         /// Memory for everything, estimated, in bytes.
         bytes: f64,

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, dot};
+use crate::scene::answers::deformation;
 use crate::scene::models::overlap::Overlap;
 use crate::scene::models::parts::Origin;
 use crate::scene::models::rigid_body_modes::soft::SoftMotion;
@@ -479,7 +480,15 @@ fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
     if let Some(message) = answer.beyond_small_displacements() {
         return Some(AnswerWarning { code: BEYOND, message });
     }
-    let (strain, element) = answer.deformation()?.strain;
+    let deformation = answer.deformation()?;
+    let (strain, element) = deformation.strain;
+    if strain.max(deformation.rotation.0) > deformation::BEYOND {
+        let message = format!(
+            "{deformation}, on less than a thousandth of each body, as about a singular point: the numbers there mean nothing, and the \
+             rest of the answer hardly depends on them"
+        );
+        return Some(AnswerWarning { code: "large-strain", message });
+    }
     if strain <= LARGE_STRAIN {
         return None;
     }
@@ -512,7 +521,7 @@ pub(super) fn check_deformation(answer: &Answer) -> Result<(), Error> {
     for warning in answer.model().warnings().iter().filter(|_| !answer.model().is_linear()) {
         let Warning::Nonlinear { .. } = warning else { continue };
         let Some(deformation) = answer.deformation() else { continue };
-        if deformation.largest() > LARGE_DEFORMATION {
+        if deformation.widespread > LARGE_DEFORMATION {
             let message = format!(
                 "{warning}, but {deformation}: above {:.0} % of either large displacements have another answer; `--linear` gives that of small ones",
                 100.0 * LARGE_DEFORMATION

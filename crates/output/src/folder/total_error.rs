@@ -230,13 +230,20 @@ fn force_lines(found: &Guarantee, half_width: Option<f64>, units: &Units) -> [St
         ];
     }
     let force = format!("{} {}", quantity(found.contact_force, &units.force), found.force_basis);
-    let interval = match (found.force_interval, half_width) {
+    [force.trim_end().into(), interval(found.force_interval, half_width)]
+}
+
+/// What is guaranteed about the force, given half the width of its interval over the force.
+fn interval(interval: Option<[f64; 2]>, half_width: Option<f64>) -> String {
+    match (interval, half_width) {
+        (Some([low, high]), Some(half)) if half > 0.5 => {
+            format!("the guaranteed interval, from {low:.0e} to {high:.0e}, is wider than the force: it tells nothing")
+        }
         (Some([low, high]), Some(half)) => {
             format!("guaranteed between {low:.7e} and {high:.7e}: within {:.1e} %", 100.0 * half)
         }
         _ => "no guaranteed interval".into(),
-    };
-    [force.trim_end().into(), interval]
+    }
 }
 
 /// The unknowns that a goal would need, if the error falls with a power of the unknowns: from unknowns and error of
@@ -319,5 +326,16 @@ impl Wanted {
 impl InWords for (&TotalError, Option<&Summary>) {
     fn text(&self, title: &str, units: &Units) -> String {
         total_error_text(title, self.0, self.1, units)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interval_that_is_wider_than_the_force_is_no_result() {
+        let about = |half: f64| interval(Some([1.0 - half, 1.0 + half]), Some(half));
+        assert!(about(0.4).contains("within 4.0e1 %") && about(0.6).contains("it tells nothing"), "{}", about(0.6));
     }
 }

@@ -183,6 +183,13 @@ impl EnergyNorm {
         self.springs.is_none() && self.loose.is_none()
     }
 
+    /// The length in the springs alone of a displacement that moves their rows by `moves`, with its rounding.
+    pub(super) fn length_of_springs(&self, moves: &[f64]) -> f64 {
+        let springs = self.springs.iter().flat_map(|springs| &springs.stiffness).zip(moves);
+        let square: f64 = springs.filter(|(d, _)| **d > 0.0).map(|(d, moved)| d * moved * moved).sum();
+        ROUNDED_BOUND * square.sqrt()
+    }
+
     /// Returns `true` if the time for a bound is over.
     pub(super) fn is_over(&self) -> bool {
         self.watch.is_over()

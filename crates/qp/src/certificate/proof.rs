@@ -6,6 +6,9 @@
 //! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a shift with `B_i w = 1` that moves no other row of
 //!   C. From `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row
 //!   with a larger force is closed in the exact answer too. The cheapest such shift has `|w|_K^2 = (G_CC^-1)_ii`.
+//!
+//! If only springs D on equalities make K definite, both hold in the norm of `K_D = K + B' D B`: an answer that misses
+//! the equalities by d has there an error of at most `sqrt(E^2 + d'D d)`.
 
 use super::EnergyNorm;
 use super::bound::Answer;
@@ -108,6 +111,7 @@ impl ContactProblem {
         }
         let found = || self.recomputed(&Bounding::Factor(norm.clone()), displacement, multiplier).evidence;
         let Evidence { residual, violation, reach: least, error, .. } = evidence.or_else(found)?.bounded()?;
+        let error = error.hypot(norm.length_of_springs(&violation));
         let answer = Answer { displacement, multiplier, residual, violation, rounding: 0.0 };
         let compliance = ComplianceFactor::of(self, norm);
         // One solve saves sweeps.

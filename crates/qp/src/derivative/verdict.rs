@@ -1,6 +1,6 @@
 //! The rows of an exact answer: pressing, with a gap, or neither.
 
-use crate::certificate::WithEvidence;
+use crate::certificate::{Bounding, WithEvidence};
 use crate::engine::Engine;
 use crate::error::Error;
 use crate::linear::{Dependence, ExactSum, largest};
@@ -96,7 +96,8 @@ fn proven_here(
     match problem.prove_by(&by, WithEvidence { evidence, ..answer() }) {
         Some(proven) => Ok(Some(proven)),
         None if engine.hierarchy().is_some() => Ok(None),
-        None => problem.prove_alone(answer()),
+        // Equalities may hold what the stiffness does not.
+        None => Ok(problem.norm_on_equalities()?.and_then(|norm| problem.prove_by(&Bounding::Factor(norm), answer()))),
     }
 }
 

@@ -94,19 +94,18 @@ impl Cone<'_> {
         }
         let diagonal: Vec<(usize, usize, f64)> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
         let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal).ok()?).ok()?;
-        let rows: Vec<Vec<f64>> = (self.rows.iter().copied().chain(self.fixed))
-            .filter(|row| !row.is_zero())
-            .map(|row| row.values.iter().map(|value| value.rounded()).collect())
-            .collect();
-        let entries: Vec<(usize, usize, f64)> = (rows.iter().enumerate())
-            .flat_map(|(number, row)| {
-                let unit = exponent(largest(row));
-                row.iter().enumerate().filter(|e| *e.1 != 0.0).map(move |(dof, &b)| (number, dof, ldexp(b, -unit)))
-            })
-            .collect();
-        let contact = SparseMatrix::from_triplets(rows.len(), dofs, &entries).ok()?;
+        let (mut entries, mut room) = (Vec::new(), Vec::new());
+        for row in self.rows.iter().copied().chain(self.fixed).filter(|row| !row.is_zero()) {
+            let values: Vec<f64> = row.values.iter().map(|value| value.rounded()).collect();
+            let unit = exponent(largest(&values));
+            let scaled = values.iter().enumerate().filter(|entry| *entry.1 != 0.0);
+            entries.extend(scaled.map(|(dof, &b)| (room.len(), dof, ldexp(b, -unit))));
+            // Rows along which a direction slides close by their rounding: without room for it they leave nothing.
+            room.push(ldexp(self.rounding.max(f64::EPSILON) * row.terms, -unit));
+        }
+        let contact = SparseMatrix::from_triplets(room.len(), dofs, &entries).ok()?;
         let load = c.iter().map(|value| value / size).collect();
-        let problem = ContactProblem::computed(stiffness, load, contact, vec![0.0; rows.len()]).ok()?;
+        let problem = ContactProblem::computed(stiffness, load, contact, room).ok()?;
         let nearest = match (self.solve)(&problem, &Settings::default()) {
             Ok(solution) => solution.displacement,
             Err(Error::NotCertified { solution, .. }) => solution.displacement,
@@ -164,7 +163,7 @@ mod tests {
     use super::*;
     use crate::solve;
 
-    fn row(values: [f64; 2]) -> Row {
+    fn row<const N: usize>(values: [f64; N]) -> Row {
         Row { values: values.map(Twice::from).to_vec(), terms: values.iter().map(|value| value.abs()).sum() }
     }
 
@@ -178,5 +177,16 @@ mod tests {
         assert!(nearest[0] == 0.0 && (nearest[1] + 1.0).abs() < TIP, "{nearest:?}");
         // If the rows themselves are rounded, both are touched, and they hold the point.
         assert!(Cone { is_exact: false, ..cone }.nearest(&[1.0, -1.0]).is_none());
+    }
+
+    #[test]
+    fn rounded_walls_on_both_sides_leave_the_way_between_them() {
+        // x + h y = 0 at three heights h, from both sides; z is off by its rounding.
+        let heights = [(0.0, 1e-12), (0.5, -2e-12), (1.0, 3e-12)];
+        let rows: Vec<Row> =
+            heights.iter().flat_map(|&(h, off)| [row([1.0, h, off]), row([-1.0, -h, 2.0 * off])]).collect();
+        let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-10, is_exact: false, solve };
+        let nearest: Vec<f64> = cone.nearest(&[0.3, 0.2, 1.0]).unwrap().into_iter().map(Twice::rounded).collect();
+        assert!(nearest[0].abs().max(nearest[1].abs()) < 1e-10 && (nearest[2] - 1.0).abs() < 1e-10, "{nearest:?}");
     }
 }

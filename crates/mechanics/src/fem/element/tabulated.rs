@@ -39,7 +39,7 @@ pub struct Tabulated {
     pub points: Vec<TabulatedPoint>,
     /// At the nodes.
     pub nodes: Vec<TabulatedPoint>,
-    /// At the centroid.
+    /// At the centroid, with the weight of the whole element.
     pub centroid: TabulatedPoint,
     rule: Vec<QuadraturePoint>,
 }
@@ -71,7 +71,7 @@ impl Tabulated {
             reference,
             points: rule.iter().map(|point| at(point.at, point.weight)).collect(),
             nodes: reference.nodes.iter().map(|&node| at(node, 0.0)).collect(),
-            centroid: at(reference.centroid(), 0.0),
+            centroid: at(reference.centroid(), rule.iter().map(|point| point.weight).sum()),
             rule,
         }
     }

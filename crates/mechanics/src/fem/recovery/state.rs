@@ -39,19 +39,48 @@ pub(crate) struct Deformation {
     pub strain: (f64, usize),
     /// The largest rotation, in radians if it is small, and its element.
     pub rotation: (f64, usize),
+    /// The strain or rotation beyond which no body has more than [`SINGULAR`] of its volume, or of its energy.
+    pub widespread: f64,
+}
+
+/// About a singular point, such as a clamped corner, strain and rotation grow with every refinement. If they are large
+/// on no more than this share of the volume and of the energy, the answer hardly depends on it.
+const SINGULAR: f64 = 1e-3;
+
+/// What the centre of an element tells.
+#[derive(Clone, Copy)]
+struct AtCentre {
+    strain: f64,
+    rotation: f64,
+    volume: f64,
+    /// By the stress, without a common factor.
+    energy: f64,
 }
 
 impl Deformation {
-    /// The larger strain and the larger rotation; of equal ones the own.
-    fn or_larger(self, other: Deformation) -> Self {
-        let larger = |one: (f64, usize), other: (f64, usize)| if other.0 > one.0 { other } else { one };
-        Deformation { strain: larger(self.strain, other.strain), rotation: larger(self.rotation, other.rotation) }
+    fn of(body: &ElasticBody, centres: &[AtCentre]) -> Option<Self> {
+        let largest = |part: fn(&AtCentre) -> f64| {
+            let parts = centres.iter().map(part).enumerate();
+            parts.fold((0.0, 0), |largest, (index, value)| if value > largest.0 { (value, index) } else { largest })
+        };
+        let (strain, rotation) = (largest(|centre| centre.strain), largest(|centre| centre.rotation));
+        let of_regions = body.regions().iter().map(|region| widespread(centres[region.elements()].to_vec()));
+        let widespread = of_regions.fold(0.0, f64::max);
+        (!centres.is_empty()).then_some(Deformation { strain, rotation, widespread })
     }
+}
 
-    /// The larger one of strain and rotation.
-    pub fn largest(&self) -> f64 {
-        self.strain.0.max(self.rotation.0)
-    }
+/// The strain or rotation that a body, given by its elements, exceeds on no more than [`SINGULAR`] of it.
+fn widespread(mut centres: Vec<AtCentre>) -> f64 {
+    let shares = |centre: &AtCentre| [centre.volume, centre.energy];
+    let size = |centre: &AtCentre| centre.strain.max(centre.rotation);
+    centres.sort_unstable_by(|one, other| size(other).total_cmp(&size(one)));
+    let mut left = [0, 1].map(|which| SINGULAR * centres.iter().map(|centre| shares(centre)[which]).sum::<f64>());
+    let is_beyond = |centre: &&AtCentre| {
+        left.iter_mut().zip(shares(centre)).for_each(|(left, share)| *left -= share);
+        left.iter().any(|&left| left < 0.0 || left.is_nan())
+    };
+    centres.iter().find(is_beyond).map_or(0.0, size)
 }
 
 impl std::fmt::Display for Deformation {
@@ -71,7 +100,7 @@ struct Run {
     stresses: Vec<Stress>,
     of_nodes: Vec<Symmetric>,
     forces: Vec<[f64; 3]>,
-    deformation: Option<Deformation>,
+    centres: Vec<AtCentre>,
 }
 
 impl State {
@@ -84,7 +113,7 @@ impl State {
         let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
         let of_run = |run: Range<usize>| {
             let mut all = Run::default();
-            for (index, element) in run.clone().filter_map(|index| Some((index, body.element(index)?))) {
+            for element in run.clone().filter_map(|index| body.element(index)) {
                 let strained = body.strained(&tables, displacement, &element);
                 let table = tables.at(element.kind);
                 let mut weights = extrapolations.at(element.kind).columns();
@@ -97,9 +126,12 @@ impl State {
                 });
                 let centre = strained.displaced(&table.centroid);
                 let strain = centre.strain().iter().fold(0.0, |largest: f64, component| largest.max(component.abs()));
-                let own = Deformation { strain: (strain, index), rotation: (length(centre.rotation()), index) };
-                all.deformation = Some(all.deformation.map_or(own, |largest| largest.or_larger(own)));
-                all.stresses.push(finished(body, strained.stress(&table.centroid, &centre)));
+                let stress = strained.stress(&table.centroid, &centre);
+                let volume = centre.weight * element.cell.unit().powi(body.dimension() as i32);
+                let place = || element.cell.place(&table.centroid.shape);
+                let energy = volume * element.phase.law.complementary_energy(&stress, place);
+                all.centres.push(AtCentre { strain, rotation: length(centre.rotation()), volume, energy });
+                all.stresses.push(finished(body, stress));
             }
             (run.start, all)
         };
@@ -109,7 +141,7 @@ impl State {
         let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); mesh.nodes().len()];
         let mut sides = BTreeMap::<(usize, u32), (Symmetric, usize)>::new();
         let mut force = vec![0.0; displacement.len()];
-        let mut deformation: Option<Deformation> = None;
+        let mut centres = Vec::with_capacity(mesh.element_count());
         in_order(mesh.element_count(), of_run, |(first, run)| {
             let numbers = first..first + run.stresses.len();
             add_to_nodes(body, numbers.clone(), &run.forces, &mut force);
@@ -121,11 +153,9 @@ impl State {
                 }
             }
             elements.extend(run.stresses);
-            deformation = match (deformation, run.deformation) {
-                (Some(one), Some(other)) => Some(one.or_larger(other)),
-                (one, other) => one.or(other),
-            };
+            centres.extend(run.centres);
         });
+        let deformation = Deformation::of(body, &centres);
         let average =
             |(sum, count): &(Symmetric, usize)| finished(body, sum.map(|component| component / *count as f64));
         let nodes = each(mesh.nodes().len(), |node| average(&sums[node]));
@@ -145,4 +175,18 @@ fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_thousandth_of_a_body_exceeds_is_not_widespread() {
+        let found = |volume: f64, energy: f64| {
+            let small = AtCentre { strain: 0.1, rotation: 0.2, volume: 1.0 - volume, energy: 1.0 - energy };
+            widespread(vec![small, AtCentre { strain: 0.4, rotation: 0.9, volume, energy }])
+        };
+        assert_eq!([found(0.9e-3, 0.9e-3), found(1.1e-3, 0.0), found(0.0, 1.1e-3)], [0.2, 0.9, 0.9]);
+    }
 }

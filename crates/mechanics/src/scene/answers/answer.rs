@@ -158,9 +158,9 @@ impl Answer {
         self.state().ok()?.deformation
     }
 
-    /// A sentence on why small displacements do not describe the answer: a strain above 50 %, a rotation above 0.5 rad,
-    /// or a contact row that starts deeper inside its obstacle than its body is thick; with the place, the likely
-    /// cause, and what to do. `None` for an answer that they describe.
+    /// A sentence on why small displacements do not describe the answer: strains above 50 % or rotations above 0.5 rad
+    /// on more than a thousandth of a body, or a contact row that starts deeper inside its obstacle than its body is
+    /// thick; with the place, the likely cause, and what to do. `None` for an answer that they describe.
     pub fn beyond_small_displacements(&self) -> Option<String> {
         let find = || {
             let moved = self.displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));

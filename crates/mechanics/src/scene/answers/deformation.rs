@@ -8,8 +8,8 @@ use crate::scene::Model;
 use crate::scene::models::rows::ContactRow;
 
 /// Strains above this, and rotations above this in radians, are beyond small displacements: the answer is wrong by
-/// about as much.
-const BEYOND: f64 = 0.5;
+/// about as much, except near singular points.
+pub(crate) const BEYOND: f64 = 0.5;
 
 /// Depths below this share of the size of the mesh are rounding of coordinates.
 const ROUNDING: f64 = 1e-9;
@@ -20,7 +20,7 @@ pub(super) fn beyond_small_displacements(deformation: Deformation, model: &Model
     let ((strain, element), (rotation, turned)) = (deformation.strain, deformation.rotation);
     let fact_and_cause = if let Some(deep) = TooDeep::of(model) {
         deep.in_words(model)
-    } else if deformation.largest() <= BEYOND {
+    } else if deformation.widespread <= BEYOND {
         return None;
     } else {
         let (large, element) = match strain >= rotation {
