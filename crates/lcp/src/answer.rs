@@ -85,3 +85,13 @@ pub fn worst(residual: &[f64]) -> (usize, f64) {
     let worst = residual.iter().copied().map(rank).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     worst.unwrap_or((0, 0.0))
 }
+
+/// The end of a method.
+pub enum Found {
+    /// A point, in units of z, perhaps a rough one.
+    Point { z: Vec<f64>, iterations: usize },
+    /// A ray in scaled units that may show that there is no solution.
+    Ray(Vec<f64>),
+    /// Nothing, for this reason.
+    Nothing(String),
+}

@@ -11,10 +11,9 @@ use std::cmp::Ordering;
 
 use signorini_qp::Settings;
 
-use crate::answer::Place;
+use crate::answer::Found;
 use crate::basis::check_size;
 use crate::error::Error;
-use crate::found::Found;
 use crate::scaled::Scaled;
 
 /// Entries below this share of the largest of their column, and differences of ratios below it, are rounding.
@@ -202,29 +201,15 @@ fn ray(tableau: &Tableau, column: usize, columns: &[Column], unknowns: usize) ->
     ray
 }
 
-/// The point of the last tableau, in units of z, and the places of its basis.
+/// The point of the last tableau, in units of z.
 fn point(tableau: &Tableau, scaled: &Scaled, columns: &[Column], iterations: usize) -> Found {
     let count = columns.len();
-    let mut x: Vec<f64> = (0..scaled.lower.len()).map(|of| base(scaled, of)).collect();
-    let is_free = |of: usize| scaled.lower[of].is_infinite() && scaled.upper[of].is_infinite();
-    let at = |of: usize| match (is_free(of), scaled.lower[of].is_infinite()) {
-        (true, _) => Place::Between,
-        (false, true) => Place::Upper,
-        (false, false) => Place::Lower,
-    };
-    let mut places: Vec<Place> = (0..x.len()).map(at).collect();
+    let mut z: Vec<f64> = (0..scaled.lower.len()).map(|of| base(scaled, of)).collect();
     for (row, &basic) in tableau.rows.iter().zip(&tableau.basic) {
         if let Some(&Column::Part { of, sign }) = columns.get(basic) {
-            x[of] += sign * row[count + 1] * tableau.unit;
-            places[of] = Place::Between;
+            z[of] += sign * row[count + 1] * tableau.unit;
         }
     }
-    for other in tableau.others.iter().filter_map(|other| other.checked_sub(count)) {
-        // The distance from the upper bound is zero.
-        if let Some(&Column::Slack { of }) = columns.get(other) {
-            places[of] = if places[of] == Place::Between { Place::Upper } else { places[of] };
-        }
-    }
-    let z = x.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect();
-    Found::Point { z, places: Some(places), iterations }
+    z.iter_mut().zip(&scaled.column).for_each(|(z, unit)| *z *= unit);
+    Found::Point { z, iterations }
 }
