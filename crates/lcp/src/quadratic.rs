@@ -5,6 +5,7 @@ use signorini_qp::{ContactProblem, Error as QpError, Settings, SparseMatrix, Sym
 
 use crate::answer::Found;
 use crate::error::Error;
+use crate::lemke::lemke;
 use crate::problem::Lcp;
 use crate::scaled::Scaled;
 
@@ -109,11 +110,7 @@ impl<'a> Program<'a> {
             }
             Err(QpError::Unbounded { direction, .. }) => Ok(Found::Ray(whole(&direction))),
             Err(QpError::Infeasible { rows, weights, .. }) => {
-                let mut ray = vec![0.0; columns.len()];
-                for (row, weight) in rows.into_iter().zip(weights) {
-                    demands[row].iter().for_each(|&(i, factor)| ray[i] += factor * weight);
-                }
-                Ok(Found::Ray(ray))
+                Ok(Found::Ray(ray_of(&demands, columns.len(), rows.into_iter().zip(weights))))
             }
             Err(
                 error @ (QpError::Interrupted
@@ -136,7 +133,8 @@ pub fn quadratic_program(scaled: &Scaled, is_multiplier: &[bool], settings: &Set
     program.push_signs(|i| is_multiplier[i]);
     let lower = scaled.matrix.triplets().filter(|entry| entry.0 >= entry.1);
     let lower = lower.filter_map(|(i, j, value)| Some((program.columns[i]?, program.columns[j]?, value)));
-    let (n, lower) = (program.load.len(), lower.collect::<Vec<_>>());
+    let n = program.load.len();
+    let lower: Vec<_> = lower.collect();
     program.solved(SparseMatrix::from_triplets(n, n, &lower).and_then(SymmetricMatrix::from_lower), settings)
 }
 
@@ -153,7 +151,7 @@ pub fn gap_program(scaled: &Scaled, settings: &Settings) -> Result<Found, Error>
     program.load.iter_mut().zip(moved).for_each(|(load, moved)| *load += moved);
     program.push_signs(|_| true);
     let by_rows = scaled.matrix.transposed();
-    for i in (0..n).filter(|&i| lower[i].is_finite() && upper[i].is_finite()) {
+    for i in (0..n).filter(|&i| lower[i].is_finite() && upper[i].is_finite() && lower[i] < upper[i]) {
         let part = program.load.len();
         let entries = by_rows.column(i).map(|(j, value)| (j, -value)).chain([(part, -1.0)]);
         program.push(entries, scaled.offset[i], None);
@@ -165,12 +163,12 @@ pub fn gap_program(scaled: &Scaled, settings: &Settings) -> Result<Found, Error>
     program.solved(stiffness.map(|stiffness| stiffness.with_empty(parts)), settings)
 }
 
-/// The ray that shows that no point meets the inequalities, if one is found: that of a single row, or of the program of
-/// their point nearest to zero.
+/// The ray that shows that no point meets the inequalities `B x <= g`, if one is found: that of a single row, or by
+/// Lemke's method on the skew problem of x and y >= 0 with 0 = B'y and `g - B x >= 0`.
 ///
 /// # Errors
-/// As [`quadratic_program`].
-pub fn contradiction(lcp: &Lcp, scaled: &Scaled, settings: &Settings) -> Result<Option<Error>, Error> {
+/// Those of Lemke's method.
+pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &Settings) -> Result<Option<Error>, Error> {
     let n = lcp.unknowns();
     let unit = |i: usize, sign: f64| -> Vec<f64> { (0..n).map(|j| if i == j { sign } else { 0.0 }).collect() };
     let of_row = |i: usize| infeasible(lcp, scaled, &unit(i, 1.0)).or_else(|| infeasible(lcp, scaled, &unit(i, -1.0)));
@@ -179,13 +177,25 @@ pub fn contradiction(lcp: &Lcp, scaled: &Scaled, settings: &Settings) -> Result<
     }
     let mut program = Program::of(scaled, |_| false);
     program.push_signs(|_| true);
-    program.load.fill(0.0);
-    let ones: Vec<_> = (0..n).map(|i| (i, i, 1.0)).collect();
-    let stiffness = SparseMatrix::from_triplets(n, n, &ones).and_then(SymmetricMatrix::from_lower);
-    match program.solved(stiffness, settings)? {
-        Found::Ray(ray) => Ok(infeasible(lcp, scaled, &ray)),
-        _ => Ok(None),
+    let (size, entries) = (n + program.gaps.len(), &program.entries);
+    let both = entries.iter().flat_map(|&(row, j, value)| [(n + row, j, -value), (j, n + row, value)]);
+    let matrix = SparseMatrix::from_triplets(size, size, &both.collect::<Vec<_>>())?;
+    let lower = (0..size).map(|k| if k < n { f64::NEG_INFINITY } else { 0.0 }).collect();
+    let skew = Lcp::new(matrix, [vec![0.0; n], program.gaps].concat(), lower, vec![f64::INFINITY; size])?;
+    match lemke(&Scaled::new(&skew, vec![1.0; size], vec![1.0; size]), 0, allowed, settings) {
+        Ok(Found::Ray(weights)) => {
+            Ok(infeasible(lcp, scaled, &ray_of(&program.demands, n, weights.into_iter().skip(n).enumerate())))
+        }
+        Ok(_) | Err(Error::TooLarge { .. }) => Ok(None),
+        Err(error) => Err(error),
     }
+}
+
+/// The ray of weights of rows.
+fn ray_of(demands: &[Option<(usize, f64)>], n: usize, weights: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
+    let mut ray = vec![0.0; n];
+    weights.for_each(|(row, weight)| demands[row].iter().for_each(|&(i, factor)| ray[i] += factor * weight));
+    ray
 }
 
 /// The error of a problem with this ray, in scaled units; `None` if it shows nothing.

@@ -64,7 +64,8 @@ impl Way {
         let scaled = &known.scaled;
         match (self, &scaled.multipliers) {
             (Way::QuadraticProgram, Some(multipliers)) => quadratic_program(scaled, multipliers, settings),
-            (Way::QuadraticProgram | Way::GapProgram, _) => gap_program(scaled, settings),
+            (Way::QuadraticProgram, None) => Ok(Found::Nothing("the problem has no quadratic program".into())),
+            (Way::GapProgram, _) => gap_program(scaled, settings),
             (Way::PrincipalPivoting, _) => {
                 principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings)
             }
@@ -108,7 +109,8 @@ fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
 
 /// The points near one that a method has found: settled with its places, moved onto them, and without dust.
 fn near(lcp: &Lcp, known: &Known, z: Vec<f64>, allowed: f64, settings: &Settings) -> Result<Vec<Vec<f64>>, Error> {
-    let rough = placed(lcp, z);
+    let [clean, rough] = [without_dust(known, &z), z].map(|z| placed(lcp, z));
+    let rough = if worst(&clean.residual).1 <= worst(&rough.residual).1 { clean } else { rough };
     let moved = onto(lcp, &rough.places, &rough.z);
     let mut points = Vec::new();
     // NaN is rough as well.
@@ -123,7 +125,6 @@ fn near(lcp: &Lcp, known: &Known, z: Vec<f64>, allowed: f64, settings: &Settings
         }
     }
     points.push(moved);
-    points.extend(points.clone().iter().map(|z| without_dust(known, z)));
     Ok(points)
 }
 
@@ -167,7 +168,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     }
     if best.as_ref().is_none_or(|best| best.0 > tolerance.min(SHARP))
         && lcp.unknowns() <= DENSE
-        && let Some(error) = contradiction(lcp, &known.scaled, settings)?
+        && let Some(error) = contradiction(lcp, &known.scaled, allowed, settings)?
     {
         return Err(error);
     }
