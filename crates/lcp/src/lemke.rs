@@ -7,8 +7,6 @@
 //! # Source
 //! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), sections 4.4 and 4.9.
 
-use std::cmp::Ordering;
-
 use signorini_qp::Settings;
 
 use crate::answer::Found;
@@ -69,29 +67,14 @@ impl Tableau {
         let count = self.rows.len();
         let largest = self.rows.iter().map(|row| row[column].abs()).fold(0.0, f64::max);
         let falling: Vec<usize> = (0..count).filter(|&place| self.rows[place][column] < -ROUNDING * largest).collect();
-        let compare = |a: f64, b: f64| match (a - b).abs() <= ROUNDING * a.abs().max(b.abs()) {
-            true => Ordering::Equal,
-            false => a.total_cmp(&b),
+        let ratio = |place: usize| {
+            let constant = self.rows[place][count + 1];
+            if constant.abs() > ZERO { -constant / self.rows[place][column] } else { 0.0 }
         };
-        let rate = |place: usize| -self.rows[place][column];
-        let cleaned = |value: f64| if value.abs() > ZERO { value } else { 0.0 };
-        let constant = |place: usize| cleaned(self.rows[place][count + 1]);
-        let constants = |a: usize, b: usize| compare(constant(a) / rate(a), constant(b) / rate(b));
-        let inverse = |place: usize, variable: usize| match self.others.iter().position(|&other| other == variable) {
-            Some(other) => -cleaned(self.rows[place][other]),
-            None => f64::from(u8::from(self.basic[place] == variable)),
-        };
-        let earlier = |a: usize, b: usize| {
-            (count..2 * count).fold(constants(a, b), |order, variable| {
-                order.then_with(|| compare(inverse(a, variable) / rate(a), inverse(b, variable) / rate(b)))
-            })
-        };
-        let best = falling.iter().copied().reduce(|best, place| match earlier(place, best) {
-            Ordering::Less => place,
-            _ => best,
-        })?;
+        let best = falling.iter().copied().min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))?;
+        let most = ratio(best) + ROUNDING * ratio(best).abs();
         let artificial = falling.into_iter().find(|&place| self.basic[place] == 2 * count);
-        artificial.filter(|&place| constants(place, best) != Ordering::Greater).or(Some(best))
+        artificial.filter(|&place| ratio(place) <= most).or(Some(best))
     }
 }
 
