@@ -59,6 +59,11 @@ pub fn settled(lcp: &Lcp, known: &Known, places: &[Place], allowed: f64) -> Resu
             break;
         }
         free.iter().zip(step).for_each(|(&i, step)| z[i] += scaled.column[i] * step);
+        let size = free.iter().fold(0.0, |size: f64, &i| size.max((z[i] / scaled.column[i]).abs()));
+        // The next correction would be rounding.
+        if last.is_finite() && length * (length / last) <= f64::EPSILON * size {
+            break;
+        }
         last = length;
     }
     Ok(Some(z).filter(|z| z.iter().all(|value| value.is_finite())))

@@ -38,8 +38,7 @@ impl<'a> Program<'a> {
         let mut columns = vec![None; n];
         own.iter().enumerate().for_each(|(column, &i)| columns[i] = Some(column));
         let load = own.iter().map(|&i| -scaled.offset[i]).collect();
-        let mut program =
-            Program { scaled, columns, load, entries: Vec::new(), gaps: Vec::new(), demands: Vec::new() };
+        let mut program = Program { scaled, columns, load, entries: Vec::new(), gaps: Vec::new(), demands: Vec::new() };
         for (column, i) in own.into_iter().enumerate() {
             for (sign, bound) in [(-1.0, scaled.lower[i]), (1.0, scaled.upper[i])] {
                 if bound.is_finite() {
@@ -50,12 +49,7 @@ impl<'a> Program<'a> {
         program
     }
 
-    fn push(
-        &mut self,
-        entries: impl IntoIterator<Item = (usize, f64)>,
-        gap: f64,
-        demand: Option<(usize, f64)>,
-    ) {
+    fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>, gap: f64, demand: Option<(usize, f64)>) {
         let row = self.gaps.len();
         self.entries.extend(entries.into_iter().map(|(column, value)| (row, column, value)));
         self.gaps.push(gap);

@@ -66,9 +66,7 @@ impl Way {
             (Way::QuadraticProgram, Some(multipliers)) => quadratic_program(scaled, multipliers, settings),
             (Way::QuadraticProgram, None) => Ok(Found::Nothing("the problem has no quadratic program".into())),
             (Way::GapProgram, _) => gap_program(scaled, settings),
-            (Way::PrincipalPivoting, _) => {
-                principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings)
-            }
+            (Way::PrincipalPivoting, _) => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
             (Way::Lemke(_), _) if known.class != Class::General && lcp.unknowns() > DENSE => {
                 Ok(Found::Nothing(format!("Lemke's method is not tried on more than {DENSE} unknowns of this class")))
             }
@@ -107,25 +105,26 @@ fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
     z.iter().zip(&known.scaled.column).map(|entry| if size(entry) <= DUST * largest { 0.0 } else { *entry.0 }).collect()
 }
 
-/// The points near one that a method has found: settled with its places, moved onto them, and without dust.
-fn near(lcp: &Lcp, known: &Known, z: Vec<f64>, allowed: f64, settings: &Settings) -> Result<Vec<Vec<f64>>, Error> {
-    let [clean, rough] = [without_dust(known, &z), z].map(|z| placed(lcp, z));
-    let rough = if worst(&clean.residual).1 <= worst(&rough.residual).1 { clean } else { rough };
+/// The points near one that a method has found: settled with its places, and moved onto them.
+fn near(lcp: &Lcp, known: &Known, z: Vec<f64>, allowed: f64, settings: &Settings) -> Result<Vec<Placed>, Error> {
+    let (clean, residual) = (without_dust(known, &z), |point: &Placed| worst(&point.residual).1);
+    let rough = if clean == z { None } else { Some(placed(lcp, z)) };
+    let clean = placed(lcp, clean);
+    let rough = rough.filter(|rough| residual(rough) < residual(&clean)).unwrap_or(clean);
     let moved = onto(lcp, &rough.places, &rough.z);
-    let mut points = Vec::new();
-    // NaN is rough as well.
-    if !rough.residual.iter().all(|&residual| residual <= ROUNDING) {
-        if known.is_unique == Some(true) {
-            // Wrong signs are exchanged.
-            if let Found::Point { z, .. } = principal_pivoting(lcp, known, rough.places, allowed, settings)? {
-                points.push(z);
+    let settled = match residual(&rough) <= ROUNDING {
+        true if moved == rough.z => return Ok(vec![rough]),
+        true => None,
+        // Wrong signs are exchanged.
+        false if known.is_unique == Some(true) => {
+            match principal_pivoting(lcp, known, rough.places, allowed, settings)? {
+                Found::Point { z, .. } => Some(z),
+                _ => None,
             }
-        } else {
-            points.extend(settled(lcp, known, &rough.places, allowed)?);
         }
-    }
-    points.push(moved);
-    Ok(points)
+        false => settled(lcp, known, &rough.places, allowed)?,
+    };
+    Ok(settled.into_iter().chain([moved]).map(|z| placed(lcp, z)).collect())
 }
 
 /// See [`solve_lcp`](crate::solve_lcp).
@@ -135,6 +134,10 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     let tolerance = settings.goal().tolerance;
     let allowed = memory::allowed(settings.memory);
     let known = Known::of(lcp)?;
+    if known.scaled.offset.iter().any(|q| !q.is_finite()) {
+        let reason = "the answer leaves the range of doubles: q is too large beside the entries of M".into();
+        return Err(Error::NotFound { reason });
+    }
     let mut reasons: Vec<String> = Vec::new();
     let mut best: Option<(f64, Placed, &'static str, usize)> = None;
     for way in Way::of(&known, settings.method) {
@@ -152,8 +155,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
                 continue;
             }
         };
-        for z in near(lcp, &known, z, allowed, settings)? {
-            let point = placed(lcp, z);
+        for point in near(lcp, &known, z, allowed, settings)? {
             let residual = worst(&point.residual).1;
             if best.as_ref().is_none_or(|best| residual < best.0) {
                 best = Some((residual, point, way.name(), iterations));
@@ -177,6 +179,9 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     let Some((residual, point, method, iterations)) = best else {
         return Err(match settings.watch.acknowledge() {
             true => QpError::Interrupted.into(),
+            false if settings.watch.is_over() => {
+                QpError::OutOfTime { needed: start.elapsed().as_secs_f64(), time: 0.0 }.into()
+            }
             false if reasons.is_empty() => {
                 Error::NotFound { reason: "M is not monotone, and has no convex program".into() }
             }

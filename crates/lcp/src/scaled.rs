@@ -67,7 +67,8 @@ impl Scaled {
         let own = diagonal(&matrix);
         let is_multiplier: Vec<bool> = (0..own.len()).map(|j| own[j] == 0.0 && !is_empty(j)).collect();
         let apart = apart(&matrix, &is_multiplier);
-        let is_plain = |i: usize| lcp.upper()[i].is_infinite() && (lcp.lower()[i] == 0.0 || lcp.lower()[i].is_infinite());
+        let is_plain =
+            |i: usize| lcp.upper()[i].is_infinite() && (lcp.lower()[i] == 0.0 || lcp.lower()[i].is_infinite());
         let is_program = apart <= ALIKE && (0..own.len()).all(|i| !is_multiplier[i] || is_plain(i));
         let is_exact = row.iter().chain(&column).all(|&scale| is_power(scale));
         let is_alike = apart <= ALIKE && !is_multiplier.contains(&true);
