@@ -64,7 +64,7 @@ pub struct LcpSolution {
     /// the three places of what is missing there. What w misses is relative to `t_i = |q_i| + sum |M_ij z_j|`, a
     /// distance to a bound is taken as what it moves in any row k, relative to t_k.
     pub residual: Vec<f64>,
-    /// `quadratic-program`, `proximal`, `gap-program`, `principal-pivoting`, `lemke` or `given`.
+    /// `quadratic-program`, `gap-program`, `principal-pivoting`, `lemke` or `given`.
     pub method: &'static str,
     /// Iterations of this method: pivots, or those of the quadratic program.
     pub iterations: usize,

@@ -118,9 +118,9 @@ pub fn if_definite(matrix: &SymmetricMatrix) -> Result<Option<Cholesky>, Error> 
     }
 }
 
-/// A vector d of positive entries with `<A> d` of about `right`, and positive lower bounds on `<A> d`, with all
-/// rounding taken off: they show that A is an H-matrix with positive diagonal. `None` if none was found. The diagonal is
-/// lowered a little, so that `<A> d` stays above the rounding of its terms.
+/// A vector d of positive entries with `<A> d` of about `right`, and positive lower bounds on `<A> d`, rounding taken
+/// off: they show that A is an H-matrix with positive diagonal. `None` if none was found. The diagonal is lowered a
+/// little, so that `<A> d` stays above the rounding of its terms.
 pub fn comparison_solution(scaled: &Scaled, right: &[f64]) -> Option<[Vec<f64>; 2]> {
     let (n, matrix) = (right.len(), &scaled.matrix);
     let entry = |i: usize, j: usize, value: f64| if i == j { (1.0 - MARGIN) * value } else { -value.abs() };
