@@ -33,7 +33,7 @@ impl LcpSolution {
         of_reals(py, &self.inner.w)
     }
 
-    /// The method that found it: "quadratic-program", "proximal", "gap-program", "principal-pivoting" or "lemke".
+    /// The method that found it: "quadratic-program", "gap-program", "principal-pivoting" or "lemke".
     #[getter]
     fn method(&self) -> &'static str {
         self.inner.method

@@ -49,7 +49,6 @@ const WINGS: [(&[&str], &[&str]); 6] = [
             "class",
             "basis",
             "certificate",
-            "found",
             "pivoting",
             "lemke",
             "quadratic",

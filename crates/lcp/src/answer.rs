@@ -64,7 +64,7 @@ pub struct LcpSolution {
     /// the three places of what is missing there. What w misses is relative to `t_i = |q_i| + sum |M_ij z_j|`, a
     /// distance to a bound is taken as what it moves in any row k, relative to t_k.
     pub residual: Vec<f64>,
-    /// `quadratic-program`, `proximal`, `gap-program`, `principal-pivoting`, `lemke` or `given`.
+    /// `quadratic-program`, `gap-program`, `principal-pivoting`, `lemke` or `given`.
     pub method: &'static str,
     /// Iterations of this method: pivots, or those of the quadratic program.
     pub iterations: usize,
@@ -84,4 +84,14 @@ pub fn worst(residual: &[f64]) -> (usize, f64) {
     let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
     let worst = residual.iter().copied().map(rank).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     worst.unwrap_or((0, 0.0))
+}
+
+/// The end of a method.
+pub enum Found {
+    /// A point, in units of z, perhaps a rough one.
+    Point { z: Vec<f64>, iterations: usize },
+    /// A ray in scaled units that may show that there is no solution.
+    Ray(Vec<f64>),
+    /// Nothing, for this reason.
+    Nothing(String),
 }

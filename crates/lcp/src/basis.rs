@@ -3,10 +3,10 @@
 
 use std::borrow::Cow;
 
-use signorini_qp::{Cholesky, Error as QpError, SparseMatrix, SymmetricMatrix};
+use signorini_qp::{Cholesky, SparseMatrix, SymmetricMatrix};
 
 use crate::answer::Place;
-use crate::class::Known;
+use crate::class::{Known, if_definite};
 use crate::dense::Lu;
 use crate::error::Error;
 use crate::problem::Lcp;
@@ -48,7 +48,7 @@ pub fn settled(lcp: &Lcp, known: &Known, places: &[Place], allowed: f64) -> Resu
     let Some(factor) = factor(known, &free, allowed)? else { return Ok(None) };
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
-        let [w, ..] = lcp.image(&z);
+        let w = lcp.matrix().mul_added(&z, lcp.offset());
         let right: Vec<f64> = free.iter().map(|&i| -scaled.row[i] * w[i]).collect();
         let step = match &factor {
             Factor::Dense(lu) => lu.solve(&right),
@@ -59,6 +59,11 @@ pub fn settled(lcp: &Lcp, known: &Known, places: &[Place], allowed: f64) -> Resu
             break;
         }
         free.iter().zip(step).for_each(|(&i, step)| z[i] += scaled.column[i] * step);
+        let size = free.iter().fold(0.0, |size: f64, &i| size.max((z[i] / scaled.column[i]).abs()));
+        // The next correction would be rounding.
+        if last.is_finite() && length * (length / last) <= f64::EPSILON * size {
+            break;
+        }
         last = length;
     }
     Ok(Some(z).filter(|z| z.iter().all(|value| value.is_finite())))
@@ -77,11 +82,8 @@ fn factor<'a>(known: &'a Known, free: &[usize], allowed: f64) -> Result<Option<F
         let mut entries: Vec<_> = entries.map(|(i, j, value)| (place[i], place[j], value)).collect();
         entries.extend((0..free.len()).map(|k| (k, k, SHIFT)));
         let lower = SparseMatrix::from_triplets(free.len(), free.len(), &entries)?;
-        let factor = Cholesky::of(&SymmetricMatrix::from_lower(lower)?);
-        return match factor {
-            Err(QpError::NotConvex { .. }) => Ok(None),
-            factor => Ok(Some(Factor::Sparse(Cow::Owned(factor?)))),
-        };
+        let factor = if_definite(&SymmetricMatrix::from_lower(lower)?)?;
+        return Ok(factor.map(|factor| Factor::Sparse(Cow::Owned(factor))));
     }
     check_size(free.len(), free.len(), allowed)?;
     let mut rows = vec![vec![0.0; free.len()]; free.len()];

@@ -18,22 +18,25 @@
 
 use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::held;
-use crate::class::{Known, compared, comparison_solution};
+use crate::class::{Known, comparison_solution};
 use crate::problem::Lcp;
 use crate::scaled::diagonal;
 
 /// Sums and products of bounds are enlarged by this, which exceeds their rounding for any number of terms in memory.
 const OUTWARD: f64 = 1.0 + 1e-6;
 
-/// The places of a point with its residuals.
+/// A point, its w with terms and rounding, the places of its unknowns, and what is missing there.
 pub struct Placed {
+    pub z: Vec<f64>,
+    image: [Vec<f64>; 3],
     pub places: Vec<Place>,
     pub residual: Vec<f64>,
 }
 
 /// Where each unknown lies, and what is missing there. `effect` is for each unknown the largest `|M_ki| / t_k`.
-pub fn placed(lcp: &Lcp, z: &[f64]) -> Placed {
-    let [w, terms, rounding] = lcp.image(z);
+pub fn placed(lcp: &Lcp, z: Vec<f64>) -> Placed {
+    let image = lcp.image(&z);
+    let [w, terms, rounding] = &image;
     let share = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };
     let effect = |i: usize| lcp.matrix().column(i).map(|(k, m)| share(m.abs(), terms[k])).fold(0.0, f64::max);
     let one = |i: usize| {
@@ -67,7 +70,7 @@ pub fn placed(lcp: &Lcp, z: &[f64]) -> Placed {
         best.unwrap_or((Place::Between, f64::NAN))
     };
     let (places, residual) = (0..z.len()).map(one).unzip();
-    Placed { places, residual }
+    Placed { z, image, places, residual }
 }
 
 /// The point with each unknown at its place, and none beyond its bounds.
@@ -77,12 +80,12 @@ pub fn onto(lcp: &Lcp, places: &[Place], z: &[f64]) -> Vec<f64> {
     (0..z.len()).map(at).collect()
 }
 
-/// The certificate of a point z of a matrix of which this is known; n >= 1.
-pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
-    let Placed { places, residual } = placed(lcp, &z);
+/// The certificate of a point of a matrix of which this is known; n >= 1.
+pub fn examined(lcp: &Lcp, known: &Known, point: Placed) -> LcpSolution {
+    let Placed { z, image, places, residual } = point;
     let (n, scaled) = (z.len(), &known.scaled);
     let x = onto(lcp, &places, &z);
-    let [w, _, rounding] = lcp.image(&x);
+    let [w, _, rounding] = if x == z { image.clone() } else { lcp.image(&x) };
     let defect: Vec<f64> = (0..n)
         .map(|i| {
             let missing = match places[i] {
@@ -98,7 +101,7 @@ pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
         .collect();
     let length = defect.iter().map(|d| d * d).sum::<f64>().sqrt() * OUTWARD + f64::MIN_POSITIVE;
     let mut error = vec![f64::INFINITY; n];
-    let (mut energy, mut beside) = (f64::INFINITY, x.clone());
+    let (mut energy, mut beside) = (f64::INFINITY, Vec::new());
     if let Some(least) = known.least {
         error = vec![length / least * OUTWARD; n];
         energy = length / least.sqrt() * OUTWARD;
@@ -110,8 +113,9 @@ pub fn examined(lcp: &Lcp, known: &Known, z: Vec<f64>) -> LcpSolution {
     }
     let in_units = |i: usize, error: f64| (scaled.column[i] * error + (z[i] - x[i]).abs()) * OUTWARD;
     let error: Vec<f64> = (0..n).map(|i| in_units(i, error[i])).collect();
-    let image_error = image_errors(lcp, known, (&z, &beside), &error, energy);
-    let [w, ..] = lcp.image(&z);
+    let beside = if beside.is_empty() { &x } else { &beside };
+    let image_error = image_errors(lcp, known, (&z, &image), beside, &error, energy);
+    let [w, ..] = image;
     let proven: Vec<Option<Place>> = (0..n)
         .map(|i| {
             let (e, of_w) = (error[i], image_error[i]);
@@ -147,24 +151,16 @@ const NO_IMAGE_ERROR: &str =
 
 /// Bounds on `|e|` by the comparison matrix, entry by entry.
 fn by_comparison(known: &Known, defect: &[f64]) -> Option<Vec<f64>> {
-    if defect.iter().any(|d| !d.is_finite()) {
-        return None;
-    }
     let largest = defect.iter().copied().fold(0.0, f64::max);
-    if largest == 0.0 {
-        return Some(vec![0.0; defect.len()]).filter(|_| known.class == Class::H || known.least.is_some());
-    }
-    if known.class != Class::H && (known.class != Class::Symmetric || defect.len() > 64) {
+    if known.is_unique != Some(true) || known.class == Class::P || defect.iter().any(|d| !d.is_finite()) {
         return None;
+    } else if largest == 0.0 {
+        return Some(vec![0.0; defect.len()]);
     }
     // Small defects are raised a little, so that every row has a positive right side.
     let right: Vec<f64> = defect.iter().map(|d| d.max(1e-3 * largest)).collect();
-    let d = comparison_solution(&known.scaled.matrix, &right)?;
-    let compared = compared(&known.scaled.matrix, &d);
-    if compared.iter().any(|&value| value.is_nan() || value <= 0.0) {
-        return None;
-    }
-    let factor = defect.iter().zip(&compared).map(|(defect, value)| defect / value).fold(0.0, f64::max);
+    let [d, bounds] = comparison_solution(&known.scaled, &right)?;
+    let factor = defect.iter().zip(&bounds).map(|(defect, bound)| defect / bound).fold(0.0, f64::max);
     Some(d.iter().map(|d| d * factor * OUTWARD).collect())
 }
 
@@ -176,12 +172,7 @@ fn energy_of_gap(lcp: &Lcp, known: &Known, mut x: Vec<f64>, defect: &[f64]) -> (
         (0..n).map(|i| f64::from(i8::from(upper[i].is_infinite()) - i8::from(lower[i].is_infinite()))).collect();
     let largest = defect.iter().copied().fold(0.0, f64::max);
     if let Some(factor) = known.factor.as_ref().filter(|_| largest > 0.0) {
-        let mut d = vec![0.0; n];
-        for _ in 0..3 {
-            let moved = scaled.matrix.mul(&d);
-            let left: Vec<f64> = wanted.iter().zip(&moved).map(|(wanted, moved)| wanted - moved).collect();
-            d.iter_mut().zip(factor.solve(&left)).for_each(|(d, step)| *d += step);
-        }
+        let d = factor.solve(&wanted);
         for (i, x) in x.iter_mut().enumerate() {
             *x = (*x + 2.0 * largest * scaled.column[i] * d[i]).clamp(lower[i], upper[i]);
         }
@@ -200,9 +191,15 @@ fn energy_of_gap(lcp: &Lcp, known: &Known, mut x: Vec<f64>, defect: &[f64]) -> (
 }
 
 /// Bounds on `|w_i - w_i*|` at z, from those on z and on the energy at the point x beside it.
-fn image_errors(lcp: &Lcp, known: &Known, (z, x): (&[f64], &[f64]), error: &[f64], energy: f64) -> Vec<f64> {
+fn image_errors(
+    lcp: &Lcp,
+    known: &Known,
+    (z, [w, _, rounding]): (&[f64], &[Vec<f64>; 3]),
+    x: &[f64],
+    error: &[f64],
+    energy: f64,
+) -> Vec<f64> {
     let (n, scaled) = (z.len(), &known.scaled);
-    let [w, _, rounding] = lcp.image(z);
     let mut by_rows = vec![0.0; n];
     // An infinite error stays one, also where an entry is zero.
     match error.iter().all(|error| error.is_finite()) {
@@ -217,6 +214,6 @@ fn image_errors(lcp: &Lcp, known: &Known, (z, x): (&[f64], &[f64]), error: &[f64
             by_rows[i] = by_rows[i].min(moved[i] * OUTWARD + by_energy);
         }
     }
-    let all = by_rows.iter().zip(&rounding).zip(&w);
+    let all = by_rows.iter().zip(rounding).zip(w);
     all.map(|((by_row, rounding), w)| (by_row + rounding + f64::EPSILON * w.abs()) * OUTWARD).collect()
 }

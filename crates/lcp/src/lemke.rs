@@ -7,14 +7,11 @@
 //! # Source
 //! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), sections 4.4 and 4.9.
 
-use std::cmp::Ordering;
-
 use signorini_qp::Settings;
 
-use crate::answer::Place;
+use crate::answer::Found;
 use crate::basis::check_size;
 use crate::error::Error;
-use crate::found::Found;
 use crate::scaled::Scaled;
 
 /// Entries below this share of the largest of their column, and differences of ratios below it, are rounding.
@@ -70,29 +67,14 @@ impl Tableau {
         let count = self.rows.len();
         let largest = self.rows.iter().map(|row| row[column].abs()).fold(0.0, f64::max);
         let falling: Vec<usize> = (0..count).filter(|&place| self.rows[place][column] < -ROUNDING * largest).collect();
-        let compare = |a: f64, b: f64| match (a - b).abs() <= ROUNDING * a.abs().max(b.abs()) {
-            true => Ordering::Equal,
-            false => a.total_cmp(&b),
+        let ratio = |place: usize| {
+            let constant = self.rows[place][count + 1];
+            if constant.abs() > ZERO { -constant / self.rows[place][column] } else { 0.0 }
         };
-        let rate = |place: usize| -self.rows[place][column];
-        let cleaned = |value: f64| if value.abs() > ZERO { value } else { 0.0 };
-        let constant = |place: usize| cleaned(self.rows[place][count + 1]);
-        let constants = |a: usize, b: usize| compare(constant(a) / rate(a), constant(b) / rate(b));
-        let inverse = |place: usize, variable: usize| match self.others.iter().position(|&other| other == variable) {
-            Some(other) => -cleaned(self.rows[place][other]),
-            None => f64::from(u8::from(self.basic[place] == variable)),
-        };
-        let earlier = |a: usize, b: usize| {
-            (count..2 * count).fold(constants(a, b), |order, variable| {
-                order.then_with(|| compare(inverse(a, variable) / rate(a), inverse(b, variable) / rate(b)))
-            })
-        };
-        let best = falling.iter().copied().reduce(|best, place| match earlier(place, best) {
-            Ordering::Less => place,
-            _ => best,
-        })?;
+        let best = falling.iter().copied().min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))?;
+        let most = ratio(best) + ROUNDING * ratio(best).abs();
         let artificial = falling.into_iter().find(|&place| self.basic[place] == 2 * count);
-        artificial.filter(|&place| constants(place, best) != Ordering::Greater).or(Some(best))
+        artificial.filter(|&place| ratio(place) <= most).or(Some(best))
     }
 }
 
@@ -202,29 +184,15 @@ fn ray(tableau: &Tableau, column: usize, columns: &[Column], unknowns: usize) ->
     ray
 }
 
-/// The point of the last tableau, in units of z, and the places of its basis.
+/// The point of the last tableau, in units of z.
 fn point(tableau: &Tableau, scaled: &Scaled, columns: &[Column], iterations: usize) -> Found {
     let count = columns.len();
-    let mut x: Vec<f64> = (0..scaled.lower.len()).map(|of| base(scaled, of)).collect();
-    let is_free = |of: usize| scaled.lower[of].is_infinite() && scaled.upper[of].is_infinite();
-    let at = |of: usize| match (is_free(of), scaled.lower[of].is_infinite()) {
-        (true, _) => Place::Between,
-        (false, true) => Place::Upper,
-        (false, false) => Place::Lower,
-    };
-    let mut places: Vec<Place> = (0..x.len()).map(at).collect();
+    let mut z: Vec<f64> = (0..scaled.lower.len()).map(|of| base(scaled, of)).collect();
     for (row, &basic) in tableau.rows.iter().zip(&tableau.basic) {
         if let Some(&Column::Part { of, sign }) = columns.get(basic) {
-            x[of] += sign * row[count + 1] * tableau.unit;
-            places[of] = Place::Between;
+            z[of] += sign * row[count + 1] * tableau.unit;
         }
     }
-    for other in tableau.others.iter().filter_map(|other| other.checked_sub(count)) {
-        // The distance from the upper bound is zero.
-        if let Some(&Column::Slack { of }) = columns.get(other) {
-            places[of] = if places[of] == Place::Between { Place::Upper } else { places[of] };
-        }
-    }
-    let z = x.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect();
-    Found::Point { z, places: Some(places), iterations }
+    z.iter_mut().zip(&scaled.column).for_each(|(z, unit)| *z *= unit);
+    Found::Point { z, iterations }
 }

@@ -22,9 +22,9 @@
 //!
 //! | class of M | methods in order |
 //! |---|---|
-//! | symmetric, semidefinite | the QP min 1/2 z'Mz + q'z; proximal steps; Lemke |
+//! | symmetric, semidefinite | principal pivoting if it is singular; the QP min 1/2 z'Mz + q'z; Lemke |
 //! | H-matrix with positive diagonal, P-matrix (n <= 16) | block principal pivoting; Lemke |
-//! | M + M' semidefinite | the convex gap program; Lemke |
+//! | M + M' semidefinite | the convex gap program, or the QP whose multipliers are unknowns as well; Lemke |
 //! | any other | Lemke |
 //!
 //! A point is answered if its residual, recomputed from M, q, l and u, meets the tolerance, whatever it comes from.
@@ -39,7 +39,6 @@ mod class;
 mod dense;
 mod error;
 mod files;
-mod found;
 mod lemke;
 mod pivoting;
 mod problem;
@@ -80,7 +79,7 @@ impl Lcp {
             return Err(QpError::NotFinite { name, at, value, allowed }.into());
         }
         let start = std::time::Instant::now();
-        let solution = certificate::examined(self, &class::Known::of(self)?, z.to_vec());
+        let solution = certificate::examined(self, &class::Known::of(self)?, certificate::placed(self, z.to_vec()));
         Ok(LcpSolution { seconds: start.elapsed().as_secs_f64(), ..solution })
     }
 }

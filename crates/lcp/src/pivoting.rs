@@ -9,11 +9,10 @@
 
 use signorini_qp::Settings;
 
-use crate::answer::Place;
+use crate::answer::{Found, Place};
 use crate::basis::settled;
 use crate::class::Known;
 use crate::error::Error;
-use crate::found::Found;
 use crate::problem::Lcp;
 
 /// Steps of all exchanges at once that may fail to lower the number of wrong signs.
@@ -60,7 +59,7 @@ pub fn principal_pivoting(
         };
         let exchanges: Vec<(usize, Place)> = (0..z.len()).filter_map(|i| Some((i, exchanged(i)?))).collect();
         if exchanges.is_empty() {
-            return Ok(Found::Point { z, places: Some(places), iterations: step });
+            return Ok(Found::Point { z, iterations: step });
         }
         patience = if exchanges.len() < least { PATIENCE } else { patience.saturating_sub(1) };
         least = least.min(exchanges.len());

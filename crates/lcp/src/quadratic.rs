@@ -1,22 +1,13 @@
-//! The convex programs behind a complementarity problem, solved by the QP: the energy of a symmetric M, the gap of a
-//! monotone one. The rays that show that there is no point at all are found and checked here.
+//! The convex programs behind a complementarity problem, solved by the QP: that of a symmetric M, also with
+//! multipliers, and the gap of a monotone one. The rays that show that there is no point are found and checked here.
 
-use signorini_qp::{
-    ContactProblem, Error as QpError, Prepared, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
-};
+use signorini_qp::{ContactProblem, Error as QpError, Settings, SparseMatrix, SymmetricMatrix, solve};
 
+use crate::answer::Found;
 use crate::error::Error;
-use crate::found::Found;
 use crate::lemke::lemke;
 use crate::problem::Lcp;
 use crate::scaled::Scaled;
-
-/// What each proximal step adds to the unit diagonal of a symmetric matrix.
-const STEP: f64 = 1e-6;
-
-/// Most proximal steps, and the change of the last one, relative.
-const STEPS: usize = 20;
-const SETTLED: f64 = 1e-13;
 
 /// Sums that must vanish along a ray may keep this share of their terms, which are doubles.
 const ROUNDING: f64 = 1e-12;
@@ -27,110 +18,118 @@ const DUST: f64 = 1e-14;
 /// A ray that demands less than this share of its terms decides nothing.
 const DECISIVE: f64 = 1e-9;
 
-/// Inequalities `B x <= g` with an entry for each finite bound of x.
-struct Rows {
+/// A program in the unknowns that have a column.
+struct Program<'a> {
+    scaled: &'a Scaled,
+    columns: Vec<Option<usize>>,
+    load: Vec<f64>,
+    /// The inequalities `B x <= g`.
     entries: Vec<(usize, usize, f64)>,
     gaps: Vec<f64>,
+    /// Of a row that demands a sign of w its unknown, and the factor of the demand.
+    demands: Vec<Option<(usize, f64)>>,
 }
 
-impl Rows {
-    fn of_bounds(scaled: &Scaled) -> Self {
-        let mut rows = Rows { entries: Vec::new(), gaps: Vec::new() };
-        for (i, (&lower, &upper)) in scaled.lower.iter().zip(&scaled.upper).enumerate() {
-            for (sign, bound) in [(-1.0, lower), (1.0, upper)] {
+impl<'a> Program<'a> {
+    /// The program in the unknowns that are no multipliers, with a row for each of their bounds.
+    fn of(scaled: &'a Scaled, is_multiplier: impl Fn(usize) -> bool) -> Self {
+        let n = scaled.offset.len();
+        let own: Vec<usize> = (0..n).filter(|&i| !is_multiplier(i)).collect();
+        let mut columns = vec![None; n];
+        own.iter().enumerate().for_each(|(column, &i)| columns[i] = Some(column));
+        let load = own.iter().map(|&i| -scaled.offset[i]).collect();
+        let mut program = Program { scaled, columns, load, entries: Vec::new(), gaps: Vec::new(), demands: Vec::new() };
+        for (column, i) in own.into_iter().enumerate() {
+            for (sign, bound) in [(-1.0, scaled.lower[i]), (1.0, scaled.upper[i])] {
                 if bound.is_finite() {
-                    rows.push([(i, sign)], sign * bound);
+                    program.push([(column, sign)], sign * bound, None);
                 }
             }
         }
-        rows
+        program
     }
 
-    fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>, gap: f64) {
+    fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>, gap: f64, demand: Option<(usize, f64)>) {
         let row = self.gaps.len();
         self.entries.extend(entries.into_iter().map(|(column, value)| (row, column, value)));
         self.gaps.push(gap);
+        self.demands.push(demand);
     }
 
-    /// The rows that w must meet: nonnegative without an upper bound, nonpositive without a lower one; each has entries
-    /// of order one, or else such a gap. The row of w and the factor of the demand, of each.
-    fn push_signs(&mut self, scaled: &Scaled) -> Vec<(usize, f64)> {
-        let by_rows = scaled.matrix.transposed();
-        let mut demands = Vec::new();
-        for (i, &offset) in scaled.offset.iter().enumerate() {
+    /// Adds the rows that these w must meet: nonnegative without an upper bound, nonpositive without a lower one; each
+    /// has entries of order one, or else such a gap.
+    fn push_signs(&mut self, has_row: impl Fn(usize) -> bool) {
+        let (scaled, by_rows) = (self.scaled, self.scaled.matrix.transposed());
+        for i in (0..scaled.offset.len()).filter(|&i| has_row(i)) {
+            let offset = scaled.offset[i];
             let largest = by_rows.column(i).map(|entry| entry.1.abs()).fold(0.0, f64::max);
             let size = [largest, offset.abs()].into_iter().find(|&size| size > 0.0).unwrap_or(1.0);
             for (factor, bound) in [(1.0 / size, scaled.upper[i]), (-1.0 / size, scaled.lower[i])] {
                 if bound.is_infinite() {
-                    self.push(by_rows.column(i).map(|(j, value)| (j, -factor * value)), factor * offset);
-                    demands.push((i, factor));
+                    let entries = by_rows.column(i).filter_map(|(j, value)| Some((self.columns[j]?, -factor * value)));
+                    self.push(entries.collect::<Vec<_>>(), factor * offset, Some((i, factor)));
                 }
             }
         }
-        demands
     }
 
-    fn problem(&self, stiffness: SymmetricMatrix, load: Vec<f64>) -> Result<ContactProblem, QpError> {
-        let contact = SparseMatrix::from_triplets(self.gaps.len(), load.len(), &self.entries)?;
-        ContactProblem::new(stiffness, load, contact, self.gaps.clone())
+    /// The end of the program with a stiffness; it sorts the errors of a QP: what ends the search, and what leaves it
+    /// to other methods.
+    ///
+    /// # Errors
+    /// Those of the QP that are not about this problem.
+    fn solved(self, stiffness: Result<SymmetricMatrix, QpError>, settings: &Settings) -> Result<Found, Error> {
+        let Program { scaled, columns, load, entries, gaps, demands } = self;
+        let problem = stiffness.and_then(|stiffness| {
+            let contact = SparseMatrix::from_triplets(gaps.len(), load.len(), &entries)?;
+            ContactProblem::new(stiffness, load, contact, gaps)
+        });
+        let whole = |values: &[f64]| -> Vec<f64> {
+            columns.iter().map(|column| column.map_or(0.0, |column| values[column])).collect()
+        };
+        let answer = match problem.and_then(|problem| solve(&problem, settings)) {
+            Err(QpError::NotCertified { solution, .. }) => Ok(*solution),
+            answer => answer,
+        };
+        match answer {
+            Ok(solution) => {
+                let mut z = whole(&solution.displacement);
+                for (demand, multiplier) in demands.iter().zip(&solution.multiplier) {
+                    if let Some((i, factor)) = demand.filter(|&(i, _)| columns[i].is_none()) {
+                        z[i] -= factor * multiplier;
+                    }
+                }
+                z.iter_mut().zip(&scaled.column).for_each(|(z, unit)| *z *= unit);
+                Ok(Found::Point { z, iterations: solution.iterations })
+            }
+            Err(QpError::Unbounded { direction, .. }) => Ok(Found::Ray(whole(&direction))),
+            Err(QpError::Infeasible { rows, weights, .. }) => {
+                Ok(Found::Ray(ray_of(&demands, columns.len(), rows.into_iter().zip(weights))))
+            }
+            Err(
+                error @ (QpError::Interrupted
+                | QpError::OutOfTime { .. }
+                | QpError::Setting { .. }
+                | QpError::NoRoom { .. }
+                | QpError::TooLarge { .. }),
+            ) => Err(error.into()),
+            Err(error) => Ok(Found::Nothing(format!("the program ended: {}", error.code()))),
+        }
     }
 }
 
-/// Sorts the errors of a QP: what ends the search, and what leaves it to other methods.
-fn found(scaled: &Scaled, answer: Result<Solution, QpError>, name: &str) -> Result<Found, Error> {
-    let point = |solution: &Solution| {
-        let z = solution.displacement.iter().zip(&scaled.column).map(|(x, unit)| x * unit).collect();
-        Found::Point { z, places: None, iterations: solution.iterations }
-    };
-    match answer {
-        Ok(solution) => Ok(point(&solution)),
-        Err(QpError::NotCertified { solution, .. }) => Ok(point(&solution)),
-        Err(QpError::Unbounded { direction, .. }) => Ok(Found::Ray(direction)),
-        Err(
-            error @ (QpError::Interrupted
-            | QpError::OutOfTime { .. }
-            | QpError::Setting { .. }
-            | QpError::NoRoom { .. }
-            | QpError::TooLarge { .. }),
-        ) => Err(error.into()),
-        Err(error) => Ok(Found::Nothing(format!("the {name} ended: {}", error.code()))),
-    }
-}
-
-fn negative(values: &[f64]) -> Vec<f64> {
-    values.iter().map(|value| -value).collect()
-}
-
-/// Minimises `1/2 x'A x + q'x` between the bounds, of a symmetric A.
+/// Minimises `1/2 x'A x + q'x` between the bounds, of a symmetric A; the w of multipliers are its rows.
 ///
 /// # Errors
 /// Those of the QP that are not about this problem.
-pub fn quadratic_program(scaled: &Scaled, settings: &Settings) -> Result<Found, Error> {
-    let problem = Rows::of_bounds(scaled).problem(scaled.symmetric_part(0.0)?, negative(&scaled.offset))?;
-    found(scaled, solve(&problem, settings), "quadratic program")
-}
-
-/// The same for a singular A: by steps with a regular matrix, each from the last point, on one factor.
-///
-/// # Errors
-/// As [`quadratic_program`].
-pub fn proximal(scaled: &Scaled, settings: &Settings) -> Result<Found, Error> {
-    let problem = Rows::of_bounds(scaled).problem(scaled.symmetric_part(STEP)?, negative(&scaled.offset))?;
-    let prepared = Prepared::new(&problem, settings)?;
-    let mut x = vec![0.0_f64; scaled.offset.len()];
-    let mut last = Found::Nothing("no proximal step".into());
-    for _ in 0..STEPS {
-        let load = x.iter().zip(&scaled.offset).map(|(x, q)| STEP * x - q).collect();
-        last = found(scaled, prepared.solve_load(load), "proximal step")?;
-        let Found::Point { z, .. } = &last else { break };
-        let next: Vec<f64> = z.iter().zip(&scaled.column).map(|(z, unit)| z / unit).collect();
-        let is_settled = x.iter().zip(&next).all(|(x, next)| (x - next).abs() <= SETTLED * next.abs());
-        x = next;
-        if is_settled {
-            break;
-        }
-    }
-    Ok(last)
+pub fn quadratic_program(scaled: &Scaled, is_multiplier: &[bool], settings: &Settings) -> Result<Found, Error> {
+    let mut program = Program::of(scaled, |i| is_multiplier[i]);
+    program.push_signs(|i| is_multiplier[i]);
+    let lower = scaled.matrix.triplets().filter(|entry| entry.0 >= entry.1);
+    let lower = lower.filter_map(|(i, j, value)| Some((program.columns[i]?, program.columns[j]?, value)));
+    let n = program.load.len();
+    let lower: Vec<_> = lower.collect();
+    program.solved(SparseMatrix::from_triplets(n, n, &lower).and_then(SymmetricMatrix::from_lower), settings)
 }
 
 /// Minimises the gap `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+` of a monotone A over the points that meet the
@@ -140,59 +139,57 @@ pub fn proximal(scaled: &Scaled, settings: &Settings) -> Result<Found, Error> {
 /// As [`quadratic_program`].
 pub fn gap_program(scaled: &Scaled, settings: &Settings) -> Result<Found, Error> {
     let (n, lower, upper) = (scaled.offset.len(), &scaled.lower, &scaled.upper);
-    let boxed: Vec<usize> = (0..n).filter(|&i| lower[i].is_finite() && upper[i].is_finite()).collect();
+    let mut program = Program::of(scaled, |_| false);
     let base = |i: usize| [lower[i], upper[i]].into_iter().find(|bound| bound.is_finite()).unwrap_or(0.0);
     let moved = scaled.matrix.mul_transposed(&(0..n).map(base).collect::<Vec<_>>());
-    let mut load: Vec<f64> = moved.iter().zip(&scaled.offset).map(|(moved, q)| moved - q).collect();
-    let mut rows = Rows::of_bounds(scaled);
-    let bounds = rows.gaps.len();
-    let demands = rows.push_signs(scaled);
+    program.load.iter_mut().zip(moved).for_each(|(load, moved)| *load += moved);
+    program.push_signs(|_| true);
     let by_rows = scaled.matrix.transposed();
-    for &i in &boxed {
-        let part = load.len();
-        rows.push(by_rows.column(i).map(|(j, value)| (j, -value)).chain([(part, -1.0)]), scaled.offset[i]);
-        rows.push([(part, -1.0)], 0.0);
-        load.push(lower[i] - upper[i]);
+    for i in (0..n).filter(|&i| lower[i].is_finite() && upper[i].is_finite() && lower[i] < upper[i]) {
+        let part = program.load.len();
+        let entries = by_rows.column(i).map(|(j, value)| (j, -value)).chain([(part, -1.0)]);
+        program.push(entries, scaled.offset[i], None);
+        program.push([(part, -1.0)], 0.0, None);
+        program.load.push(lower[i] - upper[i]);
     }
-    let stiffness = scaled.symmetric_part(0.0)?.times(2.0)?.with_empty(boxed.len());
-    match rows.problem(stiffness, load).and_then(|problem| solve(&problem, settings)) {
-        Err(QpError::Infeasible { rows, weights, .. }) => {
-            let mut ray = vec![0.0; n];
-            for (row, weight) in rows.into_iter().zip(weights) {
-                if let Some(&(i, factor)) = row.checked_sub(bounds).and_then(|place| demands.get(place)) {
-                    ray[i] += factor * weight;
-                }
-            }
-            Ok(Found::Ray(ray))
-        }
-        answer => found(scaled, answer, "gap program"),
-    }
+    let parts = program.load.len() - n;
+    let stiffness = scaled.symmetric_part(0.0).and_then(|part| part.times(2.0));
+    program.solved(stiffness.map(|stiffness| stiffness.with_empty(parts)), settings)
 }
 
-/// The ray that shows that no point meets the inequalities `B x <= g`, if there is one: Lemke's method on the skew
-/// problem of x and y >= 0 with 0 = B'y and `g - B x >= 0`. Larger problems than it takes are not decided.
+/// The ray that shows that no point meets the inequalities `B x <= g`, if one is found: that of a single row, or by
+/// Lemke's method on the skew problem of x and y >= 0 with 0 = B'y and `g - B x >= 0`.
 ///
 /// # Errors
 /// Those of Lemke's method.
 pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &Settings) -> Result<Option<Error>, Error> {
-    let n = scaled.offset.len();
-    let mut rows = Rows::of_bounds(scaled);
-    let bounds = rows.gaps.len();
-    let demands = rows.push_signs(scaled);
-    let size = n + rows.gaps.len();
-    let both = rows.entries.iter().flat_map(|&(row, j, value)| [(n + row, j, -value), (j, n + row, value)]);
+    let n = lcp.unknowns();
+    let unit = |i: usize, sign: f64| -> Vec<f64> { (0..n).map(|j| if i == j { sign } else { 0.0 }).collect() };
+    let of_row = |i: usize| infeasible(lcp, scaled, &unit(i, 1.0)).or_else(|| infeasible(lcp, scaled, &unit(i, -1.0)));
+    if let Some(error) = (0..n).find_map(of_row) {
+        return Ok(Some(error));
+    }
+    let mut program = Program::of(scaled, |_| false);
+    program.push_signs(|_| true);
+    let (size, entries) = (n + program.gaps.len(), &program.entries);
+    let both = entries.iter().flat_map(|&(row, j, value)| [(n + row, j, -value), (j, n + row, value)]);
     let matrix = SparseMatrix::from_triplets(size, size, &both.collect::<Vec<_>>())?;
-    let offset = [vec![0.0; n], rows.gaps].concat();
     let lower = (0..size).map(|k| if k < n { f64::NEG_INFINITY } else { 0.0 }).collect();
-    let skew = Lcp::new(matrix, offset, lower, vec![f64::INFINITY; size])?;
-    let end = match lemke(&Scaled::new(&skew, vec![1.0; size], vec![1.0; size]), 0, allowed, settings) {
-        Err(Error::TooLarge { .. }) => return Ok(None),
-        end => end?,
-    };
-    let Found::Ray(weights) = end else { return Ok(None) };
+    let skew = Lcp::new(matrix, [vec![0.0; n], program.gaps].concat(), lower, vec![f64::INFINITY; size])?;
+    match lemke(&Scaled::new(&skew, vec![1.0; size], vec![1.0; size]), 0, allowed, settings) {
+        Ok(Found::Ray(weights)) => {
+            Ok(infeasible(lcp, scaled, &ray_of(&program.demands, n, weights.into_iter().skip(n).enumerate())))
+        }
+        Ok(_) | Err(Error::TooLarge { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// The ray of weights of rows.
+fn ray_of(demands: &[Option<(usize, f64)>], n: usize, weights: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
     let mut ray = vec![0.0; n];
-    demands.iter().zip(&weights[n + bounds..]).for_each(|(&(i, factor), weight)| ray[i] += factor * weight);
-    Ok(infeasible(lcp, scaled, &ray))
+    weights.for_each(|(row, weight)| demands[row].iter().for_each(|&(i, factor)| ray[i] += factor * weight));
+    ray
 }
 
 /// The error of a problem with this ray, in scaled units; `None` if it shows nothing.

@@ -4,22 +4,20 @@ use std::time::Instant;
 
 use signorini_qp::{Error as QpError, Method, Settings, memory};
 
-use crate::answer::{Class, LcpSolution, Place, worst};
+use crate::answer::{Class, Found, LcpSolution, Place, worst};
 use crate::basis::settled;
-use crate::certificate::{examined, onto, placed};
+use crate::certificate::{Placed, examined, onto, placed};
 use crate::class::Known;
 use crate::error::Error;
-use crate::found::Found;
 use crate::lemke::lemke;
 use crate::pivoting::principal_pivoting;
 use crate::problem::Lcp;
-use crate::quadratic::{contradiction, gap_program, infeasible, proximal, quadratic_program};
+use crate::quadratic::{contradiction, gap_program, infeasible, quadratic_program};
 
 /// The methods.
 #[derive(Clone, Copy)]
 enum Way {
     QuadraticProgram,
-    Proximal,
     GapProgram,
     PrincipalPivoting,
     /// With the artificial column of this number.
@@ -29,34 +27,33 @@ enum Way {
 impl Way {
     /// The methods of a class, in order: the only place that decides them. A method of the settings leaves programs
     /// alone or pivoting alone, of which the active set on a quadratic program is one.
-    fn of(known: &Known, method: Method) -> &'static [Way] {
-        use Way::{GapProgram, Lemke, PrincipalPivoting, Proximal, QuadraticProgram};
-        match (known.class, method) {
-            (Class::Symmetric, Method::Qp(_) | Method::Penalty(_)) => return &[QuadraticProgram, Proximal],
-            (Class::Symmetric, Method::ActiveSet) => return &[QuadraticProgram, PrincipalPivoting, Lemke(0), Lemke(1)],
-            (class, Method::Qp(_) | Method::Penalty(_)) => {
-                let is_monotone = class == Class::Monotone || known.least.is_some();
-                return if is_monotone { &[GapProgram] } else { &[] };
-            }
-            (Class::Monotone, Method::ActiveSet) => return &[Lemke(0), Lemke(1), Lemke(2)],
-            _ => {}
-        }
-        match known.class {
-            // A stack with more contacts than it needs: if all close, one factor is enough.
-            Class::Symmetric if known.least.is_none() => {
-                &[PrincipalPivoting, QuadraticProgram, Proximal, Lemke(0), Lemke(1)]
-            }
-            Class::Symmetric => &[QuadraticProgram, Proximal, Lemke(0), Lemke(1)],
-            Class::H | Class::P => &[PrincipalPivoting, Lemke(0), Lemke(1)],
-            Class::Monotone => &[GapProgram, Lemke(0), Lemke(1), Lemke(2)],
-            Class::General => &[Lemke(0), Lemke(1), Lemke(2)],
-        }
+    fn of(known: &Known, method: Method) -> Vec<Way> {
+        use Way::{GapProgram, Lemke, PrincipalPivoting, QuadraticProgram};
+        let (is_singular, is_program) = (known.least.is_none(), known.scaled.multipliers.is_some());
+        let (by_program, by_pivoting) = match method {
+            Method::Qp(_) | Method::Penalty(_) => (true, false),
+            Method::ActiveSet => (known.class == Class::Symmetric, true),
+            _ => (true, true),
+        };
+        // A stack with more contacts than it needs: if all close, one factor is enough.
+        let is_principal = match known.class {
+            Class::Symmetric => is_singular,
+            class => class == Class::H || class == Class::P,
+        };
+        let ways = [
+            (PrincipalPivoting, by_pivoting && is_principal),
+            (QuadraticProgram, by_program && known.factor.is_some() && is_program),
+            (GapProgram, by_program && known.factor.is_some() && !is_program),
+            (Lemke(0), by_pivoting),
+            (Lemke(1), by_pivoting),
+            (Lemke(2), by_pivoting),
+        ];
+        ways.into_iter().filter_map(|(way, is_tried)| is_tried.then_some(way)).collect()
     }
 
     fn name(self) -> &'static str {
         match self {
             Way::QuadraticProgram => "quadratic-program",
-            Way::Proximal => "proximal",
             Way::GapProgram => "gap-program",
             Way::PrincipalPivoting => "principal-pivoting",
             Way::Lemke(_) => "lemke",
@@ -65,15 +62,15 @@ impl Way {
 
     fn found(self, lcp: &Lcp, known: &Known, allowed: f64, settings: &Settings) -> Result<Found, Error> {
         let scaled = &known.scaled;
-        match self {
-            Way::QuadraticProgram => quadratic_program(scaled, settings),
-            Way::Proximal => proximal(scaled, settings),
-            Way::GapProgram => gap_program(scaled, settings),
-            Way::PrincipalPivoting => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
-            Way::Lemke(_) if known.class != Class::General && lcp.unknowns() > DENSE => {
+        match (self, &scaled.multipliers) {
+            (Way::QuadraticProgram, Some(multipliers)) => quadratic_program(scaled, multipliers, settings),
+            (Way::QuadraticProgram, None) => Ok(Found::Nothing("the problem has no quadratic program".into())),
+            (Way::GapProgram, _) => gap_program(scaled, settings),
+            (Way::PrincipalPivoting, _) => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
+            (Way::Lemke(_), _) if known.class != Class::General && lcp.unknowns() > DENSE => {
                 Ok(Found::Nothing(format!("Lemke's method is not tried on more than {DENSE} unknowns of this class")))
             }
-            Way::Lemke(attempt) => lemke(scaled, attempt, allowed, settings),
+            (Way::Lemke(attempt), _) => lemke(scaled, attempt, allowed, settings),
         }
     }
 }
@@ -101,23 +98,6 @@ const DENSE: usize = 1000;
 /// Unknowns below this share of the largest, in scaled units, may be zero.
 const DUST: f64 = 1e-14;
 
-/// The point with the same places, settled; with other places, if M is a P-matrix and signs were wrong.
-fn polished(
-    lcp: &Lcp,
-    known: &Known,
-    places: Vec<Place>,
-    allowed: f64,
-    settings: &Settings,
-) -> Result<Option<Vec<f64>>, Error> {
-    match known.is_unique {
-        Some(true) => match principal_pivoting(lcp, known, places, allowed, settings)? {
-            Found::Point { z, .. } => Ok(Some(z)),
-            _ => Ok(None),
-        },
-        _ => settled(lcp, known, &places, allowed),
-    }
-}
-
 /// The point with zeros for what rounding has left in place of them.
 fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
     let size = |(z, unit): (&f64, &f64)| (z / unit).abs();
@@ -125,20 +105,26 @@ fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
     z.iter().zip(&known.scaled.column).map(|entry| if size(entry) <= DUST * largest { 0.0 } else { *entry.0 }).collect()
 }
 
-/// The point with the smallest residual so far, and the method that found it.
-struct Best {
-    z: Vec<f64>,
-    residual: f64,
-    method: &'static str,
-    iterations: usize,
-}
-
-impl Best {
-    fn certified(self, lcp: &Lcp, known: &Known, start: Instant) -> LcpSolution {
-        let Best { z, method, iterations, .. } = self;
-        let solution = examined(lcp, known, z);
-        LcpSolution { method, iterations, seconds: start.elapsed().as_secs_f64(), ..solution }
-    }
+/// The points near one that a method has found: settled with its places, and moved onto them.
+fn near(lcp: &Lcp, known: &Known, z: Vec<f64>, allowed: f64, settings: &Settings) -> Result<Vec<Placed>, Error> {
+    let (clean, residual) = (without_dust(known, &z), |point: &Placed| worst(&point.residual).1);
+    let rough = if clean == z { None } else { Some(placed(lcp, z)) };
+    let clean = placed(lcp, clean);
+    let rough = rough.filter(|rough| residual(rough) < residual(&clean)).unwrap_or(clean);
+    let moved = onto(lcp, &rough.places, &rough.z);
+    let settled = match residual(&rough) <= ROUNDING {
+        true if moved == rough.z => return Ok(vec![rough]),
+        true => None,
+        // Wrong signs are exchanged.
+        false if known.is_unique == Some(true) => {
+            match principal_pivoting(lcp, known, rough.places, allowed, settings)? {
+                Found::Point { z, .. } => Some(z),
+                _ => None,
+            }
+        }
+        false => settled(lcp, known, &rough.places, allowed)?,
+    };
+    Ok(settled.into_iter().chain([moved]).map(|z| placed(lcp, z)).collect())
 }
 
 /// See [`solve_lcp`](crate::solve_lcp).
@@ -148,10 +134,15 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     let tolerance = settings.goal().tolerance;
     let allowed = memory::allowed(settings.memory);
     let known = Known::of(lcp)?;
-    let (mut best, mut reasons): (Option<Best>, Vec<String>) = (None, Vec::new());
+    if known.scaled.offset.iter().any(|q| !q.is_finite()) {
+        let reason = "the answer leaves the range of doubles: q is too large beside the entries of M".into();
+        return Err(Error::NotFound { reason });
+    }
+    let mut reasons: Vec<String> = Vec::new();
+    let mut best: Option<(f64, Placed, &'static str, usize)> = None;
     for way in Way::of(&known, settings.method) {
-        let (z, places, iterations) = match way.found(lcp, &known, allowed, settings)? {
-            Found::Point { z, places, iterations } => (z, places, iterations),
+        let (z, iterations) = match way.found(lcp, &known, allowed, settings)? {
+            Found::Point { z, iterations } => (z, iterations),
             Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
                 Some(error) => return Err(error),
                 None => {
@@ -164,43 +155,43 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
                 continue;
             }
         };
-        let rough = placed(lcp, &z);
-        let is_rough = rough.residual.iter().any(|&residual| residual.is_nan() || residual > ROUNDING);
-        let mut points = vec![onto(lcp, &rough.places, &z)];
-        if is_rough {
-            points.extend(polished(lcp, &known, rough.places, allowed, settings)?);
-            points.extend(places.and_then(|places| settled(lcp, &known, &places, allowed).ok()?));
-            points.reverse();
-        }
-        let dusted: Vec<_> = points.iter().map(|z| without_dust(&known, z)).collect();
-        for z in points.into_iter().chain(dusted) {
-            let residual = worst(&placed(lcp, &z).residual).1;
-            if best.as_ref().is_none_or(|best| residual < best.residual) {
-                best = Some(Best { z, residual, method: way.name(), iterations });
+        for point in near(lcp, &known, z, allowed, settings)? {
+            let residual = worst(&point.residual).1;
+            if best.as_ref().is_none_or(|best| residual < best.0) {
+                best = Some((residual, point, way.name(), iterations));
             }
             if residual <= tolerance.min(SHARP) {
                 break;
             }
         }
-        if let Some(best) = best.take_if(|best| best.residual <= tolerance.min(SHARP)) {
-            return Ok(best.certified(lcp, &known, start));
+        if best.as_ref().is_some_and(|best| best.0 <= tolerance.min(SHARP)) {
+            break;
         }
     }
-    if lcp.unknowns() <= DENSE
+    if best.as_ref().is_none_or(|best| best.0 > tolerance.min(SHARP))
+        && lcp.unknowns() <= DENSE
         && let Some(error) = contradiction(lcp, &known.scaled, allowed, settings)?
     {
         return Err(error);
     }
     // Attempts of one method end alike.
     reasons.dedup();
-    Err(match best.map(|best| best.certified(lcp, &known, start)) {
-        Some(solution) if solution.worst().1 <= tolerance => return Ok(solution),
-        Some(solution) => {
-            let (index, residual) = solution.worst();
-            Error::NotCertified { solution: Box::new(solution), index, residual, tolerance }
-        }
-        None if settings.watch.acknowledge() => QpError::Interrupted.into(),
-        None if reasons.is_empty() => Error::NotFound { reason: "M is not monotone, and has no convex program".into() },
-        None => Error::NotFound { reason: reasons.join("; ") },
-    })
+    let Some((residual, point, method, iterations)) = best else {
+        return Err(match settings.watch.acknowledge() {
+            true => QpError::Interrupted.into(),
+            false if settings.watch.is_over() => {
+                QpError::OutOfTime { needed: start.elapsed().as_secs_f64(), time: 0.0 }.into()
+            }
+            false if reasons.is_empty() => {
+                Error::NotFound { reason: "M is not monotone, and has no convex program".into() }
+            }
+            false => Error::NotFound { reason: reasons.join("; ") },
+        });
+    };
+    let (index, solution) = (worst(&point.residual).0, examined(lcp, &known, point));
+    let solution = LcpSolution { method, iterations, seconds: start.elapsed().as_secs_f64(), ..solution };
+    match residual <= tolerance {
+        true => Ok(solution),
+        false => Err(Error::NotCertified { solution: Box::new(solution), index, residual, tolerance }),
+    }
 }

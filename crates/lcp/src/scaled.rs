@@ -21,6 +21,9 @@ pub struct Scaled {
     /// The diagonals of R and C; those of C are powers of two.
     pub row: Vec<f64>,
     pub column: Vec<f64>,
+    /// The unknowns that are multipliers, if the problem is that of a quadratic program: those without a diagonal
+    /// entry, if A is symmetric to rounding once their rows change sign.
+    pub multipliers: Option<Vec<bool>>,
     /// `true` if A is symmetric to rounding.
     pub is_alike: bool,
     /// `true` if A is symmetric, and all scales are powers of two: without any rounding.
@@ -39,6 +42,20 @@ pub fn diagonal(matrix: &SparseMatrix) -> Vec<f64> {
     diagonal
 }
 
+/// The largest share by which mirrored entries differ once the rows of multipliers change sign; infinite if one of them
+/// is zero, or not finite, or couples two multipliers.
+fn apart(matrix: &SparseMatrix, is_multiplier: &[bool]) -> f64 {
+    let mirrored = matrix.transposed();
+    let entries = matrix.triplets().filter(|entry| entry.2 != 0.0);
+    let pairs = entries.zip(mirrored.triplets().filter(|entry| entry.2 != 0.0));
+    let share = |((i, j, a), (k, l, b)): ((usize, usize, f64), (usize, usize, f64))| {
+        let b = if is_multiplier[i] == is_multiplier[j] { b } else { -b };
+        let is_pair = (i, j) == (k, l) && a.is_finite() && !(is_multiplier[i] && is_multiplier[j]);
+        if is_pair { (a - b).abs() / a.abs() } else { f64::INFINITY }
+    };
+    pairs.map(share).fold(0.0, f64::max)
+}
+
 fn is_power(value: f64) -> bool {
     value.to_bits() & ((1 << 52) - 1) == 0
 }
@@ -46,27 +63,20 @@ fn is_power(value: f64) -> bool {
 impl Scaled {
     pub fn new(lcp: &Lcp, row: Vec<f64>, column: Vec<f64>) -> Self {
         let matrix = lcp.matrix().scaled(&row, &column);
-        let mirrored = matrix.transposed();
-        let is_like = |share: f64| {
-            let pairs = (0..matrix.columns()).all(|j| {
-                let (mut own, mut other) =
-                    (matrix.column(j).filter(|e| e.1 != 0.0), mirrored.column(j).filter(|e| e.1 != 0.0));
-                loop {
-                    match (own.next(), other.next()) {
-                        (None, None) => return true,
-                        (Some(a), Some(b)) if a.0 == b.0 && (a.1 - b.1).abs() <= share * a.1.abs() => {}
-                        _ => return false,
-                    }
-                }
-            });
-            pairs && matrix.values().iter().all(|value| value.is_finite())
-        };
+        let is_empty = |j: usize| matrix.column(j).all(|entry| entry.1 == 0.0);
+        let own = diagonal(&matrix);
+        let is_multiplier: Vec<bool> = (0..own.len()).map(|j| own[j] == 0.0 && !is_empty(j)).collect();
+        let apart = apart(&matrix, &is_multiplier);
+        let is_plain =
+            |i: usize| lcp.upper()[i].is_infinite() && (lcp.lower()[i] == 0.0 || lcp.lower()[i].is_infinite());
+        let is_program = apart <= ALIKE && (0..own.len()).all(|i| !is_multiplier[i] || is_plain(i));
         let is_exact = row.iter().chain(&column).all(|&scale| is_power(scale));
-        let (is_alike, is_symmetric) = (is_like(ALIKE), is_exact && is_like(0.0));
+        let is_alike = apart <= ALIKE && !is_multiplier.contains(&true);
+        let (is_symmetric, multipliers) = (is_alike && is_exact && apart == 0.0, is_program.then_some(is_multiplier));
         let times = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect();
         let over = |bounds: &[f64]| bounds.iter().zip(&column).map(|(bound, unit)| bound / unit).collect();
         let (offset, lower, upper) = (times(lcp.offset(), &row), over(lcp.lower()), over(lcp.upper()));
-        Scaled { matrix, offset, lower, upper, row, column, is_alike, is_symmetric }
+        Scaled { matrix, offset, lower, upper, row, column, multipliers, is_alike, is_symmetric }
     }
 
     /// Unit diagonals after each row was multiplied by its share.
