@@ -168,10 +168,9 @@ mod tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/meshes/box-tet4.msh");
         let mesh = Tetrahedra::of(&GmshFile::read(path).unwrap().mesh(&[], 1.0).unwrap()).unwrap().mesh().unwrap();
         let body = ElasticBody::new(mesh, Material::new(7.0, 0.3).unwrap(), Formulation::Space).unwrap();
-        let bent = |[x, y, z]: [f64; 3]| [x * y - 0.5 * z * z, 0.25 * x * x + y * z, z * x + y * y];
-        let sheared = |[x, y, z]: [f64; 3]| [x + 0.5 * y, 0.25 * y - z, z + 0.75 * x];
-        let fields: [(&dyn Fn([f64; 3]) -> [f64; 3], f64); 2] = [(&bent, 1e-4), (&sheared, 1e-12)];
-        for (field, most) in fields {
+        let bent: fn([f64; 3]) -> [f64; 3] = |[x, y, z]| [x * y - 0.5 * z * z, 0.25 * x * x + y * z, z * x + y * y];
+        let sheared: fn([f64; 3]) -> [f64; 3] = |[x, y, z]| [x + 0.5 * y, 0.25 * y - z, z + 0.75 * x];
+        for (field, most) in [(bent, 1e-4), (sheared, 1e-12)] {
             let displacement: Vec<f64> = body.mesh().nodes().iter().flat_map(|&place| field(place)).collect();
             let (patches, tables) = (Patches::of(&body, &displacement), body.tabulated());
             for element in body.elements() {
