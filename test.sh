@@ -59,7 +59,7 @@ features() {
 }
 # The tests that read pages.
 tests_of_pages() {
-    cargo test --quiet --workspace --all-features --test house
+    cargo test --quiet --workspace --all-features --test rules
     cargo test --quiet --workspace --all-features --test program -- guarantees:: tutorial::
     python/test.sh readme
 }

@@ -59,7 +59,7 @@
 //! A module names only modules of lower floors; see `ARCHITECTURE.md`.
 
 #![forbid(unsafe_code)]
-#![deny(missing_docs)]
+#![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -3,6 +3,7 @@
 //! Short work runs on the calling thread and checks for signals when a step begins. Longer work, for example a
 //! factorisation, which cannot be interrupted, runs on a thread of its own. If it does not end soon after an interrupt,
 //! the caller no longer waits for it, and its result is dropped.
+#![expect(clippy::disallowed_methods, reason = "Python gets a panic as an error")]
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};

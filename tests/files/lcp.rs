@@ -1,5 +1,6 @@
 //! Directories of complementarity problems: what is read, and random damage to every file, which ends with an answer or
 //! with one sentence.
+#![expect(clippy::disallowed_methods, reason = "a panic is a finding")]
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,4 +1,5 @@
 //! Files that are read, with their faults, and files that are written.
+#![expect(clippy::too_many_lines, reason = "tables of cases")]
 
 mod along;
 mod bad_input;

@@ -1,4 +1,5 @@
 //! The program: its command line, its limits, its process, and its decisions.
+#![expect(clippy::too_many_lines, reason = "tables of cases")]
 
 mod answers;
 mod auto;

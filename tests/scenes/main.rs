@@ -1,4 +1,5 @@
 //! Scenes: accepted and refused input, the rows of obstacles, supports, and contact answers compared with closed forms.
+#![expect(clippy::too_many_lines, reason = "tables of cases")]
 
 mod between_bodies;
 mod concave_obstacles;

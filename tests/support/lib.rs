@@ -1,5 +1,6 @@
 //! What the tests share with each other and with the programs that measure: scenes, closed forms, oracles, and the
 //! built program.
+#![expect(clippy::too_many_lines, clippy::missing_errors_doc, reason = "tables of cases, and errors that end a test")]
 #![forbid(unsafe_code)]
 
 pub mod axis_scenes;

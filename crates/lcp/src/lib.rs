@@ -30,7 +30,7 @@
 //! A point is answered if its residual, recomputed from M, q, l and u, meets the tolerance, whatever it comes from.
 
 #![forbid(unsafe_code)]
-#![deny(missing_docs)]
+#![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 
 mod answer;
 mod basis;

@@ -31,7 +31,7 @@
 //! `signorini` re-exports these modules.
 
 #![forbid(unsafe_code)]
-#![deny(missing_docs)]
+#![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 
 mod bytes;
 mod continuum;

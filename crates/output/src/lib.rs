@@ -13,7 +13,7 @@
 //! written as SVG and painted as PNG with an embedded typeface, so that both show the same on every machine.
 
 #![forbid(unsafe_code)]
-#![deny(missing_docs)]
+#![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 
 mod draw;
 mod file;

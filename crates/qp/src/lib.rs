@@ -26,7 +26,7 @@
 //! engine prepares once for many loads and gaps; `existence` alone says that a problem has no answer, or more than one.
 
 #![forbid(unsafe_code)]
-#![deny(missing_docs)]
+#![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 
 mod certificate;
 mod cost;

@@ -10,6 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 ///
 /// # Errors
 /// The message of the panic.
+#[expect(clippy::disallowed_methods, reason = "the one place")]
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     // Data that `work` has left half done are dropped with it.
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| format!("it panicked: {}", message(&*panic)))

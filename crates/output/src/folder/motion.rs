@@ -266,6 +266,9 @@ impl MotionFolder {
     }
 
     /// The same for a screen or for paper; the animation is the same for both.
+    ///
+    /// # Errors
+    /// Those of [`Self::draw`].
     pub fn draw_for(&self, model: &Arc<Model>, medium: Medium) -> Result<(), Error> {
         let history = self.read_history()?;
         let plots = history_plots(model, &history);

@@ -297,6 +297,9 @@ fn fields(mesh: &Mesh, answer: &ContinuumAnswer) -> Result<String, Error> {
 
 impl Wanted {
     /// Writes the last mesh, the table of meshes and two pictures into a folder; with a guarantee also its fields.
+    ///
+    /// # Errors
+    /// Files that cannot be written, and those of the rasteriser.
     pub fn write_total_error(self, folder: &Path, title: &str, found: &TotalError, units: &Units) -> Result<(), Error> {
         let last = |guarantee: &Guarantee| -> Result<_, Error> {
             let mesh = guarantee.answer.mesh()?;

@@ -48,7 +48,7 @@ struct At<'a> {
 type Column = (Quantity, Box<dyn Fn(&At) -> f64>);
 
 impl Along {
-    /// The values of an answer along the line between `ends`, piece by piece.
+    /// The values of an answer along the line between `ends` (three coordinates each, in length), piece by piece.
     ///
     /// # Errors
     /// Those of [`Answer::stress`].

@@ -7,12 +7,12 @@ pub struct Layout {
     pub size: usize,
     /// The place `size * node + component` of each free dof, increasing.
     pub place: Vec<u32>,
-    /// Coordinates of the nodes, `size` each.
+    /// Coordinates of the nodes in length, `size` each.
     pub coordinates: Vec<f64>,
 }
 
 impl Layout {
-    /// The layout of free dofs, `size * node + component` each and increasing, of these nodes.
+    /// The layout of free dofs, `size * node + component` each and increasing, of these nodes, in length.
     pub fn of(size: usize, free: &[usize], nodes: &[[f64; 3]]) -> Self {
         let (mut place, mut coordinates) = (Vec::with_capacity(free.len()), Vec::new());
         let mut last = None;
@@ -33,6 +33,9 @@ impl Layout {
     }
 
     /// Calls `visit` for each place, with the number of its free dof or `None`.
+    ///
+    /// # Errors
+    /// The first of `visit`.
     pub fn each_place<E>(&self, mut visit: impl FnMut(usize, Option<usize>) -> Result<(), E>) -> Result<(), E> {
         let mut dof = 0;
         for place in 0..self.places() {

@@ -1,8 +1,8 @@
 //! The nodes of surfaces: their own alone among those of a mesh; and at corners, where facets turn away from each
 //! other, one for each side, with a normal and a row of its own.
 
-use super::facet::Facet;
-use super::{Found, SurfaceMesh};
+use super::data::Found;
+use super::facet::{Facet, SurfaceMesh};
 use crate::fem::element::FacetKind;
 
 /// A surface with nodes of its own.

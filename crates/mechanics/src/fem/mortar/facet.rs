@@ -3,13 +3,19 @@
 use crate::fem::element::{Cell, FacetKind, MAX_NODES, PerNode, ReferenceElement};
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
 
-use super::SurfaceMesh;
-
 /// Two facets face each other if the angle between one normal and the opposite of the other is below 60 degrees.
 const FACING: f64 = 0.5;
 
 /// A mid-side node farther from the middle of its edge than this share of the facet's size makes the facet curved.
 pub(super) const STRAIGHT: f64 = 1e-12;
+
+/// A surface of a body: its facets, and the nodes that these name.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurfaceMesh<'a> {
+    pub(super) nodes: &'a [[f64; 3]],
+    pub(super) kind: FacetKind,
+    pub(super) facets: &'a [usize],
+}
 
 /// A facet in place.
 #[derive(Clone, Debug)]

@@ -4,11 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::coverage::Covered;
+use super::data::{Mortar, MortarRow, Opposite};
 use super::face::Projected;
-use super::facet::{self, Facet, SharedPoint};
+use super::facet::{self, Facet, SharedPoint, SurfaceMesh};
+use super::line;
 use super::shared::{MOST, Shared};
 use super::smooth::Curve;
-use super::{Mortar, MortarRow, Opposite, SurfaceMesh, line};
 use crate::fem::element::{MAX_NODES, PerNode, positive_coefficient, positive_functions};
 use crate::fem::geometry::{dot, length, minus, unit};
 use crate::fem::surface::Tree;

@@ -7,8 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::SurfaceMesh;
-use super::facet::Facet;
+use super::facet::{Facet, SurfaceMesh};
 use crate::fem::element::PerNode;
 use crate::fem::geometry::{dot, key, minus};
 

@@ -24,23 +24,14 @@ mod tests;
 mod widths;
 
 pub(crate) use areas::areas_by_places;
+pub(crate) use rows::Pairing;
 pub(super) use slopes::Slopes;
 pub(crate) use widths::add_width;
 
 use crate::error::Error;
 use crate::fem::assembly::internal_work_by_places;
+use crate::scene::Scene;
 use crate::scene::input::schema::{SupportSpec, TieSpec};
-use crate::scene::{Answer, Scene};
-
-/// An answer with the solution of an adjoint problem.
-pub(crate) struct Pairing<'a> {
-    /// The answer: u and lambda.
-    pub answer: &'a Answer,
-    /// w, one entry per unknown of the problem.
-    pub adjoint: &'a [f64],
-    /// nu, one entry per contact row; zero where the result does not depend on the gap.
-    pub forces: &'a [f64],
-}
 
 /// The change of R with the place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), per length.
 ///

@@ -1,8 +1,18 @@
 //! The change of the terms of contact rows in R with the places of nodes.
 
-use super::Pairing;
 use super::slopes::Slopes;
+use crate::scene::Answer;
 use crate::scene::models::rows::ContactRow;
+
+/// An answer with the solution of an adjoint problem.
+pub(crate) struct Pairing<'a> {
+    /// The answer: u and lambda.
+    pub answer: &'a Answer,
+    /// w, one entry per unknown of the problem.
+    pub adjoint: &'a [f64],
+    /// nu, one entry per contact row; zero where the result does not depend on the gap.
+    pub forces: &'a [f64],
+}
 
 /// Adds the change of `lambda_i b_i . w + nu_i (b_i . u - g_i)` over all rows; `adjoint` is w at the nodes.
 ///

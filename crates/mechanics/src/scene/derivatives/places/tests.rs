@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::scene::Model;
 use crate::scene::derivatives::output::Output;
 use crate::scene::input::obstacle::{Obstacle, ObstacleRow};
+use crate::scene::{Answer, Model};
 use signorini_qp::{ContactSet, dot};
 
 /// Derivatives of outputs by places agree with differences to within this, relative to the largest entry: rounding over

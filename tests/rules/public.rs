@@ -1,14 +1,12 @@
 //! The public interface: types can be sent between threads and have a debug output, sets are collections, matrices are
-//! made from compressed columns, an error carries the best answer; and the interface stays small.
+//! made from compressed columns, an error carries the best answer.
 
 use signorini::{
     Certificate, ContactProblem, ContactSet, Error, Goal, Method, Model, Path, Penalty, Prepared, ProvenSet, Scene,
     Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, qp, solve,
 };
-use std::collections::BTreeSet;
 use std::fmt::Debug;
 
-use crate::imports::House;
 use signorini::fem::{ElasticBody, Mesh};
 use signorini::motion::{DynamicProblem, Integrator, Scheme, State};
 use signorini::scene::Dynamics;
@@ -180,34 +178,4 @@ fn an_error_returns_the_answer_that_it_carries() {
     let best = solve(&problem, &settings).unwrap_err().into_best().unwrap();
     assert!((best.displacement[0] - 1.25).abs() < 1e-15, "{:?}", best.displacement);
     assert!(qp::Error::Interrupted.into_best().is_none());
-}
-
-/// The names that a module offers to users: what it re-exports and what it defines itself.
-fn names(house: &House, module: &[String]) -> BTreeSet<String> {
-    let source = &house.files[module];
-    let defined = source.text.lines().filter_map(|line| {
-        let kinds = ["struct ", "enum ", "trait ", "fn ", "const ", "static ", "type "];
-        let item = line.strip_prefix("pub ")?;
-        let name = kinds.iter().find_map(|kind| item.strip_prefix(kind))?;
-        Some(name.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect())
-    });
-    source.exports.keys().cloned().chain(defined).collect()
-}
-
-/// A user reads every module and every name: the limit keeps the interface small enough to read. A name that another
-/// module already offers is not counted again.
-#[test]
-fn at_most_200_names_are_public_in_all_crates() {
-    let house = House::read();
-    let modules = house.public_modules();
-    assert!(modules.len() < 14, "{modules:?}");
-    let own = |module: &Vec<String>| {
-        let source = &house.files[module];
-        let origin =
-            |name: &String| source.exports.get(name).map_or_else(|| module.clone(), |path| house.file_of(path));
-        names(&house, module).into_iter().map(|name| (origin(&name), name)).collect::<BTreeSet<_>>()
-    };
-    let each: Vec<_> = modules.iter().map(|module| (module.join("::"), own(module).len())).collect();
-    let all: BTreeSet<_> = modules.iter().flat_map(own).collect();
-    assert!(all.len() > 150 && all.len() <= 200, "{} names: {each:?}", all.len());
 }

@@ -1,7 +1,6 @@
-//! The rules of the project: the floors of its modules, its one error type, its examples, its documents.
+//! The rules of the project: the order of its modules, its one error type, its examples, its documents.
 
 mod architecture;
-mod circles;
 mod commands;
 mod dependencies;
 mod documentation;
@@ -10,7 +9,6 @@ mod effort;
 mod errors;
 mod examples;
 mod figures;
-mod imports;
-mod kinds;
 mod public;
 mod readme;
+mod sources;

@@ -16,6 +16,9 @@ use signorini::scene::Answer;
 use signorini::study::Sweep;
 use support::oracles::Dense;
 
+use crate::documents::read;
+use crate::sources::root;
+
 /// A spring of this stiffness under a load of 2, with walls at these distances in the directions of `rows`.
 fn spring(stiffness: f64, rows: &[f64], gap: &[f64]) -> Result<ContactProblem, qp::Error> {
     let rows: Vec<&[f64]> = rows.iter().map(std::slice::from_ref).collect();
@@ -36,7 +39,7 @@ fn settings(change: impl Fn(&mut Settings)) -> Settings {
 }
 
 fn scene(change: (&str, &str)) -> Result<Scene, Error> {
-    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/plane.json")).unwrap();
+    let text = read("tests/faults/plane.json");
     assert!(text.contains(change.0));
     Scene::from_json(&text.replacen(change.0, change.1, 1), "plane.json")
 }
@@ -117,16 +120,15 @@ fn empty_surface() -> Error {
 
 /// The error of a mesh file without the requested group.
 fn gmsh_of_another_body() -> Error {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/square4.msh");
-    GmshFile::read(&file).and_then(|file| file.mesh(&["another"], 1.0)).map(drop).unwrap_err()
+    GmshFile::read(root().join("tests/faults/square4.msh"))
+        .and_then(|file| file.mesh(&["another"], 1.0))
+        .map(drop)
+        .unwrap_err()
 }
 
 /// The variants with their codes, as the table of `Error::code` lists them.
 fn variants() -> BTreeMap<String, String> {
-    let text = ["qp", "mechanics"].map(|name| {
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("crates/{name}/src/error.rs"))).unwrap()
-    });
-    let text = text.concat();
+    let text = ["qp", "mechanics"].map(|name| read(&format!("crates/{name}/src/error.rs"))).concat();
     let arms = text.lines().filter(|line| line.trim().starts_with("Error::"));
     let arms = arms.filter_map(|line| {
         let (patterns, class) = line.trim().split_once(" => ")?;
@@ -169,7 +171,7 @@ fn every_error_of_a_complementarity_problem_has_its_code_and_one_sentence() {
     // Met by z = (1, 1), which has z'w > 0; no pivot may lead there.
     let open = [(0, 0, -1.0), (0, 1, 2.0), (1, 0, 2.0), (1, 1, -1.0)];
     let thirds = [(0, 0, 3.0), (0, 1, 0.1), (1, 0, 0.7), (1, 1, 0.3)];
-    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/lcp/src/error.rs")).unwrap();
+    let text = read("crates/lcp/src/error.rs");
     for (variant, code, error) in [
         ("Qp", "length", problem(&[], &[]).and_then(|empty| empty.certify(&[0.0])).unwrap_err()),
         ("Bounds", "bounds", {

@@ -3,24 +3,21 @@
 use signorini::Scene;
 use signorini::fem::ElementKind;
 
+use crate::sources::files_below;
+
 fn scene(name: &str) -> Scene {
     Scene::read(format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
 #[test]
 fn every_example_builds_without_a_warning() {
-    let folder = std::fs::read_dir(format!("{}/examples", env!("CARGO_MANIFEST_DIR"))).unwrap();
-    let mut count = 0;
-    for entry in folder {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "json") {
-            let model = Scene::read(&path).unwrap().build().unwrap_or_else(|error| panic!("{path:?}: {error}"));
-            assert_eq!(model.warnings(), [], "{path:?}");
-            assert!(!model.title().is_empty() && !model.rows().is_empty(), "{path:?}");
-            count += 1;
-        }
+    let examples = files_below("examples", ".json");
+    for path in examples.iter().filter(|path| path.parent().unwrap().ends_with("examples")) {
+        let model = Scene::read(path).unwrap().build().unwrap_or_else(|error| panic!("{path:?}: {error}"));
+        assert_eq!(model.warnings(), [], "{path:?}");
+        assert!(!model.title().is_empty() && !model.rows().is_empty(), "{path:?}");
     }
-    assert!(count >= 7);
+    assert!(examples.len() >= 7);
 }
 
 #[test]

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::process::Command;
 
-use crate::documents::{documents, read, root};
+use crate::documents::{documents, read};
+use crate::sources::root;
 
 /// Words in the head of a table of figures: units of time and memory, and what was measured.
 const HEADS: [&str; 11] =
@@ -36,8 +37,13 @@ fn tables(text: &str) -> Vec<Table<'_>> {
     let lines: Vec<&str> = text.lines().collect();
     let is_rule = |line: &&&str| line.starts_with('|') && line.chars().all(|letter| "|-: ".contains(letter));
     let starts = lines.iter().enumerate().filter(|(_, line)| is_rule(line)).map(|(at, _)| at - 1);
+    // A bar inside code must be escaped.
+    let bars = |row: &str| row.replace("\\|", "").matches('|').count();
     let table = |start: usize| {
-        let rows = lines[start..].iter().take_while(|line| line.starts_with('|')).map(|row| cells(row));
+        let rows = lines[start..].iter().take_while(|line| line.starts_with('|')).map(|row| {
+            assert_eq!(bars(row), bars(lines[start]), "{row} has another number of cells than its head");
+            cells(row)
+        });
         let above = lines[..start].iter().rev().find(|line| !line.is_empty()).copied().unwrap_or_default();
         Table { line: start + 1, above, rows: rows.collect() }
     };
@@ -81,14 +87,11 @@ fn runs(line: &str) -> Option<Vec<(String, String)>> {
     };
     let (text, command) = text.split_once(" by `").map_or((text, None), |(text, command)| (text, Some(command)));
     let command = command.map(|command| command.strip_suffix('`'));
-    let is_date = |date: &str| {
-        date.len() == 10
-            && date.char_indices().all(|(at, c)| if at == 4 || at == 7 { c == '-' } else { c.is_ascii_digit() })
-    };
     let run = |text: &str| {
         let (date, commit) = text.split_once(between)?;
+        let is_date = date.split('-').map(str::len).eq([4, 2, 2]) && date.replace('-', "").parse::<u32>().is_ok();
         let is_commit = commit.len() >= 7 && commit.chars().all(|digit| digit.is_ascii_hexdigit());
-        (is_date(date) && is_commit).then(|| (date.to_string(), commit.to_string()))
+        (is_date && is_commit).then(|| (date.to_string(), commit.to_string()))
     };
     let runs: Option<Vec<_>> = text.split(" to ").map(run).collect();
     runs.filter(|_| if has_command { matches!(command, Some(Some(_))) } else { command.is_none() })
