@@ -290,7 +290,8 @@ impl ContactProblem {
             };
             let mut motions = vec![0; parts.count()];
             for mode in self.near_null().map_or(&[][..], |modes| modes.vectors()) {
-                let (forces, terms) = (largest(&self.stiffness.mul(mode)), largest(&self.stiffness.mul_abs(mode)));
+                let own: Vec<f64> = self.diagonal().values.iter().zip(mode).map(|(own, at)| own * at).collect();
+                let (forces, terms) = (largest(&self.stiffness.mul(mode)), largest(&own));
                 let is_free = |body: &usize| terms[*body] > 0.0 && forces[*body] <= FREE * terms[*body];
                 (0..part_of_body.len()).filter(is_free).for_each(|body| motions[part_of_body[body]] += 1);
             }

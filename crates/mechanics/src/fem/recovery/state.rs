@@ -39,7 +39,8 @@ pub(crate) struct Deformation {
     pub strain: (f64, usize),
     /// The largest rotation, in radians if it is small, and its element.
     pub rotation: (f64, usize),
-    /// The strain or rotation beyond which no body has more than [`SINGULAR`] of its volume, or of its energy.
+    /// The strain or rotation beyond which no body has more than [`SINGULAR`] of its volume, or of its energy; zero if
+    /// it is below [`SMALL`].
     pub widespread: f64,
 }
 
@@ -64,23 +65,27 @@ impl Deformation {
             parts.fold((0.0, 0), |largest, (index, value)| if value > largest.0 { (value, index) } else { largest })
         };
         let (strain, rotation) = (largest(|centre| centre.strain), largest(|centre| centre.rotation));
-        let of_regions = body.regions().iter().map(|region| widespread(centres[region.elements()].to_vec()));
+        let of_regions = body.regions().iter().map(|region| widespread(&centres[region.elements()]));
         let widespread = of_regions.fold(0.0, f64::max);
         (!centres.is_empty()).then_some(Deformation { strain, rotation, widespread })
     }
 }
 
+/// No limit judges a strain or rotation below this: such elements are not told apart.
+const SMALL: f64 = 0.05;
+
 /// The strain or rotation that a body, given by its elements, exceeds on no more than [`SINGULAR`] of it.
-fn widespread(mut centres: Vec<AtCentre>) -> f64 {
+fn widespread(centres: &[AtCentre]) -> f64 {
     let shares = |centre: &AtCentre| [centre.volume, centre.energy];
     let size = |centre: &AtCentre| centre.strain.max(centre.rotation);
-    centres.sort_unstable_by(|one, other| size(other).total_cmp(&size(one)));
+    let mut large: Vec<&AtCentre> = centres.iter().filter(|centre| size(centre) > SMALL).collect();
+    large.sort_unstable_by(|one, other| size(other).total_cmp(&size(one)));
     let mut left = [0, 1].map(|which| SINGULAR * centres.iter().map(|centre| shares(centre)[which]).sum::<f64>());
-    let is_beyond = |centre: &&AtCentre| {
+    let is_beyond = |centre: &&&AtCentre| {
         left.iter_mut().zip(shares(centre)).for_each(|(left, share)| *left -= share);
         left.iter().any(|&left| left < 0.0 || left.is_nan())
     };
-    centres.iter().find(is_beyond).map_or(0.0, size)
+    large.iter().find(is_beyond).map_or(0.0, |centre| size(centre))
 }
 
 impl std::fmt::Display for Deformation {
@@ -185,7 +190,7 @@ mod tests {
     fn what_a_thousandth_of_a_body_exceeds_is_not_widespread() {
         let found = |volume: f64, energy: f64| {
             let small = AtCentre { strain: 0.1, rotation: 0.2, volume: 1.0 - volume, energy: 1.0 - energy };
-            widespread(vec![small, AtCentre { strain: 0.4, rotation: 0.9, volume, energy }])
+            widespread(&[small, AtCentre { strain: 0.4, rotation: 0.9, volume, energy }])
         };
         assert_eq!([found(0.9e-3, 0.9e-3), found(1.1e-3, 0.0), found(0.0, 1.1e-3)], [0.2, 0.9, 0.9]);
     }
