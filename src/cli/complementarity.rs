@@ -95,7 +95,7 @@ impl Case {
                 vec![
                     verdict,
                     format!(
-                        "residual z - mid(l, z - w, u)   {residual:.1e} of its terms, at unknown {unknown} (from 0)"
+                        "residual z - mid(l, z - w, u)   {residual:.1e} of its terms, at unknown {unknown}, counted from 0"
                     ),
                     format!("error |z - z*|   {}", Bound::of(&solution.error).in_words()),
                     format!("error |w - w*|   {}", Bound::of(&solution.image_error).in_words()),

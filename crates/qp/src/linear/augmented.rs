@@ -61,8 +61,11 @@ impl Squares {
             }
             Squares::Rows(by_row) => {
                 let mut row_values = vec![0.0; by_row.rows()];
-                for row in (0..by_row.columns()).filter(|&row| weight(row) != 0.0) {
+                for row in 0..by_row.columns() {
                     let factor = weight(row);
+                    if factor == 0.0 {
+                        continue;
+                    }
                     by_row.column(row).for_each(|(dof, b)| row_values[dof] = b);
                     for (dof, b) in by_row.column(row) {
                         let column = &mut values[starts[dof]..starts[dof + 1]];

@@ -242,9 +242,23 @@ impl ContactProblem {
         let mut gap = with_infinite(gap);
         let rounded = empty_rows::settle(&self.without_entries, &mut gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
-        let parts = if same_rows { self.parts.clone() } else { FoundOnce::default() };
+        let (parts, free_motions) = match same_rows {
+            true => (self.parts.clone(), self.free_motions.clone()),
+            false => (FoundOnce::default(), FoundOnce::default()),
+        };
         let equalities = if gap == self.gap { self.equalities.clone() } else { FoundOnce::default() };
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null, parts, equalities, rounded, ..self.clone() })
+        Ok(ContactProblem {
+            stiffness,
+            load,
+            contact,
+            gap,
+            near_null,
+            parts,
+            free_motions,
+            equalities,
+            rounded,
+            ..self.clone()
+        })
     }
 
     /// The diagonal of K, computed at its first use.
@@ -279,9 +293,10 @@ impl ContactProblem {
     pub(crate) fn free_motions(&self) -> usize {
         let count = || {
             let parts = self.parts();
-            let part_of_body = parts.of_bodies();
+            let mut part_of_body = vec![0; parts.bodies()];
+            (0..self.dofs()).for_each(|dof| part_of_body[parts.body_of_dof(dof)] = parts.of_dof(dof));
             let largest = |forces: &[f64]| {
-                let mut of_body = vec![0.0_f64; part_of_body.len()];
+                let mut of_body = vec![0.0_f64; parts.bodies()];
                 for (dof, force) in forces.iter().enumerate() {
                     let largest = &mut of_body[parts.body_of_dof(dof)];
                     *largest = largest.max(force.abs());
@@ -293,7 +308,7 @@ impl ContactProblem {
                 let own: Vec<f64> = self.diagonal().values.iter().zip(mode).map(|(own, at)| own * at).collect();
                 let (forces, terms) = (largest(&self.stiffness.mul(mode)), largest(&own));
                 let is_free = |body: &usize| terms[*body] > 0.0 && forces[*body] <= FREE * terms[*body];
-                (0..part_of_body.len()).filter(is_free).for_each(|body| motions[part_of_body[body]] += 1);
+                (0..parts.bodies()).filter(is_free).for_each(|body| motions[part_of_body[body]] += 1);
             }
             motions.into_iter().max().unwrap_or(0)
         };

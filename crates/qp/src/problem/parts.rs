@@ -17,8 +17,9 @@ pub(crate) struct Parts {
     /// The part of each row; 0 for a row without dofs.
     of_row: Vec<usize>,
     count: usize,
-    /// The body of each dof: the connected components of K alone, numbered in the same way; empty if there is but one.
-    body_of_dof: Vec<usize>,
+    /// The body of each dof, and the number of bodies: the connected components of K alone, numbered in the same way;
+    /// nothing and zero if there is but one.
+    bodies: (Vec<usize>, usize),
 }
 
 impl Parts {
@@ -37,7 +38,7 @@ impl Parts {
                 }
             }
         }
-        let body_of_dof = if forest.is_one_tree() { Vec::new() } else { forest.clone().into_trees().0 };
+        let bodies = if forest.is_one_tree() { Default::default() } else { forest.clone().into_trees() };
         let mut first: Vec<Option<usize>> = vec![None; contact.rows()];
         let dofs = if forest.is_one_tree() { 0 } else { roots.len() };
         for dof in 0..dofs {
@@ -51,7 +52,7 @@ impl Parts {
         if count > 1 {
             contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, dof, _)| of_row[row] = of_dof[dof]);
         }
-        Parts { of_dof, of_row, count, body_of_dof }
+        Parts { of_dof, of_row, count, bodies }
     }
 
     /// Number of parts, at least one: a problem without dofs has an empty one.
@@ -79,21 +80,19 @@ impl Parts {
         stiffness.lower().triplets().all(|(row, column, value)| value == 0.0 || self.of_dof[row] == self.of_dof[column])
     }
 
-    /// The body of a dof: K alone joins its dofs.
-    pub fn body_of_dof(&self, dof: usize) -> usize {
-        self.body_of_dof.get(dof).copied().unwrap_or(0)
+    /// Number of bodies, at least one.
+    pub fn bodies(&self) -> usize {
+        self.bodies.1.max(1)
     }
 
-    /// The part of each body.
-    pub fn of_bodies(&self) -> Vec<usize> {
-        let mut parts = vec![0; self.body_of_dof.iter().max().map_or(1, |last| last + 1)];
-        self.body_of_dof.iter().zip(&self.of_dof).for_each(|(&body, &part)| parts[body] = part);
-        parts
+    /// The body of a dof: K alone joins its dofs.
+    pub fn body_of_dof(&self, dof: usize) -> usize {
+        self.bodies.0.get(dof).copied().unwrap_or(0)
     }
 
     /// Number of dofs of each body.
     pub fn dofs_of_bodies(&self) -> Vec<usize> {
-        let mut dofs = vec![0; self.of_bodies().len()];
+        let mut dofs = vec![0; self.bodies()];
         (0..self.of_dof.len()).for_each(|dof| dofs[self.body_of_dof(dof)] += 1);
         dofs
     }

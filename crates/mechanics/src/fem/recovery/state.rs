@@ -48,6 +48,9 @@ pub(crate) struct Deformation {
 /// on no more than this share of the volume and of the energy, the answer hardly depends on it.
 const SINGULAR: f64 = 1e-3;
 
+/// No limit judges a strain or rotation below this: such elements are not told apart.
+const SMALL: f64 = 0.05;
+
 /// What the centre of an element tells.
 #[derive(Clone, Copy)]
 struct AtCentre {
@@ -70,9 +73,6 @@ impl Deformation {
         (!centres.is_empty()).then_some(Deformation { strain, rotation, widespread })
     }
 }
-
-/// No limit judges a strain or rotation below this: such elements are not told apart.
-const SMALL: f64 = 0.05;
 
 /// The strain or rotation that a body, given by its elements, exceeds on no more than [`SINGULAR`] of it.
 fn widespread(centres: &[AtCentre]) -> f64 {
