@@ -31,6 +31,12 @@ impl ScaledStep<'_> {
     pub fn outcome(self, step: Step) -> Result<Option<Outcome>, Error> {
         match step {
             Step::Method => self.by_method().map(Some),
+            Step::InteriorPoint => {
+                let method = ByFactor::Qp(InteriorPoint::DEFAULT);
+                let found = ScaledStep { start: None, method, ..self }.by_method()?;
+                let variant = if found.is_settled() { "-interior-point" } else { found.variant };
+                Ok(Some(Outcome { variant, ..found }))
+            }
             Step::Continuation => self.continued().map(Some),
             Step::Dual => DualActiveSet::of(self.scaled)?.map(|method| method.solve(Start::default())).transpose(),
             _ => Ok(None),

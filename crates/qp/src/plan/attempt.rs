@@ -65,6 +65,8 @@ pub(crate) enum Step {
     Elimination,
     /// The method of the attempt.
     Method,
+    /// The active set, from the set that the interior point reaches.
+    InteriorPoint,
     /// The active set, from the set that a penalty ladder reaches.
     Continuation,
     /// The dual active-set method.
@@ -91,6 +93,8 @@ pub(crate) enum When {
     Unheld,
     /// The last method did not settle.
     Unsettled,
+    /// The same, and the program chose the method for a stiffness with all entries.
+    UnsettledOnDense,
     /// The last step gave the best answer, and more may be gained.
     Improvable,
     /// No answer meets the goal.
@@ -136,6 +140,11 @@ const FREE_MOTION: Rung = rung(
 pub(super) const WITH_FACTOR: &[Rung] = &[
     rung(Step::Method, When::Always, ""),
     FREE_MOTION,
+    rung(
+        Step::InteriorPoint,
+        When::UnsettledOnDense,
+        "sets of a nearly singular K wander, and a step costs little more",
+    ),
     rung(Step::Continuation, When::Unsettled, "the start was poor, if a few iterations do not settle"),
     rung(Step::Dual, When::Unsettled, "it is slow, and ends for equal, dependent and nearly parallel rows too"),
     rung(Step::Refinement, When::Improvable, "the answer for its residual has the digits that the factor has left"),

@@ -12,6 +12,7 @@ use super::nearly_linear;
 use super::pieces::pieces_of;
 use crate::cost::{Estimate, starts_near};
 use crate::error::Error;
+use crate::linear::Analysis;
 use crate::method::interior_point::InteriorPoint;
 use crate::problem::ContactProblem;
 use crate::settings::{ByFactor, Condense, Method, Settings};
@@ -41,6 +42,8 @@ pub(crate) struct Ladder {
     pub(super) settings: Settings,
     /// The comparison of factor and multigrid, if the program chooses.
     pub(super) choice: Option<(Estimate, Choice)>,
+    /// `true` if the program chooses the method, and the stiffness has all entries.
+    pub(super) is_dense: bool,
     /// The reason for multigrid if a factor was refused before.
     pub(super) refusal: Option<String>,
 }
@@ -56,6 +59,7 @@ impl Ladder {
             pieces: None,
             settings: settings.clone(),
             choice: None,
+            is_dense: settings.method == Method::Auto && Analysis::is_dense_for(problem.stiffness()),
             refusal: None,
         };
         nearly_linear::check(problem)?;

@@ -169,6 +169,10 @@ impl Ladder {
         match (when, step) {
             (When::Always, _) => true,
             (When::Unheld, _) => !certified && is_unheld && !history.was_in_doubt(),
+            (When::UnsettledOnDense, _) => {
+                let wanders = answer.is_some_and(|answer| !answer.is_settled && !answer.is_unheld);
+                !certified && wanders && self.is_dense && method == Method::ActiveSet
+            }
             (When::Unsettled, Step::Continuation) => {
                 let is_by_sets =
                     matches!(method, Method::Auto | Method::ActiveSet | Method::Qp(InteriorPoint { polish: true, .. }));
