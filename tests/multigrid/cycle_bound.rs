@@ -222,24 +222,48 @@ fn a_requested_accuracy_ends_the_cycles_early() {
     assert!(cycles.windows(2).all(|pair| pair[1] <= pair[0]) && 3 * cycles[3] <= 2 * cycles[0], "{cycles:?}");
 }
 
+/// Blocks that stand on a soft one, which alone is held upwards, and are pressed down: only their rows hold them.
+fn blocks_on_a_soft_one(young: f64) -> Value {
+    let rectangle = |x: [f64; 2], y: [f64; 2], [columns, rows]: [usize; 2]| {
+        json!({"rectangle": {"element": "q4", "x": {"points": x, "divisions": [columns]},
+            "y": {"points": y, "divisions": [rows]}}})
+    };
+    let material = |young: f64| json!({"young": young, "poisson": 0.3});
+    let names: Vec<String> = (0..6).map(|index| format!("block{index}")).collect();
+    let block = |(index, name): (usize, &String)| {
+        let left = 0.3 + 1.4 * index as f64;
+        let body = rectangle([left, left + 1.0], [3.0, 3.5], [3 + index % 4, 3]);
+        json!({"name": name, "body": body, "material": material(young)})
+    };
+    let side = |name: &String| json!({"on": {"boundary": format!("{name}.left")}, "x": 0});
+    let pressed = |(index, name): (usize, &String)| json!({"pressure": {"boundary": format!("{name}.top"), "value": 0.5 + 0.2 * (index % 5) as f64}});
+    let supports: Vec<Value> =
+        [json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0})].into_iter().chain(names.iter().map(side)).collect();
+    json!({
+        "body": rectangle([0.0, 9.0], [0.0, 3.0], [54, 18]), "material": material(100.0), "contact": "auto",
+        "further-bodies": names.iter().enumerate().map(block).collect::<Vec<_>>(), "supports": supports,
+        "loads": names.iter().enumerate().map(pressed).collect::<Vec<_>>(),
+    })
+}
+
 #[test]
-fn a_body_held_by_contact_alone_has_a_bound_with_springs_on_its_rows() {
-    let mut scene = clamped_block(6, 0.0);
-    scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "front"}, "y": 0}]);
-    scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 0, 1e5]}}]);
-    let model = built(&scene);
-    let exact = solve(model.problem(), &Settings::with_method(Method::ActiveSet)).unwrap();
-    for tolerance in [1e-4, 1e-6, 1e-9] {
-        let mut settings = mprgp();
-        settings.tolerance = Some(tolerance);
-        let found = solve(model.problem(), &settings).unwrap();
-        let away: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
-        let energy =
-            |u: &[f64]| u.iter().zip(model.problem().stiffness().mul(u)).map(|(u, k)| u * k).sum::<f64>().sqrt();
-        let (error, bound) = (energy(&away) / energy(&found.displacement), found.certificate.energy_error_bound);
-        // The reference is exact to twelve digits; half the smallest Ritz value and the few cycles cost less than a
-        // factor of 100.
-        assert!(error <= bound + 1e-12 && bound <= tolerance && bound <= 100.0 * error + 1e-12, "{error:e} {bound:e}");
+fn bodies_held_by_contact_alone_have_a_bound_with_springs_on_their_rows() {
+    let mut lifted = clamped_block(6, 0.0);
+    lifted["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "front"}, "y": 0}]);
+    lifted["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 0, 1e5]}}]);
+    for scene in [lifted, blocks_on_a_soft_one(1e3), blocks_on_a_soft_one(1e5)] {
+        let model = built(&scene);
+        let exact = solve(model.problem(), &Settings::with_method(Method::ActiveSet)).unwrap();
+        for tolerance in [1e-4, 1e-6, 1e-9] {
+            let mut settings = mprgp();
+            settings.tolerance = Some(tolerance);
+            let found = solve(model.problem(), &settings).unwrap();
+            let of_reference = exact.certificate.energy_error_bound;
+            let times = overestimate(model.problem(), &found, (&exact.displacement, of_reference), "springs");
+            let bound = found.certificate.energy_error_bound;
+            // Measured: 1.16. Half the smallest Ritz value and the few cycles cost less than a factor of 3.
+            assert!(bound <= tolerance && times.is_none_or(|times| times <= 3.0), "{bound:e} {times:?}");
+        }
     }
 }
 

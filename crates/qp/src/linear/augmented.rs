@@ -21,7 +21,7 @@ pub struct AugmentedMatrix {
 enum Squares {
     /// Row i of B adds `products[k].1 * w_i` to entry `products[k].0`, for k in `row_starts[i]..row_starts[i + 1]`.
     Products { row_starts: Vec<usize>, products: Vec<(usize, f64)> },
-    /// B', for a K with all entries whose rows would have more products than K has entries.
+    /// B', if the rows would have more products than the matrix has entries.
     Rows(SparseMatrix),
 }
 
@@ -29,9 +29,7 @@ impl Squares {
     /// The squares of the columns of `by_row`, in a matrix that has a place for each of their products.
     fn of(by_row: SparseMatrix, matrix: &SparseMatrix) -> Self {
         let of_row = |row: usize| triangle(by_row.column(row).count());
-        if matrix.entries() == triangle(matrix.columns())
-            && (0..by_row.columns()).map(of_row).sum::<usize>() > matrix.entries()
-        {
+        if (0..by_row.columns()).map(of_row).sum::<usize>() > matrix.entries() {
             return Squares::Rows(by_row);
         }
         let mut search = Search::of(matrix);
@@ -46,8 +44,8 @@ impl Squares {
         Squares::Products { row_starts, products }
     }
 
-    /// Adds B' diag(weight(i)) B to the entries of the matrix, whose columns begin at `starts`.
-    fn add_to(&self, values: &mut [f64], starts: &[usize], weight: impl Fn(usize) -> f64) {
+    /// Adds B' diag(weight(i)) B to the `values` of the entries of `matrix`.
+    fn add_to(&self, values: &mut [f64], matrix: &SparseMatrix, weight: impl Fn(usize) -> f64) {
         match self {
             Squares::Products { row_starts, products } => {
                 for (row, places) in row_starts.windows(2).enumerate() {
@@ -68,8 +66,12 @@ impl Squares {
                     }
                     by_row.column(row).for_each(|(dof, b)| row_values[dof] = b);
                     for (dof, b) in by_row.column(row) {
-                        let column = &mut values[starts[dof]..starts[dof + 1]];
-                        column.iter_mut().zip(&row_values[dof..]).for_each(|(value, c)| *value += factor * b * c);
+                        let below = matrix.column_rows(dof);
+                        let column = &mut values[matrix.column_starts()[dof]..][..below.len()];
+                        column
+                            .iter_mut()
+                            .zip(below)
+                            .for_each(|(value, &i)| *value += factor * b * row_values[i as usize]);
                     }
                     by_row.column(row).for_each(|(dof, _)| row_values[dof] = 0.0);
                 }
@@ -122,8 +124,7 @@ impl AugmentedMatrix {
         analyse: impl FnOnce(&SymmetricMatrix) -> Result<Analysis, FactorError>,
     ) -> Result<Self, FactorError> {
         let by_row = rows.transposed();
-        let squares = (0..by_row.columns()).flat_map(|row| by_row.square(row));
-        let stiffness = with_places(stiffness.lower(), squares.map(|(second, first, _)| (first, second)));
+        let stiffness = with_places(stiffness.lower(), rows, &by_row);
         let squares = Squares::of(by_row, &stiffness);
         let analysis = analyse(&SymmetricMatrix::from_sorted_lower(stiffness.clone()))?;
         Ok(Self { stiffness, squares, analysis })
@@ -142,7 +143,7 @@ impl AugmentedMatrix {
     /// The matrix K + shift I + B' diag(weight(i)) B.
     pub fn matrix(&self, weight: impl Fn(usize) -> f64, shift: f64) -> SymmetricMatrix {
         let mut values = self.stiffness.values().to_vec();
-        self.squares.add_to(&mut values, self.stiffness.column_starts(), weight);
+        self.squares.add_to(&mut values, &self.stiffness, weight);
         if shift != 0.0 {
             for &start in &self.stiffness.column_starts()[..self.stiffness.columns()] {
                 values[start] += shift;
@@ -200,38 +201,61 @@ impl Augmented {
     }
 }
 
-/// A lower triangle with a place, zero if it had none, for every `(column, row)` of `added` and of the diagonal; the
-/// same memory if nothing was missing.
-fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>) -> SparseMatrix {
-    if lower.entries() == triangle(lower.columns()) {
-        return lower.clone();
-    }
-    let mut search = Search::of(lower);
-    let diagonal = (0..lower.columns()).map(|column| (column, column));
-    let is_missing = |&(column, row): &(usize, usize)| search.place(column, row).is_err();
-    let mut missing: Vec<(usize, usize)> = added.chain(diagonal).filter(is_missing).collect();
+/// A lower triangle with a place, zero if it had none, for every entry of B'B and of the diagonal; the same memory if
+/// nothing was missing. B is given by columns and by rows.
+fn with_places(lower: &SparseMatrix, rows: &SparseMatrix, by_row: &SparseMatrix) -> SparseMatrix {
+    let missing = missing_places(lower, rows, by_row);
     if missing.is_empty() {
         return lower.clone();
     }
-    missing.sort_unstable();
-    missing.dedup();
     let entries = lower.entries() + missing.len();
-    let (mut starts, mut rows, mut values) =
-        (Vec::with_capacity(lower.columns() + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));
-    starts.push(0);
+    let (mut starts, mut indices, mut values) = (vec![0], Vec::with_capacity(entries), Vec::with_capacity(entries));
     let mut missing = missing.into_iter().peekable();
     for column in 0..lower.columns() {
-        let first = rows.len();
-        rows.extend_from_slice(lower.column_rows(column));
-        values.extend(lower.column(column).map(|entry| entry.1));
-        while let Some((_, row)) = missing.next_if(|place| place.0 == column) {
-            let place = first + rows[first..].partition_point(|&known| (known as usize) < row);
-            rows.insert(place, row as u32);
-            values.insert(place, 0.0);
+        // The last turn takes the places after the last entry.
+        for entry in lower.column(column).map(Some).chain([None]) {
+            let before = entry.map_or(usize::MAX, |entry| entry.0);
+            while let Some((_, row)) = missing.next_if(|place| place.0 == column && place.1 < before) {
+                indices.push(row as u32);
+                values.push(0.0);
+            }
+            indices.extend(entry.map(|entry| entry.0 as u32));
+            values.extend(entry.map(|entry| entry.1));
         }
-        starts.push(rows.len());
+        starts.push(indices.len());
     }
-    SparseMatrix::from_parts(lower.rows(), starts, rows, values)
+    SparseMatrix::from_parts(lower.rows(), starts, indices, values)
+}
+
+/// The places `(column, row)` of B'B and of the diagonal that a lower triangle lacks, in their order. Rows that share
+/// many dofs are not searched again once a column is full.
+fn missing_places(lower: &SparseMatrix, rows: &SparseMatrix, by_row: &SparseMatrix) -> Vec<(usize, usize)> {
+    let mut missing = Vec::new();
+    // The last column in which each row was met.
+    let mut met = vec![usize::MAX; lower.columns()];
+    for column in 0..lower.columns() {
+        let (first, known) = (missing.len(), lower.column_rows(column));
+        let acting = rows.column_rows(column);
+        if !acting.is_empty() {
+            known.iter().for_each(|&row| met[row as usize] = column);
+        }
+        if known.first() != Some(&(column as u32)) {
+            met[column] = column;
+            missing.push((column, column));
+        }
+        for &row in acting {
+            if known.len() + missing.len() - first == lower.columns() - column {
+                break;
+            }
+            for &dof in by_row.column_rows(row as usize).iter().filter(|&&dof| dof as usize > column) {
+                if std::mem::replace(&mut met[dof as usize], column) != column {
+                    missing.push((column, dof as usize));
+                }
+            }
+        }
+        missing[first..].sort_unstable();
+    }
+    missing
 }
 
 /// A search for entries of a matrix, which are mostly asked for in their order: down a column, one after the other.

@@ -12,7 +12,7 @@ use crate::existence::Existence;
 use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Means, Next, Record, Step, Tried};
 use crate::problem::ContactProblem;
-use crate::settings::Settings;
+use crate::settings::{Method, Settings};
 use crate::solution::{Certificate, Seconds, Solution, Why};
 
 /// The answer of `problem` from a start, by the ladder of `settings`.
@@ -143,7 +143,12 @@ impl<'a> Run<'a> {
         let (method, settings) = (attempt.means.method(), self.settings);
         let tried = engine.tried(method);
         record.tried = Some(tried);
-        let start = self.start_from(next.start, record.step);
+        // The interior point has no use for a set.
+        let from = match (next.start, tried.method) {
+            (From::Cycles, Method::Qp(_)) => From::Given,
+            (from, _) => from,
+        };
+        let start = self.start_from(from, record.step);
         let best = self.history.best.as_ref().map(|best| &best.solution);
         let (problem, step, limits) = (self.problem, record.step, next.limits);
         let task = Task { step, problem, load: &load, start: &start, limits, method, settings, best };

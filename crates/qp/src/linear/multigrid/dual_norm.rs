@@ -29,6 +29,10 @@ const REST_SHARE: f64 = 0.1;
 /// The Ritz value has settled if one more step reduces it by no more than this share.
 const SETTLED_RITZ: f64 = 0.15;
 
+/// The eigenvalues of M A of a hierarchy of A are at most one. Springs that no level knows leave most of them there, so
+/// that a larger Ritz value has not found the least eigenvalue yet: it has met the springs only.
+const MOST_RITZ: f64 = 1.0;
+
 /// A hierarchy that needs more cycles than this gives no bound.
 const MOST_CYCLES: usize = 60;
 
@@ -132,7 +136,7 @@ impl Lanczos {
         if self.lengths.is_empty() {
             return;
         }
-        let ritz = least_eigenvalue(&self.lengths, &self.shares);
+        let ritz = least_eigenvalue(&self.lengths, &self.shares).min(MOST_RITZ);
         let earlier = self.ritz.replace(ritz).unwrap_or(f64::INFINITY);
         let unknown = in_cycle / (SAFETY * ritz);
         if unknown <= REST_SHARE * known && ritz >= (1.0 - SETTLED_RITZ) * earlier {

@@ -81,6 +81,10 @@ pub enum Width {
     Single,
 }
 
+/// A factor of the coarsest level takes as many cycles, if it has as many unknowns as the finest. Measured: 11.5 cycles
+/// at half as many, none at a fiftieth.
+const COARSEST_FACTOR: f64 = 20.0;
+
 impl Multigrid {
     /// Builds the hierarchy of `matrix` (n x n) in single precision, or in double if rounding to single makes the
     /// matrix indefinite.
@@ -170,6 +174,13 @@ impl Multigrid {
     /// Number of unknowns of each level of the hierarchy, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
         by_precision!(self.levels, hierarchy => hierarchy.unknowns())
+    }
+
+    /// Cycles that take about the seconds of the coarsest factor of a face: many if the finest level is hardly larger.
+    pub fn cycles_of_face(&self) -> usize {
+        let unknowns = self.unknowns();
+        let share = unknowns[unknowns.len() - 1] as f64 / unknowns[0] as f64;
+        (COARSEST_FACTOR * share) as usize
     }
 
     /// Bytes of memory that the hierarchy holds, without the matrix.

@@ -7,7 +7,8 @@ use crate::error::Error;
 use crate::linear::multigrid::{Direction, Units};
 use crate::linear::{SparseMatrix, ldexp};
 
-/// Entries of a unit vector below this are rounding of the reflections.
+/// Entries of a unit vector below this are rounding of the reflections. So is a share along one of them: in a chain of
+/// rows it would wander on to the end.
 const TURNING_ROUNDING: f64 = 1e-12;
 
 /// A row is left out if less than this share of its length is beyond the span of other rows: 3 degrees. The pivot of a
@@ -271,6 +272,9 @@ impl Bounds {
             let follows = |other: &usize| (*other > next) == (order == Order::Forward) && *other != next;
             let reflection = &self.reflections[next];
             let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
+            if along.abs() <= TURNING_ROUNDING {
+                continue;
+            }
             for &(place, w) in reflection {
                 *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
                 waiting.extend(of_place(&place).filter(follows));

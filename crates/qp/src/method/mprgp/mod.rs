@@ -139,8 +139,8 @@ impl Mprgp<'_> {
         let Mprgp { problem, multigrid, limits, watch } = *self;
         let mut iterate = started(self, bounds, start);
         let mut history = vec![iterate.step()];
-        let mut steps =
-            Steps { multigrid, watch, face: None, travels: Travels::default(), is_old: false, last: None, cycles: 0 };
+        let (travels, of_faces) = (Travels::default(), 0);
+        let mut steps = Steps { multigrid, watch, face: None, travels, is_old: false, last: None, cycles: 0, of_faces };
         let mut progress = Progress::default();
         let mut ending = Ending::Unsettled;
         while steps.cycles < limits.most_cycles
@@ -157,7 +157,7 @@ impl Mprgp<'_> {
                 continue;
             }
             progress.note(residual);
-            if progress.is_hopeless(steps.cycles, limits) {
+            if progress.is_hopeless(&steps, limits) {
                 break;
             }
             let before = iterate.at.clone();
@@ -177,10 +177,7 @@ impl Mprgp<'_> {
         bounds.turn_back(&mut displacement);
         let variant = match ending {
             Ending::Settled => "",
-            _ if steps.cycles >= limits.most_cycles
-                || watch.is_over()
-                || progress.is_hopeless(steps.cycles, limits) =>
-            {
+            _ if steps.cycles >= limits.most_cycles || watch.is_over() || progress.is_hopeless(&steps, limits) => {
                 "-unsettled"
             }
             _ => STAGNATED,
@@ -250,16 +247,16 @@ impl Progress {
     }
 
     /// Returns `true` if the other way, which is worth `limits.worth` cycles, is the shorter one from here.
-    fn is_hopeless(&self, cycles: usize, limits: Limits) -> bool {
+    fn is_hopeless(&self, steps: &Steps, limits: Limits) -> bool {
         let ((least, unsure), (before, first)) = (TRIAL, self.on_face);
         let gained = (first / self.best).ln();
         let needed = (self.best / limits.tolerance).ln();
-        let taken = cycles - before;
+        let taken = steps.cycles - before;
         let left = taken as f64 * needed / gained.max(0.0);
         let worth = limits.worth as f64;
         let is_told = taken >= least.max(limits.worth / SHARE);
         let is_near = left <= worth / SHARE as f64;
-        (is_told && left > unsure * worth) || (cycles >= limits.worth && !is_near)
+        (is_told && left > unsure * worth) || (steps.cycles + steps.of_faces >= limits.worth && !is_near)
     }
 
     /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement
@@ -285,6 +282,8 @@ struct Steps<'a> {
     is_old: bool,
     last: Option<Conjugate>,
     cycles: usize,
+    /// Cycles that take about the seconds of the coarsest factors of all faces.
+    of_faces: usize,
 }
 
 impl Steps<'_> {
@@ -301,6 +300,7 @@ impl Steps<'_> {
                 let face = self.multigrid.face(&iterate.held(), old.as_ref())?;
                 self.travels = std::mem::take(&mut self.travels).in_face(iterate, &face);
                 self.cycles += iterate.bounds.travels.len();
+                self.of_faces += self.multigrid.cycles_of_face();
                 face
             }
         };
