@@ -80,7 +80,7 @@ impl Case {
         let seconds = format!("read {:.3}, solve {:.3}", self.read_seconds, solution.seconds);
         let lines = [
             ("model", vec![format!("n = {unknowns}, {entries} entries of M")]),
-            ("class", vec![class_in_words(solution.class).into()]),
+            ("class", vec![class_in_words(solution).into()]),
             ("method", vec![format!("{}, iterations: {}", solution.method, solution.iterations)]),
             (
                 "solution",
@@ -196,12 +196,18 @@ impl<'a> Bound<'a> {
     }
 }
 
-fn class_in_words(class: &str) -> &'static str {
-    match class {
-        "symmetric" => "M is symmetric and positive semidefinite",
-        "h-matrix" => "M is an H-matrix with positive diagonal",
-        "monotone" => "M is monotone: M + M' is positive semidefinite",
-        "p-matrix" => "M is a P-matrix: all principal minors are positive",
+fn class_in_words(solution: &LcpSolution) -> &'static str {
+    match (solution.class, solution.is_unique) {
+        ("symmetric", Some(_)) => "M is symmetric and positive semidefinite",
+        ("symmetric", None) => "M is symmetric and, as far as rounding tells, positive semidefinite",
+        ("symmetrizable", Some(_)) => "M with its rows in other units is symmetric to rounding, and semidefinite",
+        ("symmetrizable", None) => "M with its rows in other units is symmetric and semidefinite, to rounding",
+        ("h-matrix", _) => "M is an H-matrix with positive diagonal",
+        ("monotone", Some(_)) => {
+            "M is monotone: M + M' is positive definite, perhaps with the rows of M in other units"
+        }
+        ("monotone", None) => "M is monotone as far as rounding tells: M + M' is positive semidefinite",
+        ("p-matrix", _) => "M is a P-matrix: all principal minors are positive",
         _ => "M belongs to no class for which a solution is sure to be found",
     }
 }
@@ -209,7 +215,7 @@ fn class_in_words(class: &str) -> &'static str {
 fn unique(solution: &LcpSolution) -> &'static str {
     match solution.is_unique {
         Some(true) => "one",
-        Some(false) => "several",
+        Some(false) => "same-w",
         None => "unknown",
     }
 }
@@ -217,7 +223,7 @@ fn unique(solution: &LcpSolution) -> &'static str {
 fn uniqueness_in_words(solution: &LcpSolution) -> &'static str {
     match solution.is_unique {
         Some(true) => "there is no other solution",
-        Some(false) => "there may be several solutions z, all with the same w",
+        Some(false) => "all solutions have the same w; whether there are other z is open",
         None => "nothing is proven about other solutions",
     }
 }

@@ -18,7 +18,7 @@
 
 use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::held;
-use crate::class::{Known, comparison_solution};
+use crate::class::Known;
 use crate::problem::Lcp;
 use crate::scaled::diagonal;
 
@@ -105,7 +105,7 @@ pub fn examined(lcp: &Lcp, known: &Known, point: Placed) -> LcpSolution {
     if let Some(least) = known.least {
         error = vec![length / least * OUTWARD; n];
         energy = length / least.sqrt() * OUTWARD;
-    } else if known.class == Class::Symmetric && scaled.is_symmetric {
+    } else if known.is_unique.is_some() && scaled.is_symmetric {
         (energy, beside) = energy_of_gap(lcp, known, x.clone(), &defect);
     }
     if let Some(by_rows) = by_comparison(known, &defect) {
@@ -159,9 +159,10 @@ fn by_comparison(known: &Known, defect: &[f64]) -> Option<Vec<f64>> {
     }
     // Small defects are raised a little, so that every row has a positive right side.
     let right: Vec<f64> = defect.iter().map(|d| d.max(1e-3 * largest)).collect();
-    let [d, bounds] = comparison_solution(&known.scaled, &right)?;
-    let factor = defect.iter().zip(&bounds).map(|(defect, bound)| defect / bound).fold(0.0, f64::max);
-    Some(d.iter().map(|d| d * factor * OUTWARD).collect())
+    let ([d, bounds], units) = known.comparison(&right)?;
+    let own = |i: usize, defect: f64| defect * (units.row[i] / known.scaled.row[i]) * OUTWARD;
+    let factor = (0..d.len()).map(|i| own(i, defect[i]) / bounds[i]).fold(0.0, f64::max);
+    Some((0..d.len()).map(|i| d[i] * (units.column[i] / known.scaled.column[i]) * factor * OUTWARD).collect())
 }
 
 /// An upper bound on sqrt(e'A e) of a symmetric semidefinite A, and the point to which it belongs: near x, it meets the

@@ -1,10 +1,13 @@
 //! The class of M, and what its claims rest on. Every decision about a method follows from it.
 
+use std::collections::HashMap;
+
 use signorini_qp::{Cholesky, Error as QpError, SparseMatrix, SymmetricMatrix, dot};
 
 use crate::answer::Class;
 use crate::dense::Lu;
 use crate::error::Error;
+use crate::exact::is_definite;
 use crate::problem::Lcp;
 use crate::scaled::{Scaled, diagonal, shares};
 
@@ -16,6 +19,9 @@ const MINORS: usize = 16;
 
 /// What the terms of `<A> d` leave, at least, as a share of them.
 const MARGIN: f64 = 1e-9;
+
+/// Largest matrix that is tried in integers.
+pub const SMALL: usize = 64;
 
 /// Largest comparison matrix that is not symmetric.
 const DENSE: usize = 1000;
@@ -31,6 +37,8 @@ pub struct Known {
     pub least: Option<f64>,
     /// The factor of (A + A') / 2 with a little more on its diagonal, if that is semidefinite.
     pub factor: Option<Cholesky>,
+    /// Where the comparison matrix of A is taken, if in other units.
+    compared: Option<Scaled>,
 }
 
 impl Known {
@@ -47,16 +55,19 @@ impl Known {
             if (scaled.is_alike || monotone.is_none())
                 && let Some((factor, least)) = semidefinite(&scaled)?
             {
+                let is_unique = if least.is_some() { Some(true) } else { proven(&scaled) };
                 if scaled.is_alike {
-                    let is_unique = if least.is_some() { Some(true) } else { scaled.is_symmetric.then_some(false) };
-                    let (class, factor) = (Class::Symmetric, Some(factor));
-                    return Ok(Known { scaled, class, is_unique, least, factor });
+                    let compared = (!scaled.is_symmetric).then(|| Scaled::by_entries(lcp));
+                    let is_unique = is_unique.filter(|&one| one || scaled.is_symmetric);
+                    let is_given = scaled.is_symmetric && !is_shared;
+                    let class = if is_given { Class::Symmetric } else { Class::Symmetrizable };
+                    return Ok(Known { scaled, class, is_unique, least, factor: Some(factor), compared });
                 }
-                monotone = Some((scaled, Some(factor), least));
+                monotone = Some((scaled, is_unique, Some(factor), least));
             }
         }
         let by_entries = Scaled::by_entries(lcp);
-        let class = if comparison_solution(&by_entries, &vec![1.0; n]).is_some() {
+        let class = if comparison_solution(&by_entries.matrix, by_entries.is_alike, &vec![1.0; n]).is_some() {
             Class::H
         } else if monotone.is_some() {
             Class::Monotone
@@ -65,10 +76,51 @@ impl Known {
         } else {
             Class::General
         };
-        let (scaled, factor, least) = monotone.unwrap_or((by_entries, None, None));
-        let is_unique = (least.is_some() || [Class::H, Class::P].contains(&class)).then_some(true);
-        Ok(Known { scaled, class, is_unique, least, factor })
+        let is_p = [Class::H, Class::P].contains(&class) || monotone.as_ref().is_some_and(|one| one.1 == Some(true));
+        let (is_unique, compared) = (is_p.then_some(true), monotone.is_some().then(|| by_entries.clone()));
+        let (scaled, _, factor, least) = monotone.unwrap_or((by_entries, None, None, None));
+        Ok(Known { scaled, class, is_unique, least, factor, compared })
     }
+
+    /// Vectors d and `<A> d` of positive entries, rounding taken off, and the units in which they are: those of `right`
+    /// if the second is about as large, else others.
+    pub fn comparison(&self, right: &[f64]) -> Option<([Vec<f64>; 2], &Scaled)> {
+        let scaled = self.compared.as_ref().unwrap_or(&self.scaled);
+        let change = (0..right.len()).map(|i| right[i] * (scaled.row[i] / self.scaled.row[i]));
+        let solution = |right: &[f64]| comparison_solution(&scaled.matrix, scaled.is_alike, right);
+        let solution = solution(&change.collect::<Vec<_>>()).or_else(|| solution(&vec![1.0; right.len()]))?;
+        Some((solution, scaled))
+    }
+}
+
+/// `Some(true)` if A + A' is shown to be definite, `Some(false)` if semidefinite, without any rounding: in integers, or
+/// by the comparison matrix of what is left of a symmetric A without the copies of its columns.
+fn proven(scaled: &Scaled) -> Option<bool> {
+    let (n, matrix) = (scaled.offset.len(), &scaled.matrix);
+    if !scaled.is_exact {
+        return None;
+    }
+    let in_integers = if n <= SMALL { is_definite(&dense(matrix)) } else { None };
+    if in_integers.is_some() || !scaled.is_symmetric {
+        return in_integers;
+    }
+    let mut first = HashMap::new();
+    let mut place = vec![None; n];
+    for (j, place) in place.iter_mut().enumerate() {
+        let column: Vec<(usize, u64)> = matrix.column(j).map(|(i, value)| (i, value.to_bits())).collect();
+        let next = first.len();
+        *place = (*first.entry(column).or_insert(next) == next).then_some(next);
+    }
+    let left = matrix.triplets().filter_map(|(i, j, value)| Some((place[i]?, place[j]?, value)));
+    let left = SparseMatrix::from_triplets(first.len(), first.len(), &left.collect::<Vec<_>>()).ok()?;
+    comparison_solution(&left, true, &vec![1.0; first.len()]).map(|_| first.len() == n)
+}
+
+/// The rows of a small matrix.
+pub fn dense(matrix: &SparseMatrix) -> Vec<Vec<f64>> {
+    let mut rows = vec![vec![0.0; matrix.columns()]; matrix.rows()];
+    matrix.triplets().for_each(|(i, j, value)| rows[i][j] = value);
+    rows
 }
 
 /// `None` if (A + A') / 2 is not positive semidefinite to rounding.
@@ -121,16 +173,16 @@ pub fn if_definite(matrix: &SymmetricMatrix) -> Result<Option<Cholesky>, Error> 
 /// A vector d of positive entries with `<A> d` of about `right`, and positive lower bounds on `<A> d`, rounding taken
 /// off: they show that A is an H-matrix with positive diagonal. `None` if none was found. The diagonal is lowered a
 /// little, so that `<A> d` stays above the rounding of its terms.
-pub fn comparison_solution(scaled: &Scaled, right: &[f64]) -> Option<[Vec<f64>; 2]> {
-    let (n, matrix) = (right.len(), &scaled.matrix);
+fn comparison_solution(matrix: &SparseMatrix, is_alike: bool, right: &[f64]) -> Option<[Vec<f64>; 2]> {
+    let n = right.len();
     let entry = |i: usize, j: usize, value: f64| if i == j { (1.0 - MARGIN) * value } else { -value.abs() };
-    let d = if scaled.is_alike {
+    let d = if is_alike {
         let below = matrix.triplets().filter(|&(i, j, _)| i >= j).map(|(i, j, value)| (i, j, entry(i, j, value)));
         let below = SparseMatrix::from_triplets(n, n, &below.collect::<Vec<_>>()).ok()?;
         Cholesky::of(&SymmetricMatrix::from_lower(below).ok()?).ok()?.solve(right)
     } else if n <= DENSE {
-        let mut rows = vec![vec![0.0; n]; n];
-        matrix.triplets().for_each(|(i, j, value)| rows[i][j] = entry(i, j, value));
+        let mut rows = dense(matrix);
+        rows.iter_mut().enumerate().for_each(|(i, row)| (0..n).for_each(|j| row[j] = entry(i, j, row[j])));
         Lu::of(rows)?.solve(right)
     } else {
         return None;

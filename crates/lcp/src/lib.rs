@@ -38,6 +38,7 @@ mod certificate;
 mod class;
 mod dense;
 mod error;
+mod exact;
 mod files;
 mod lemke;
 mod pivoting;

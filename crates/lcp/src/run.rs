@@ -32,14 +32,11 @@ impl Way {
         let (is_singular, is_program) = (known.least.is_none(), known.scaled.multipliers.is_some());
         let (by_program, by_pivoting) = match method {
             Method::Qp(_) | Method::Penalty(_) => (true, false),
-            Method::ActiveSet => (known.class == Class::Symmetric, true),
+            Method::ActiveSet => (known.class.is_alike(), true),
             _ => (true, true),
         };
         // A stack with more contacts than it needs: if all close, one factor is enough.
-        let is_principal = match known.class {
-            Class::Symmetric => is_singular,
-            class => class == Class::H || class == Class::P,
-        };
+        let is_principal = if known.class.is_alike() { is_singular } else { known.is_unique == Some(true) };
         let ways = [
             (PrincipalPivoting, by_pivoting && is_principal),
             (QuadraticProgram, by_program && known.factor.is_some() && is_program),
@@ -77,7 +74,7 @@ impl Way {
 
 fn first_places(lcp: &Lcp, known: &Known) -> Vec<Place> {
     let place = |i: usize| match (lcp.lower()[i].is_finite(), lcp.upper()[i].is_finite()) {
-        _ if known.class == Class::Symmetric => Place::Between,
+        _ if known.class.is_alike() => Place::Between,
         (true, _) => Place::Lower,
         (false, true) => Place::Upper,
         (false, false) => Place::Between,
