@@ -151,18 +151,22 @@ const NO_IMAGE_ERROR: &str =
 
 /// Bounds on `|e|` by the comparison matrix, entry by entry.
 fn by_comparison(known: &Known, defect: &[f64]) -> Option<Vec<f64>> {
+    if known.is_unique != Some(true) || known.class == Class::P {
+        return None;
+    }
+    let (n, scaled, units) = (defect.len(), &known.scaled, known.units());
+    let defect: Vec<f64> = (0..n).map(|i| defect[i] * (units.row[i] / scaled.row[i]) * OUTWARD).collect();
     let largest = defect.iter().copied().fold(0.0, f64::max);
-    if known.is_unique != Some(true) || known.class == Class::P || defect.iter().any(|d| !d.is_finite()) {
+    if defect.iter().any(|d| !d.is_finite()) {
         return None;
     } else if largest == 0.0 {
-        return Some(vec![0.0; defect.len()]);
+        return Some(defect);
     }
     // Small defects are raised a little, so that every row has a positive right side.
     let right: Vec<f64> = defect.iter().map(|d| d.max(1e-3 * largest)).collect();
-    let ([d, bounds], units) = known.comparison(&right)?;
-    let own = |i: usize, defect: f64| defect * (units.row[i] / known.scaled.row[i]) * OUTWARD;
-    let factor = (0..d.len()).map(|i| own(i, defect[i]) / bounds[i]).fold(0.0, f64::max);
-    Some((0..d.len()).map(|i| d[i] * (units.column[i] / known.scaled.column[i]) * factor * OUTWARD).collect())
+    let [d, bounds] = known.comparison(&right)?;
+    let factor = defect.iter().zip(&bounds).map(|(defect, bound)| defect / bound).fold(0.0, f64::max);
+    Some((0..n).map(|i| d[i] * (units.column[i] / scaled.column[i]) * factor * OUTWARD).collect())
 }
 
 /// An upper bound on sqrt(e'A e) of a symmetric semidefinite A, and the point to which it belongs: near x, it meets the

@@ -82,14 +82,16 @@ impl Known {
         Ok(Known { scaled, class, is_unique, least, factor, compared })
     }
 
-    /// Vectors d and `<A> d` of positive entries, rounding taken off, and the units in which they are: those of `right`
-    /// if the second is about as large, else others.
-    pub fn comparison(&self, right: &[f64]) -> Option<([Vec<f64>; 2], &Scaled)> {
-        let scaled = self.compared.as_ref().unwrap_or(&self.scaled);
-        let change = (0..right.len()).map(|i| right[i] * (scaled.row[i] / self.scaled.row[i]));
-        let solution = |right: &[f64]| comparison_solution(&scaled.matrix, scaled.is_alike, right);
-        let solution = solution(&change.collect::<Vec<_>>()).or_else(|| solution(&vec![1.0; right.len()]))?;
-        Some((solution, scaled))
+    /// Where bounds by the comparison matrix are computed.
+    pub fn units(&self) -> &Scaled {
+        self.compared.as_ref().unwrap_or(&self.scaled)
+    }
+
+    /// Vectors d and `<A> d` of positive entries, rounding taken off, the second about as large as `right` if possible;
+    /// both in these units.
+    pub fn comparison(&self, right: &[f64]) -> Option<[Vec<f64>; 2]> {
+        let solution = |right: &[f64]| comparison_solution(&self.units().matrix, self.units().is_alike, right);
+        solution(right).or_else(|| solution(&vec![1.0; right.len()]))
     }
 }
 

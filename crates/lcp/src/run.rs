@@ -24,6 +24,9 @@ enum Way {
     Lemke(usize),
 }
 
+const EFFORT: usize = 10_000_000;
+const ATTEMPTS: usize = 64;
+
 impl Way {
     /// The methods of a class, in order: the only place that decides them. A method of the settings leaves programs
     /// alone or pivoting alone, of which the active set on a quadratic program is one.
@@ -41,11 +44,11 @@ impl Way {
             (PrincipalPivoting, by_pivoting && is_principal),
             (QuadraticProgram, by_program && known.factor.is_some() && is_program),
             (GapProgram, by_program && known.factor.is_some() && !is_program),
-            (Lemke(0), by_pivoting),
-            (Lemke(1), by_pivoting),
-            (Lemke(2), by_pivoting),
         ];
-        ways.into_iter().filter_map(|(way, is_tried)| is_tried.then_some(way)).collect()
+        let n = known.scaled.offset.len();
+        let attempts = if by_pivoting { (EFFORT / (n * n * n).max(1)).clamp(3, ATTEMPTS) } else { 0 };
+        let ways = ways.into_iter().filter_map(|(way, is_tried)| is_tried.then_some(way));
+        ways.chain((0..attempts).map(Lemke)).collect()
     }
 
     fn name(self) -> &'static str {
