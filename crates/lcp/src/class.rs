@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use signorini_qp::{Cholesky, Error as QpError, SparseMatrix, SymmetricMatrix, dot};
 
 use crate::answer::Class;
-use crate::dense::Lu;
 use crate::error::Error;
 use crate::exact::is_definite;
+use crate::lu::Lu;
 use crate::problem::Lcp;
 use crate::scaled::{Scaled, diagonal, shares};
 
@@ -23,8 +23,8 @@ const MARGIN: f64 = 1e-9;
 /// Largest matrix that is tried in integers.
 pub const SMALL: usize = 64;
 
-/// Largest comparison matrix that is not symmetric.
-const DENSE: usize = 1000;
+/// Most entries of the factors of a comparison matrix that is not symmetric.
+const ENTRIES: f64 = 4e6;
 
 /// What is known of a matrix.
 #[derive(Clone, Debug)]
@@ -182,12 +182,9 @@ fn comparison_solution(matrix: &SparseMatrix, is_alike: bool, right: &[f64]) -> 
         let below = matrix.triplets().filter(|&(i, j, _)| i >= j).map(|(i, j, value)| (i, j, entry(i, j, value)));
         let below = SparseMatrix::from_triplets(n, n, &below.collect::<Vec<_>>()).ok()?;
         Cholesky::of(&SymmetricMatrix::from_lower(below).ok()?).ok()?.solve(right)
-    } else if n <= DENSE {
-        let mut rows = dense(matrix);
-        rows.iter_mut().enumerate().for_each(|(i, row)| (0..n).for_each(|j| row[j] = entry(i, j, row[j])));
-        Lu::of(rows)?.solve(right)
     } else {
-        return None;
+        let entries: Vec<_> = matrix.triplets().map(|(i, j, value)| (j, i, entry(i, j, value))).collect();
+        Lu::of_transposed(&SparseMatrix::from_triplets(n, n, &entries).ok()?, ENTRIES)?.solve(right)
     };
     let (mut own, mut others) = (vec![0.0; n], vec![0.0; n]);
     for (i, j, value) in matrix.triplets() {

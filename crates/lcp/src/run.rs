@@ -88,9 +88,20 @@ fn first_places(lcp: &Lcp, known: &Known) -> Vec<Place> {
 /// Residuals below this are rounding: no factorisation would improve the point.
 const ROUNDING: f64 = 1e-15;
 
-/// A point with a larger residual, even if it meets the tolerance, waits for the other methods and for a ray: far away
-/// along a ray, where terms are large, all conditions hold relative to them.
+/// A point with a larger residual, even if it meets the tolerance, waits for the other methods and for a ray; so does one
+/// that is as much larger than q and the bounds, in scaled units, as `FAR`: far away along a ray, where terms are large,
+/// all conditions hold relative to them.
 const SHARP: f64 = 1e-13;
+const FAR: f64 = 1e12;
+
+/// The residual of a point, which is not sharp if the point is far away.
+fn rank(known: &Known, point: &Placed) -> f64 {
+    let Known { scaled, .. } = known;
+    let bounds = scaled.lower.iter().chain(&scaled.upper).filter(|bound| bound.is_finite());
+    let size = bounds.chain(&scaled.offset).fold(0.0, |size: f64, value| size.max(value.abs()));
+    let is_far = point.z.iter().zip(&scaled.column).any(|(z, unit)| (z / unit).abs() > FAR * size);
+    worst(&point.residual).1.max(if is_far { 2.0 * SHARP } else { 0.0 })
+}
 
 /// Most unknowns for a dense tableau where it is not the only method, and for the search for a ray.
 const DENSE: usize = 1000;
@@ -156,11 +167,11 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             }
         };
         for point in near(lcp, &known, z, allowed, settings)? {
-            let residual = worst(&point.residual).1;
-            if best.as_ref().is_none_or(|best| residual < best.0) {
-                best = Some((residual, point, way.name(), iterations));
+            let rank = rank(&known, &point);
+            if best.as_ref().is_none_or(|best| rank < best.0) {
+                best = Some((rank, point, way.name(), iterations));
             }
-            if residual <= tolerance.min(SHARP) {
+            if rank <= tolerance.min(SHARP) {
                 break;
             }
         }
@@ -176,7 +187,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     }
     // Attempts of one method end alike.
     reasons.dedup();
-    let Some((residual, point, method, iterations)) = best else {
+    let Some((_, point, method, iterations)) = best else {
         return Err(match settings.watch.acknowledge() {
             true => QpError::Interrupted.into(),
             false if settings.watch.is_over() => {
@@ -188,7 +199,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             false => Error::NotFound { reason: reasons.join("; ") },
         });
     };
-    let (index, solution) = (worst(&point.residual).0, examined(lcp, &known, point));
+    let ((index, residual), solution) = (worst(&point.residual), examined(lcp, &known, point));
     let solution = LcpSolution { method, iterations, seconds: start.elapsed().as_secs_f64(), ..solution };
     match residual <= tolerance {
         true => Ok(solution),
