@@ -155,7 +155,8 @@ impl Case {
                 "all certified answers solve the problem; they need not be the same".to_string()
             }
             (Status::Certified, of) => format!("the certified answers agree in {of}"),
-            _ => "no certified answer, or certified answers that differ".to_string(),
+            (_, "neither") => "no method has a certified answer".to_string(),
+            (_, of) => format!("the certified answers differ in {of}"),
         };
         format!("{}\n{head}{}{}", printable(&self.title), lines.collect::<String>(), listed("agreement", vec![verdict]))
     }
@@ -190,7 +191,7 @@ impl<'a> Bound<'a> {
 
     fn in_words(&self) -> String {
         match self.0 {
-            Ok((at, error)) => format!("at most {error:.1e}, absolute, at unknown {at}"),
+            Ok((at, error)) => format!("at most {error:.1e} in each entry, absolute, this much at unknown {at}"),
             Err(reason) => format!("no bound: {reason}"),
         }
     }

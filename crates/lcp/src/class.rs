@@ -1,7 +1,5 @@
 //! The class of M, and what its claims rest on. Every decision about a method follows from it.
 
-use std::collections::HashMap;
-
 use signorini_qp::{Cholesky, Error as QpError, SparseMatrix, SymmetricMatrix, dot};
 
 use crate::answer::Class;
@@ -55,7 +53,7 @@ impl Known {
             if (scaled.is_alike || monotone.is_none())
                 && let Some((factor, least)) = semidefinite(&scaled)?
             {
-                let is_unique = if least.is_some() { Some(true) } else { proven(&scaled) };
+                let is_unique = if least.is_some() { Some(true) } else { proven(&scaled, &factor) };
                 if scaled.is_alike {
                     let compared = (!scaled.is_symmetric).then(|| Scaled::by_entries(lcp));
                     let is_unique = is_unique.filter(|&one| one || scaled.is_symmetric);
@@ -97,7 +95,7 @@ impl Known {
 
 /// `Some(true)` if A + A' is shown to be definite, `Some(false)` if semidefinite, without any rounding: in integers, or
 /// by the comparison matrix of what is left of a symmetric A without the copies of its columns.
-fn proven(scaled: &Scaled) -> Option<bool> {
+fn proven(scaled: &Scaled, factor: &Cholesky) -> Option<bool> {
     let (n, matrix) = (scaled.offset.len(), &scaled.matrix);
     if !scaled.is_exact {
         return None;
@@ -106,16 +104,14 @@ fn proven(scaled: &Scaled) -> Option<bool> {
     if in_integers.is_some() || !scaled.is_symmetric {
         return in_integers;
     }
-    let mut first = HashMap::new();
-    let mut place = vec![None; n];
-    for (j, place) in place.iter_mut().enumerate() {
-        let column: Vec<(usize, u64)> = matrix.column(j).map(|(i, value)| (i, value.to_bits())).collect();
-        let next = first.len();
-        *place = (*first.entry(column).or_insert(next) == next).then_some(next);
-    }
-    let left = matrix.triplets().filter_map(|(i, j, value)| Some((place[i]?, place[j]?, value)));
-    let left = SparseMatrix::from_triplets(first.len(), first.len(), &left.collect::<Vec<_>>()).ok()?;
-    comparison_solution(&left, true, &vec![1.0; first.len()]).map(|_| first.len() == n)
+    let own = diagonal(matrix);
+    let is_like = |i: usize, j: usize| own[i] == own[j] && matrix.column(i).eq(matrix.column(j));
+    let first = |j: usize| matrix.column(j).find(|&(i, value)| i >= j || (value == own[j] && is_like(i, j)));
+    let first: Vec<usize> = (0..n).map(|j| first(j).map_or(j, |entry| entry.0.min(j))).collect();
+    let mut d: Vec<f64> = first.iter().enumerate().map(|(j, &first)| if first == j { 0.0 } else { 1.0 }).collect();
+    first.iter().zip(factor.solve(&vec![1.0; n])).for_each(|(&first, x)| d[first] += x);
+    let left = matrix.triplets().filter(|&(i, j, _)| i == j || (first[i] == i && first[j] == j));
+    comparison_bounds(left, &d).map(|_| first.into_iter().eq(0..n))
 }
 
 /// The rows of a small matrix.
@@ -142,7 +138,7 @@ fn semidefinite(scaled: &Scaled) -> Result<Option<(Cholesky, Option<f64>)>, Erro
     {
         return Ok(None);
     }
-    let shift = LEAST_NEGATIVE.max(8.0 * f64::EPSILON * n);
+    let shift = LEAST_NEGATIVE.max(2.0 * f64::EPSILON * n);
     let Some(factor) = if_definite(&scaled.symmetric_part(shift)?)? else { return Ok(None) };
     // Rounding of the factorisation, and of the scaled entries and their means.
     let largest = |sums: Vec<f64>| sums.into_iter().fold(0.0, f64::max);
@@ -186,16 +182,18 @@ fn comparison_solution(matrix: &SparseMatrix, is_alike: bool, right: &[f64]) -> 
         let entries: Vec<_> = matrix.triplets().map(|(i, j, value)| (j, i, entry(i, j, value))).collect();
         Lu::of_transposed(&SparseMatrix::from_triplets(n, n, &entries).ok()?, ENTRIES)?.solve(right)
     };
-    let (mut own, mut others) = (vec![0.0; n], vec![0.0; n]);
-    for (i, j, value) in matrix.triplets() {
-        let sums = if i == j { &mut own } else { &mut others };
-        sums[i] += if i == j { value * d[j] } else { value.abs() * d[j] };
-    }
-    let rounding = (n + 8) as f64 * f64::EPSILON;
-    let bound = |(own, others): (&f64, &f64)| own - others - rounding * (own + others) - f64::MIN_POSITIVE;
-    let bounds: Vec<f64> = own.iter().zip(&others).map(bound).collect();
+    comparison_bounds(matrix.triplets(), &d).map(|bounds| [d, bounds])
+}
+
+/// Positive lower bounds on `<A> d`, rounding taken off, if d is positive and there are such.
+fn comparison_bounds(entries: impl Iterator<Item = (usize, usize, f64)>, d: &[f64]) -> Option<Vec<f64>> {
+    let mut sums = vec![[0.0; 2]; d.len()];
+    entries.for_each(|(i, j, value)| sums[i][usize::from(i != j)] += if i == j { value } else { value.abs() } * d[j]);
+    let rounding = (d.len() + 8) as f64 * f64::EPSILON;
+    let bound = |[own, others]: [f64; 2]| own - others - rounding * (own + others) - f64::MIN_POSITIVE;
+    let bounds: Vec<f64> = sums.into_iter().map(bound).collect();
     let is_positive = |value: &f64| *value > 0.0 && value.is_finite();
-    (d.iter().all(is_positive) && bounds.iter().all(is_positive)).then_some([d, bounds])
+    (d.iter().all(is_positive) && bounds.iter().all(is_positive)).then_some(bounds)
 }
 
 /// Returns `true` if all principal minors are positive, with bounds on all rounding.

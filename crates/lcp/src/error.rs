@@ -28,8 +28,8 @@ pub enum Error {
     },
     /// Inequalities that no point meets, so that there is no solution.
     #[error(
-        "infeasible: no z between its bounds has w = M z + q of the required signs: the rows, weighted with the ray y, demand {needed:.3e} \
-         of a sum that is at most zero"
+        "infeasible: no z between its bounds has w = M z + q of the required signs: the rows, weighted with the ray y (y.mtx in the folder of \
+         an output), demand {needed:.3e} of a sum that is at most zero"
     )]
     Infeasible {
         /// The ray y, one entry per row, in units of z, largest entry from 1 to 2: `y_i >= 0` if only the lower bound is

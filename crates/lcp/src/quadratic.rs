@@ -14,6 +14,9 @@ use crate::scaled::Scaled;
 /// Sums below this share of their terms are taken for zero, and made so.
 const ROUNDING: f64 = 1e-12;
 
+/// What is added to the diagonal of a program that has many points.
+const SHIFT: f64 = 1e-11;
+
 /// Entries of a ray below this share of the largest are rounding, in scaled units.
 const DUST: f64 = 1e-14;
 
@@ -124,14 +127,23 @@ impl<'a> Program<'a> {
 ///
 /// # Errors
 /// Those of the QP that are not about this problem.
-pub fn quadratic_program(scaled: &Scaled, is_multiplier: &[bool], settings: &Settings) -> Result<Found, Error> {
+pub fn quadratic_program(
+    scaled: &Scaled,
+    is_multiplier: &[bool],
+    shift: f64,
+    settings: &Settings,
+) -> Result<Found, Error> {
     let mut program = Program::of(scaled, |i| is_multiplier[i]);
     program.push_signs(|i| is_multiplier[i]);
     let lower = scaled.matrix.triplets().filter(|entry| entry.0 >= entry.1);
     let lower = lower.filter_map(|(i, j, value)| Some((program.columns[i]?, program.columns[j]?, value)));
     let n = program.load.len();
-    let lower: Vec<_> = lower.collect();
-    program.solved(SparseMatrix::from_triplets(n, n, &lower).and_then(SymmetricMatrix::from_lower), settings)
+    let lower: Vec<_> = lower.chain((0..n).map(|k| (k, k, shift))).collect();
+    match program.solved(SparseMatrix::from_triplets(n, n, &lower).and_then(SymmetricMatrix::from_lower), settings)? {
+        // One of many points.
+        Found::Nothing(_) if shift == 0.0 => quadratic_program(scaled, is_multiplier, SHIFT, settings),
+        found => Ok(found),
+    }
 }
 
 /// Minimises the gap `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+` of a monotone A over the points that meet the

@@ -24,8 +24,9 @@ enum Way {
     Lemke(usize),
 }
 
-const EFFORT: usize = 10_000_000;
+/// Most attempts of Lemke's method, and most of their unknowns to the third power; but three of any.
 const ATTEMPTS: usize = 64;
+const EFFORT: usize = 10_000_000;
 
 impl Way {
     /// The methods of a class, in order: the only place that decides them. A method of the settings leaves programs
@@ -38,17 +39,19 @@ impl Way {
             Method::ActiveSet => (known.class.is_alike(), true),
             _ => (true, true),
         };
-        // A stack with more contacts than it needs: if all close, one factor is enough.
-        let is_principal = if known.class.is_alike() { is_singular } else { known.is_unique == Some(true) };
+        // A stack with more contacts than it needs: if all close, one factor is enough. With many solutions the QP wanders.
+        let is_alike = known.class.is_alike();
+        let is_principal = if is_alike { is_singular } else { known.is_unique == Some(true) };
         let ways = [
             (PrincipalPivoting, by_pivoting && is_principal),
+            (Lemke(0), by_pivoting && is_alike && is_singular),
             (QuadraticProgram, by_program && known.factor.is_some() && is_program),
             (GapProgram, by_program && known.factor.is_some() && !is_program),
         ];
         let n = known.scaled.offset.len();
         let attempts = if by_pivoting { (EFFORT / (n * n * n).max(1)).clamp(3, ATTEMPTS) } else { 0 };
         let ways = ways.into_iter().filter_map(|(way, is_tried)| is_tried.then_some(way));
-        ways.chain((0..attempts).map(Lemke)).collect()
+        ways.chain((usize::from(is_alike && is_singular)..attempts).map(Lemke)).collect()
     }
 
     fn name(self) -> &'static str {
@@ -63,12 +66,12 @@ impl Way {
     fn found(self, lcp: &Lcp, known: &Known, allowed: f64, settings: &Settings) -> Result<Found, Error> {
         let scaled = &known.scaled;
         match (self, &scaled.multipliers) {
-            (Way::QuadraticProgram, Some(multipliers)) => quadratic_program(scaled, multipliers, settings),
+            (Way::QuadraticProgram, Some(multipliers)) => quadratic_program(scaled, multipliers, 0.0, settings),
             (Way::QuadraticProgram, None) => Ok(Found::Nothing("the problem has no quadratic program".into())),
             (Way::GapProgram, _) => gap_program(scaled, settings),
             (Way::PrincipalPivoting, _) => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
-            (Way::Lemke(_), _) if known.class != Class::General && lcp.unknowns() > DENSE => {
-                Ok(Found::Nothing(format!("Lemke's method is not tried on more than {DENSE} unknowns of this class")))
+            (Way::Lemke(_), _) if known.class != Class::General && lcp.unknowns() > TABLEAU => {
+                Ok(Found::Nothing(format!("Lemke's method is not tried on more than {TABLEAU} unknowns of this class")))
             }
             (Way::Lemke(attempt), _) => lemke(scaled, attempt, allowed, settings),
         }
@@ -104,6 +107,7 @@ fn rank(known: &Known, point: &Placed) -> f64 {
 }
 
 /// Most unknowns for a dense tableau where it is not the only method, and for the search for a ray.
+const TABLEAU: usize = 2000;
 const DENSE: usize = 1000;
 
 /// Unknowns below this share of the largest, in scaled units, may be zero.
@@ -157,7 +161,9 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
                 Some(error) => return Err(error),
                 None => {
-                    reasons.push(format!("{} ended in a ray that shows nothing", way.name()));
+                    let reason = "a ray that proves nothing, at least not without rounding; it always ends in a point if all \
+                                  unknowns have two finite bounds";
+                    reasons.push(format!("{} ended in {reason}", way.name()));
                     continue;
                 }
             },
