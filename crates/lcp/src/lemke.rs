@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-11;
 const ZERO: f64 = 1e-13;
 
 /// A pivot of the start below this is zero, in scaled units.
-const SINGULAR: f64 = 1e-10;
+const SINGULAR: f64 = 1e-6;
 
 /// Attempts from the bounds, each with an artificial column of its own.
 const COVERS: usize = 3;
@@ -74,31 +74,24 @@ impl Tableau {
         self.free.get(self.basic[place]) == Some(&true)
     }
 
-    /// Exchanges these variables x for their complements; `None` if their block is singular.
-    fn exchange(&mut self, chosen: &[usize]) -> Option<()> {
-        let mut left = chosen.to_vec();
-        for &column in chosen {
-            let size = |place: usize| self.rows[place][column].abs();
-            let at = (0..left.len()).max_by(|&a, &b| size(left[a]).total_cmp(&size(left[b])))?;
-            if size(left[at]) <= SINGULAR {
-                return None;
-            }
-            self.pivot(left.swap_remove(at), column);
-        }
-        Some(())
-    }
-
-    /// The same for those of others that have a principal block of one or two: a basis to start from where the bounds
-    /// lead nowhere.
-    fn exchange_some(&mut self, mut drawn: Vec<usize>) {
-        while let Some(k) = drawn.pop() {
-            let is_pivot = |row: usize, column: usize| self.rows[row][column].abs() > SINGULAR;
-            if is_pivot(k, k) {
-                self.pivot(k, k);
-            } else if let Some(at) = drawn.iter().position(|&l| is_pivot(k, l) && is_pivot(l, k)) {
-                let l = drawn.swap_remove(at);
-                self.pivot(k, l);
-                self.pivot(l, k);
+    /// Exchanges these variables x for their complements, by principal blocks of one or two; `false` if some are left.
+    fn exchange(&mut self, mut left: Vec<usize>) -> bool {
+        let mut is_whole = true;
+        loop {
+            let size = |row: usize, column: usize| self.rows[row][column].abs();
+            let best = (0..left.len()).max_by(|&a, &b| size(left[a], left[a]).total_cmp(&size(left[b], left[b])));
+            let Some(best) = best else { return is_whole };
+            let k = left.swap_remove(best);
+            let of_two = |l: usize| size(k, l).min(size(l, k));
+            let other = (0..left.len()).max_by(|&a, &b| of_two(left[a]).total_cmp(&of_two(left[b])));
+            match other.filter(|&at| of_two(left[at]) > SINGULAR) {
+                _ if size(k, k) > SINGULAR => self.pivot(k, k),
+                Some(at) => {
+                    let l = left.swap_remove(at);
+                    self.pivot(k, l);
+                    self.pivot(l, k);
+                }
+                None => is_whole = false,
             }
         }
     }
@@ -145,7 +138,7 @@ pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &Settings)
     let (mut tableau, columns) = start(scaled, allowed)?;
     let count = columns.len();
     let is_drawn = |k: &usize| attempt >= COVERS && (GOLDEN * ((k + 1) * (attempt + 1)) as f64).fract() < 0.5;
-    tableau.exchange_some((0..count).filter(|k| !tableau.free[*k] && is_drawn(k)).collect());
+    tableau.exchange((0..count).filter(|k| !tableau.free[*k] && is_drawn(k)).collect());
     tableau.cover(&columns, attempt);
     let end = |reason: &str| Ok(Found::Nothing(format!("Lemke's method {reason}")));
     let needed = |place: usize| tableau.rows[place][count + 1] / tableau.rows[place][count];
@@ -196,10 +189,7 @@ fn base(scaled: &Scaled, of: usize) -> f64 {
 fn start(scaled: &Scaled, allowed: f64) -> Result<(Tableau, Vec<Column>), Error> {
     let (mut tableau, columns) = standard(scaled, false, allowed)?;
     let free: Vec<usize> = (0..columns.len()).filter(|&k| tableau.free[k]).collect();
-    match tableau.exchange(&free) {
-        Some(()) => Ok((tableau, columns)),
-        None => standard(scaled, true, allowed),
-    }
+    if tableau.exchange(free) { Ok((tableau, columns)) } else { standard(scaled, true, allowed) }
 }
 
 fn standard(scaled: &Scaled, is_split: bool, allowed: f64) -> Result<(Tableau, Vec<Column>), Error> {

@@ -141,7 +141,9 @@ pub fn quadratic_program(
     let lower: Vec<_> = lower.chain((0..n).map(|k| (k, k, shift))).collect();
     match program.solved(SparseMatrix::from_triplets(n, n, &lower).and_then(SymmetricMatrix::from_lower), settings)? {
         // One of many points.
-        Found::Nothing(_) if shift == 0.0 => quadratic_program(scaled, is_multiplier, SHIFT, settings),
+        Found::Nothing(reason) if shift == 0.0 && reason.ends_with("under-held") => {
+            quadratic_program(scaled, is_multiplier, SHIFT, settings)
+        }
         found => Ok(found),
     }
 }
