@@ -49,11 +49,11 @@ pub struct LcpSolution {
     pub z: Vec<f64>,
     /// w = M z + q, length n, in units of q; summed with twice the working precision.
     pub w: Vec<f64>,
-    /// The class of M, which decides the methods: `symmetric` and positive semidefinite; `symmetrizable` if it is so, to
-    /// rounding, after its rows were multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector
-    /// d > 0 with `<M> d > 0` was found, `<M>` the comparison matrix); `monotone` (M + M' semidefinite, if need be after
-    /// rows were multiplied); a `p-matrix` (decided for at most 16 unknowns); or `general`. Whether a matrix is
-    /// semidefinite is judged to rounding, and proves nothing: what is proven about solutions is `is_unique`.
+    /// The class of M, which decides the methods: `symmetric` and positive semidefinite; `symmetrizable` if it is so
+    /// after its rows were multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector d > 0 with
+    /// `<M> d > 0` was found, `<M>` the comparison matrix); `monotone` (M + M' semidefinite, likewise); a `p-matrix`
+    /// (decided for at most 16 unknowns); or `general`. Whether a matrix is semidefinite or symmetrizable is judged to
+    /// rounding, and proves nothing: what is proven about solutions is `is_unique`.
     pub class: &'static str,
     /// `Some(true)` if there is proven to be one solution for every q, because M is a P-matrix; `Some(false)` if M, its
     /// rows multiplied by positive numbers, is proven to be symmetric and semidefinite: all solutions then share w, and

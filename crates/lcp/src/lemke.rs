@@ -147,7 +147,8 @@ pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &Settings)
     let Some(lowest) = lowest.filter(|&place| needed(place) < 0.0) else {
         return Ok(point(&tableau, scaled, &columns, 0));
     };
-    let mut entering = tableau.basic[lowest] - count;
+    let complement = |variable: usize| if variable < count { variable + count } else { variable - count };
+    let mut entering = complement(tableau.basic[lowest]);
     tableau.pivot(lowest, count);
     for step in 1..=settings.max_iterations {
         if settings.watch.is_over() {
@@ -164,7 +165,7 @@ pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &Settings)
         if left == 2 * count {
             return Ok(point(&tableau, scaled, &columns, step));
         }
-        entering = if left < count { left + count } else { left - count };
+        entering = complement(left);
     }
     end("used up its pivots")
 }

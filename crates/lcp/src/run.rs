@@ -39,7 +39,7 @@ impl Way {
             Method::ActiveSet => (known.class.is_alike(), true),
             _ => (true, true),
         };
-        // A stack with more contacts than it needs: if all close, one factor is enough. With many solutions the QP wanders.
+        // A stack with more contacts than it needs: if all close, one factor is enough. Else the QP would wander.
         let is_alike = known.class.is_alike();
         let is_principal = if is_alike { is_singular } else { known.is_unique == Some(true) };
         let ways = [
@@ -91,9 +91,9 @@ fn first_places(lcp: &Lcp, known: &Known) -> Vec<Place> {
 /// Residuals below this are rounding: no factorisation would improve the point.
 const ROUNDING: f64 = 1e-15;
 
-/// A point with a larger residual, even if it meets the tolerance, waits for the other methods and for a ray; so does one
-/// that is as much larger than q and the bounds, in scaled units, as `FAR`: far away along a ray, where terms are large,
-/// all conditions hold relative to them.
+/// A point with a larger residual, even if it meets the tolerance, waits for the other methods and for a ray. So does
+/// one that is larger than q and the bounds by `FAR`, in scaled units: far away along a ray, where terms are large, all
+/// conditions hold relative to them.
 const SHARP: f64 = 1e-13;
 const FAR: f64 = 1e12;
 
@@ -161,9 +161,9 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
                 Some(error) => return Err(error),
                 None => {
-                    let reason = "a ray that proves nothing, at least not without rounding; it always ends in a point if all \
-                                  unknowns have two finite bounds";
-                    reasons.push(format!("{} ended in {reason}", way.name()));
+                    let reason = "ended in a ray that proves nothing, at least not without rounding; with two finite \
+                                  bounds on every unknown it would end in a point";
+                    reasons.push(format!("{} {reason}", way.name()));
                     continue;
                 }
             },
