@@ -24,14 +24,8 @@ const ZERO: f64 = 1e-13;
 /// A pivot of the start below this is zero, in scaled units.
 const SINGULAR: f64 = 1e-6;
 
-/// Attempts from the bounds, each with an artificial column of its own.
-const COVERS: usize = 3;
-
 /// Its multiples are spread evenly over the fractions.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
-/// A sum below this share of its first term has cancelled to nothing.
-const CANCELLED: f64 = 64.0 * f64::EPSILON;
 
 /// The unknown x of a column: the unknown of the problem, and the sign by which it enters; of a slack its place.
 #[derive(Clone, Copy)]
@@ -60,11 +54,7 @@ impl Tableau {
         own.iter_mut().for_each(|entry| *entry /= -pivot);
         for row in self.rows.iter_mut().filter(|row| !row.is_empty() && row[column] != 0.0) {
             let factor = std::mem::take(&mut row[column]);
-            row.iter_mut().zip(&own).for_each(|(entry, own)| {
-                let sum = *entry + factor * own;
-                // What cancels to nothing is nothing.
-                *entry = if sum.abs() <= CANCELLED * entry.abs() { 0.0 } else { sum };
-            });
+            row.iter_mut().zip(&own).for_each(|(entry, own)| *entry += factor * own);
         }
         self.rows[place] = own;
         std::mem::swap(&mut self.basic[place], &mut self.others[column]);
@@ -96,8 +86,8 @@ impl Tableau {
         }
     }
 
-    /// Gives the artificial variable a column, and the constants a unit. Slacks do not need it: the first
-    /// attempt, without it, finds a point for every matrix if each unknown has two bounds.
+    /// Gives the artificial variable a column, and the constants a unit. Slacks do not need it: the first attempt,
+    /// without it, finds a point for every matrix if each unknown has two bounds.
     fn cover(&mut self, columns: &[Column], attempt: usize) {
         let count = self.rows.len();
         let is_slack =
@@ -137,7 +127,7 @@ impl Tableau {
 pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &Settings) -> Result<Found, Error> {
     let (mut tableau, columns) = start(scaled, allowed)?;
     let count = columns.len();
-    let is_drawn = |k: &usize| attempt >= COVERS && (GOLDEN * ((k + 1) * (attempt + 1)) as f64).fract() < 0.5;
+    let is_drawn = |k: &usize| attempt > 0 && (GOLDEN * ((k + 1) * (attempt + 1)) as f64).fract() < 0.5;
     tableau.exchange((0..count).filter(|k| !tableau.free[*k] && is_drawn(k)).collect());
     tableau.cover(&columns, attempt);
     let end = |reason: &str| Ok(Found::Nothing(format!("Lemke's method {reason}")));
