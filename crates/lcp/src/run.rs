@@ -110,24 +110,11 @@ fn rank(known: &Known, point: &Placed) -> f64 {
 const TABLEAU: usize = 2000;
 const DENSE: usize = 1000;
 
-/// Unknowns below this share of the largest, in scaled units, may be zero.
-const DUST: f64 = 1e-14;
-
-/// The point with zeros for what rounding has left in place of them.
-fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
-    let size = |(z, unit): (&f64, &f64)| (z / unit).abs();
-    let largest = z.iter().zip(&known.scaled.column).map(size).fold(0.0, f64::max);
-    z.iter().zip(&known.scaled.column).map(|entry| if size(entry) <= DUST * largest { 0.0 } else { *entry.0 }).collect()
-}
-
 /// The points near one that a method has found: settled with its places, and moved onto them.
 fn near(lcp: &Lcp, known: &Known, z: Vec<f64>, allowed: f64, settings: &Settings) -> Result<Vec<Placed>, Error> {
-    let (clean, residual) = (without_dust(known, &z), |point: &Placed| worst(&point.residual).1);
-    let rough = if clean == z { None } else { Some(placed(lcp, z)) };
-    let clean = placed(lcp, clean);
-    let rough = rough.filter(|rough| residual(rough) < residual(&clean)).unwrap_or(clean);
+    let rough = placed(lcp, z);
     let moved = onto(lcp, &rough.places, &rough.z);
-    let settled = match residual(&rough) <= ROUNDING {
+    let settled = match worst(&rough.residual).1 <= ROUNDING {
         true if moved == rough.z => return Ok(vec![rough]),
         true => None,
         // Wrong signs are exchanged.
