@@ -173,18 +173,13 @@ pub fn gap_program(scaled: &Scaled, settings: &Settings) -> Result<Found, Error>
     program.solved(stiffness.map(|stiffness| stiffness.with_empty(parts)), settings)
 }
 
-/// The ray that shows that no point meets the inequalities `B x <= g`, if one is found: that of a single row, or by
+/// The ray that shows that no point meets the inequalities `B x <= g`, if one is found by
 /// Lemke's method on the skew problem of x and y >= 0 with 0 = B'y and `g - B x >= 0`.
 ///
 /// # Errors
 /// Those of Lemke's method.
 pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &Settings) -> Result<Option<Error>, Error> {
     let n = lcp.unknowns();
-    let unit = |i: usize, sign: f64| -> Vec<f64> { (0..n).map(|j| if i == j { sign } else { 0.0 }).collect() };
-    let of_row = |i: usize| infeasible(lcp, scaled, &unit(i, 1.0)).or_else(|| infeasible(lcp, scaled, &unit(i, -1.0)));
-    if let Some(error) = (0..n).find_map(of_row) {
-        return Ok(Some(error));
-    }
     let mut program = Program::of(scaled, |_| false);
     program.push_signs(|_| true);
     let (size, entries) = (n + program.gaps.len(), &program.entries);
