@@ -145,7 +145,8 @@ pub fn examined(lcp: &Lcp, known: &Known, point: Placed) -> LcpSolution {
     }
 }
 
-const NO_ERROR: &str = "M is not shown to be an H-matrix with positive diagonal, nor M + M' to be positive definite";
+const NO_ERROR: &str =
+    "M is not shown, by more than rounding, to be an H-matrix with positive diagonal, nor M + M' to be definite";
 const NO_IMAGE_ERROR: &str =
     "no bound on z is known, and M is not symmetric and semidefinite with a point inside all inequalities";
 
