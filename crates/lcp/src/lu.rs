@@ -32,8 +32,8 @@ impl Lu {
             matrix.column(i).for_each(|(j, value)| x[j] = value);
             let mut largest = matrix.column(i).map(|entry| entry.1.abs()).fold(0.0, f64::max);
             let mut before = Vec::new();
-            for k in touched.iter().map(|&j| place[j]).min().unwrap_or(n)..i {
-                let row = &rows[k];
+            let first = touched.iter().map(|&j| place[j]).min().unwrap_or(n);
+            for (k, row) in rows.iter().enumerate().skip(first) {
                 let factor = std::mem::take(&mut x[row.column]) / row.pivot;
                 if factor != 0.0 {
                     before.push((k, factor));
