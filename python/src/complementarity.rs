@@ -45,19 +45,19 @@ impl LcpSolution {
         self.inner.iterations
     }
 
-    /// The class of M: "symmetric" (and positive semidefinite), "h-matrix" (with positive diagonal), "monotone" (M + M'
-    /// is positive semidefinite), "p-matrix" or "general".
+    /// The class of M: "symmetric" (and positive semidefinite), "symmetrizable" (so with its rows in other units),
+    /// "h-matrix" (with positive diagonal), "monotone" (M + M' is positive semidefinite), "p-matrix" or "general".
     #[getter]
     fn kind(&self) -> &'static str {
         self.inner.class
     }
 
-    /// "one" if there is no other solution, "several" if all solutions have the same w, "unknown" if nothing is proven.
+    /// "one" if there is no other solution, "same-w" if all solutions have the same w, "unknown" if nothing is proven.
     #[getter]
     fn unique(&self) -> &'static str {
         match self.inner.is_unique {
             Some(true) => "one",
-            Some(false) => "several",
+            Some(false) => "same-w",
             None => "unknown",
         }
     }

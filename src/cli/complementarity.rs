@@ -80,7 +80,7 @@ impl Case {
         let seconds = format!("read {:.3}, solve {:.3}", self.read_seconds, solution.seconds);
         let lines = [
             ("model", vec![format!("n = {unknowns}, {entries} entries of M")]),
-            ("class", vec![class_in_words(solution.class).into()]),
+            ("class", vec![class_in_words(solution).into()]),
             ("method", vec![format!("{}, iterations: {}", solution.method, solution.iterations)]),
             (
                 "solution",
@@ -155,7 +155,8 @@ impl Case {
                 "all certified answers solve the problem; they need not be the same".to_string()
             }
             (Status::Certified, of) => format!("the certified answers agree in {of}"),
-            _ => "no certified answer, or certified answers that differ".to_string(),
+            (_, "neither") => "no method has a certified answer".to_string(),
+            (_, of) => format!("the certified answers differ in {of}"),
         };
         format!("{}\n{head}{}{}", printable(&self.title), lines.collect::<String>(), listed("agreement", vec![verdict]))
     }
@@ -190,18 +191,24 @@ impl<'a> Bound<'a> {
 
     fn in_words(&self) -> String {
         match self.0 {
-            Ok((at, error)) => format!("at most {error:.1e}, absolute, at unknown {at}"),
+            Ok((at, error)) => format!("at most {error:.1e} in each entry, absolute, this much at unknown {at}"),
             Err(reason) => format!("no bound: {reason}"),
         }
     }
 }
 
-fn class_in_words(class: &str) -> &'static str {
-    match class {
-        "symmetric" => "M is symmetric and positive semidefinite",
-        "h-matrix" => "M is an H-matrix with positive diagonal",
-        "monotone" => "M is monotone: M + M' is positive semidefinite",
-        "p-matrix" => "M is a P-matrix: all principal minors are positive",
+fn class_in_words(solution: &LcpSolution) -> &'static str {
+    match (solution.class, solution.is_unique) {
+        ("symmetric", Some(_)) => "M is symmetric and positive semidefinite",
+        ("symmetric", None) => "M is symmetric and, as far as rounding tells, positive semidefinite",
+        ("symmetrizable", Some(_)) => "M with its rows in other units is symmetric to rounding, and semidefinite",
+        ("symmetrizable", None) => "M with its rows in other units is symmetric and semidefinite, to rounding",
+        ("h-matrix", _) => "M is an H-matrix with positive diagonal",
+        ("monotone", Some(_)) => {
+            "M is monotone: M + M' is positive definite, perhaps with the rows of M in other units"
+        }
+        ("monotone", None) => "M is monotone as far as rounding tells: M + M' is positive semidefinite",
+        ("p-matrix", _) => "M is a P-matrix: all principal minors are positive",
         _ => "M belongs to no class for which a solution is sure to be found",
     }
 }
@@ -209,7 +216,7 @@ fn class_in_words(class: &str) -> &'static str {
 fn unique(solution: &LcpSolution) -> &'static str {
     match solution.is_unique {
         Some(true) => "one",
-        Some(false) => "several",
+        Some(false) => "same-w",
         None => "unknown",
     }
 }
@@ -217,7 +224,7 @@ fn unique(solution: &LcpSolution) -> &'static str {
 fn uniqueness_in_words(solution: &LcpSolution) -> &'static str {
     match solution.is_unique {
         Some(true) => "there is no other solution",
-        Some(false) => "there may be several solutions z, all with the same w",
+        Some(false) => "all solutions have the same w; whether there are other z is open",
         None => "nothing is proven about other solutions",
     }
 }

@@ -196,6 +196,30 @@ fn the_impulses_of_a_stack_of_blocks_carry_its_momentum() {
     println!("{} in {} steps, {:.4} s, {ratio:.2} factors", solution.method, solution.iterations, solution.seconds);
 }
 
+/// Problems of any matrix that have a solution: games of two players with their costs, unknowns without bounds, and
+/// unknowns between two bounds.
+#[test]
+fn games_linear_systems_and_boxes_are_solved() {
+    let mut draws = Draws(7);
+    for number in 0..cases(60, 600) {
+        let (half, free) = (1 + draws.below(6), f64::INFINITY);
+        let n = 2 * half;
+        let (kind, places) = (number % 3, (0..n * n).map(|k| (k / n, k % n)));
+        let mut entry = |i: usize, j: usize| match kind {
+            0 => f64::from(u8::from((i < half) != (j < half))) * (1.0 + draws.below(9) as f64),
+            1 => draws.signed(),
+            _ => draws.below(13) as f64 - 6.0,
+        };
+        let entries: Entries = places.map(|(i, j)| (i, j, entry(i, j))).collect();
+        let (lower, upper) = [(0.0, free), (-free, free), (-1.0, 2.0)][kind];
+        let offset = (0..n).map(|_| if kind == 0 { -1.0 } else { draws.below(9) as f64 - 4.0 }).collect();
+        let matrix = SparseMatrix::from_triplets(n, n, &entries).unwrap();
+        let lcp = Lcp::new(matrix, offset, vec![lower; n], vec![upper; n]).unwrap();
+        let solution = solve_lcp(&lcp, &Settings::default());
+        assert!(solution.is_ok_and(|solution| solution.worst().1 <= 1e-9), "{number}: {lcp:?}");
+    }
+}
+
 #[test]
 fn faulty_problems_are_refused_with_a_sentence() {
     let unit = |n: usize| SparseMatrix::from_triplets(n, n, &(0..n).map(|i| (i, i, 1.0)).collect::<Vec<_>>()).unwrap();

@@ -170,6 +170,7 @@ fn every_error_of_a_complementarity_problem_has_its_code_and_one_sentence() {
     };
     // Met by z = (1, 1), which has z'w > 0; no pivot may lead there.
     let open = [(0, 0, -1.0), (0, 1, 2.0), (1, 0, 2.0), (1, 1, -1.0)];
+    let lost = [(0, 0, -2.0), (0, 1, 1.0), (1, 1, 1.0)];
     let thirds = [(0, 0, 3.0), (0, 1, 0.1), (1, 0, 0.7), (1, 1, 0.3)];
     let text = read("crates/lcp/src/error.rs");
     for (variant, code, error) in [
@@ -179,7 +180,7 @@ fn every_error_of_a_complementarity_problem_has_its_code_and_one_sentence() {
             lcp::Lcp::new(unit, vec![0.0], vec![1.0], vec![0.0]).unwrap_err()
         }),
         ("Infeasible", "infeasible", solve(&[(0, 0, -1.0)], &[-1.0], &|_| {}).unwrap_err()),
-        ("NotFound", "not-found", solve(&open, &[-1.0, -1.0], &|settings| settings.max_iterations = 1).unwrap_err()),
+        ("NotFound", "not-found", solve(&lost, &[-1.0, 1.0], &|_| {}).unwrap_err()),
         ("NotCertified", "not-certified", {
             solve(&thirds, &[-0.1, -0.7], &|settings| settings.tolerance = Some(1e-40)).unwrap_err()
         }),

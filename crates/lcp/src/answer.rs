@@ -6,6 +6,7 @@ use signorini_qp::ContactSet;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     Symmetric,
+    Symmetrizable,
     H,
     Monotone,
     P,
@@ -13,9 +14,15 @@ pub enum Class {
 }
 
 impl Class {
+    /// Returns `true` if M is that of a quadratic program, to rounding and with its rows in suitable units.
+    pub fn is_alike(self) -> bool {
+        [Class::Symmetric, Class::Symmetrizable].contains(&self)
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             Class::Symmetric => "symmetric",
+            Class::Symmetrizable => "symmetrizable",
             Class::H => "h-matrix",
             Class::Monotone => "monotone",
             Class::P => "p-matrix",
@@ -42,14 +49,15 @@ pub struct LcpSolution {
     pub z: Vec<f64>,
     /// w = M z + q, length n, in units of q; summed with twice the working precision.
     pub w: Vec<f64>,
-    /// The class of M, which decides the methods: `symmetric` and positive semidefinite to rounding, if need be after
-    /// its rows were multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector d > 0 with
-    /// `<M> d > 0` was found, `<M>` the comparison matrix); `monotone` (M + M' semidefinite to rounding, likewise); a
-    /// `p-matrix` (decided for at most 16 unknowns); or `general`.
+    /// The class of M, which decides the methods: `symmetric` and positive semidefinite; `symmetrizable` if it is so
+    /// after its rows were multiplied by positive numbers; an `h-matrix` with positive diagonal (a vector d > 0 with
+    /// `<M> d > 0` was found, `<M>` the comparison matrix); `monotone` (M + M' semidefinite, likewise); a `p-matrix`
+    /// (decided for at most 16 unknowns); or `general`. Whether a matrix is semidefinite or symmetrizable is judged to
+    /// rounding, and proves nothing: what is proven about solutions is `is_unique`.
     pub class: &'static str,
-    /// `Some(true)` if there is proven to be one solution for every q, because M is a P-matrix; `Some(false)` if M is
-    /// symmetric and semidefinite, and not shown to be definite: all solutions then share w, and z may be one of
-    /// several; `None` if nothing is proven.
+    /// `Some(true)` if there is proven to be one solution for every q, because M is a P-matrix; `Some(false)` if M, its
+    /// rows multiplied by positive numbers, is proven to be symmetric and semidefinite: all solutions then share w, and
+    /// whether there are several z is open; `None` if nothing is proven.
     pub is_unique: Option<bool>,
     /// Upper bounds on `|z_i - z_i*|` of the only solution z*, one entry per unknown, in units of z; or the reason why
     /// none is known. The rounding of its computation is included.

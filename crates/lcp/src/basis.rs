@@ -7,8 +7,8 @@ use signorini_qp::{Cholesky, SparseMatrix, SymmetricMatrix};
 
 use crate::answer::Place;
 use crate::class::{Known, if_definite};
-use crate::dense::Lu;
 use crate::error::Error;
+use crate::lu::Lu;
 use crate::problem::Lcp;
 
 /// Blocks of a symmetric matrix above this size are taken to a sparse factor.
@@ -21,8 +21,8 @@ const SHIFT: f64 = 1e-10;
 const CORRECTIONS: usize = 20;
 
 enum Factor<'a> {
-    Dense(Lu),
-    Sparse(Cow<'a, Cholesky>),
+    Any(Lu),
+    Definite(Cow<'a, Cholesky>),
 }
 
 /// The value at which an unknown is held; `None` between its bounds.
@@ -38,7 +38,7 @@ pub fn held(place: Place, lower: f64, upper: f64) -> Option<f64> {
 /// singular to rounding.
 ///
 /// # Errors
-/// Those of a factorisation for lack of memory, and [`Error::TooLarge`].
+/// Those of a factorisation for lack of memory.
 pub fn settled(lcp: &Lcp, known: &Known, places: &[Place], allowed: f64) -> Result<Option<Vec<f64>>, Error> {
     let n = places.len();
     let at = |i: usize| held(places[i], lcp.lower()[i], lcp.upper()[i]);
@@ -51,8 +51,8 @@ pub fn settled(lcp: &Lcp, known: &Known, places: &[Place], allowed: f64) -> Resu
         let w = lcp.matrix().mul_added(&z, lcp.offset());
         let right: Vec<f64> = free.iter().map(|&i| -scaled.row[i] * w[i]).collect();
         let step = match &factor {
-            Factor::Dense(lu) => lu.solve(&right),
-            Factor::Sparse(cholesky) => cholesky.solve(&right),
+            Factor::Any(lu) => lu.solve(&right),
+            Factor::Definite(cholesky) => cholesky.solve(&right),
         };
         let length = step.iter().fold(0.0, |length: f64, step| length.max(step.abs()));
         if length == 0.0 || length > 0.5 * last || step.iter().any(|step| step.is_nan()) {
@@ -71,30 +71,21 @@ pub fn settled(lcp: &Lcp, known: &Known, places: &[Place], allowed: f64) -> Resu
 
 fn factor<'a>(known: &'a Known, free: &[usize], allowed: f64) -> Result<Option<Factor<'a>>, Error> {
     let scaled = &known.scaled;
-    let mut place = vec![usize::MAX; scaled.offset.len()];
-    free.iter().enumerate().for_each(|(k, &i)| place[i] = k);
-    if scaled.is_alike && free.len() > DENSE {
-        if let Some(whole) = known.factor.as_ref().filter(|_| free.len() == place.len()) {
-            return Ok(Some(Factor::Sparse(Cow::Borrowed(whole))));
-        }
-        let entries =
-            scaled.matrix.triplets().filter(|&(i, j, _)| i >= j && place[i] < free.len() && place[j] < free.len());
-        let mut entries: Vec<_> = entries.map(|(i, j, value)| (place[i], place[j], value)).collect();
-        entries.extend((0..free.len()).map(|k| (k, k, SHIFT)));
-        let lower = SparseMatrix::from_triplets(free.len(), free.len(), &entries)?;
-        let factor = if_definite(&SymmetricMatrix::from_lower(lower)?)?;
-        return Ok(factor.map(|factor| Factor::Sparse(Cow::Owned(factor))));
+    let mut place = vec![None; scaled.offset.len()];
+    free.iter().enumerate().for_each(|(k, &i)| place[i] = Some(k));
+    let entries = scaled.matrix.triplets().filter_map(|(i, j, value)| Some((place[i]?, place[j]?, value)));
+    if !scaled.is_alike || free.len() <= DENSE {
+        let entries: Vec<_> = entries.map(|(i, j, value)| (j, i, value)).collect();
+        let transposed = SparseMatrix::from_triplets(free.len(), free.len(), &entries)?;
+        return Ok(Lu::of_transposed(&transposed, allowed / 16.0).map(Factor::Any));
     }
-    check_size(free.len(), free.len(), allowed)?;
-    let mut rows = vec![vec![0.0; free.len()]; free.len()];
-    for (k, &j) in free.iter().enumerate() {
-        scaled
-            .matrix
-            .column(j)
-            .filter(|entry| place[entry.0] < free.len())
-            .for_each(|(i, value)| rows[place[i]][k] = value);
+    if let Some(whole) = known.factor.as_ref().filter(|_| free.len() == place.len()) {
+        return Ok(Some(Factor::Definite(Cow::Borrowed(whole))));
     }
-    Ok(Lu::of(rows).map(Factor::Dense))
+    let shift = (0..free.len()).map(|k| (k, k, SHIFT));
+    let entries: Vec<_> = entries.filter(|entry| entry.0 >= entry.1).chain(shift).collect();
+    let lower = SparseMatrix::from_triplets(free.len(), free.len(), &entries)?;
+    Ok(if_definite(&SymmetricMatrix::from_lower(lower)?)?.map(|factor| Factor::Definite(Cow::Owned(factor))))
 }
 
 /// Refuses dense matrices that do not fit.

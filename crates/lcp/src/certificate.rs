@@ -18,7 +18,7 @@
 
 use crate::answer::{Class, LcpSolution, Place};
 use crate::basis::held;
-use crate::class::{Known, comparison_solution};
+use crate::class::Known;
 use crate::problem::Lcp;
 use crate::scaled::diagonal;
 
@@ -105,7 +105,7 @@ pub fn examined(lcp: &Lcp, known: &Known, point: Placed) -> LcpSolution {
     if let Some(least) = known.least {
         error = vec![length / least * OUTWARD; n];
         energy = length / least.sqrt() * OUTWARD;
-    } else if known.class == Class::Symmetric && scaled.is_symmetric {
+    } else if known.is_unique.is_some() && scaled.is_symmetric {
         (energy, beside) = energy_of_gap(lcp, known, x.clone(), &defect);
     }
     if let Some(by_rows) = by_comparison(known, &defect) {
@@ -145,23 +145,29 @@ pub fn examined(lcp: &Lcp, known: &Known, point: Placed) -> LcpSolution {
     }
 }
 
-const NO_ERROR: &str = "M is not shown to be an H-matrix with positive diagonal, nor M + M' to be positive definite";
+const NO_ERROR: &str =
+    "M is not shown, by more than rounding, to be an H-matrix with positive diagonal, nor M + M' to be definite";
 const NO_IMAGE_ERROR: &str =
     "no bound on z is known, and M is not symmetric and semidefinite with a point inside all inequalities";
 
 /// Bounds on `|e|` by the comparison matrix, entry by entry.
 fn by_comparison(known: &Known, defect: &[f64]) -> Option<Vec<f64>> {
+    if known.is_unique != Some(true) || known.class == Class::P {
+        return None;
+    }
+    let (n, scaled, units) = (defect.len(), &known.scaled, known.units());
+    let defect: Vec<f64> = (0..n).map(|i| defect[i] * (units.row[i] / scaled.row[i]) * OUTWARD).collect();
     let largest = defect.iter().copied().fold(0.0, f64::max);
-    if known.is_unique != Some(true) || known.class == Class::P || defect.iter().any(|d| !d.is_finite()) {
+    if defect.iter().any(|d| !d.is_finite()) {
         return None;
     } else if largest == 0.0 {
-        return Some(vec![0.0; defect.len()]);
+        return Some(defect);
     }
     // Small defects are raised a little, so that every row has a positive right side.
     let right: Vec<f64> = defect.iter().map(|d| d.max(1e-3 * largest)).collect();
-    let [d, bounds] = comparison_solution(&known.scaled, &right)?;
+    let [d, bounds] = known.comparison(&right)?;
     let factor = defect.iter().zip(&bounds).map(|(defect, bound)| defect / bound).fold(0.0, f64::max);
-    Some(d.iter().map(|d| d * factor * OUTWARD).collect())
+    Some((0..n).map(|i| d[i] * (units.column[i] / scaled.column[i]) * factor * OUTWARD).collect())
 }
 
 /// An upper bound on sqrt(e'A e) of a symmetric semidefinite A, and the point to which it belongs: near x, it meets the

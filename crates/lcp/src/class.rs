@@ -3,8 +3,9 @@
 use signorini_qp::{Cholesky, Error as QpError, SparseMatrix, SymmetricMatrix, dot};
 
 use crate::answer::Class;
-use crate::dense::Lu;
 use crate::error::Error;
+use crate::exact::is_definite;
+use crate::lu::Lu;
 use crate::problem::Lcp;
 use crate::scaled::{Scaled, diagonal, shares};
 
@@ -17,8 +18,11 @@ const MINORS: usize = 16;
 /// What the terms of `<A> d` leave, at least, as a share of them.
 const MARGIN: f64 = 1e-9;
 
-/// Largest comparison matrix that is not symmetric.
-const DENSE: usize = 1000;
+/// Largest matrix that is tried in integers.
+pub const SMALL: usize = 64;
+
+/// Most entries of the factors of a comparison matrix that is not symmetric.
+const ENTRIES: f64 = 4e6;
 
 /// What is known of a matrix.
 #[derive(Clone, Debug)]
@@ -31,6 +35,8 @@ pub struct Known {
     pub least: Option<f64>,
     /// The factor of (A + A') / 2 with a little more on its diagonal, if that is semidefinite.
     pub factor: Option<Cholesky>,
+    /// Where the comparison matrix of A is taken, if in other units.
+    compared: Option<Scaled>,
 }
 
 impl Known {
@@ -47,16 +53,19 @@ impl Known {
             if (scaled.is_alike || monotone.is_none())
                 && let Some((factor, least)) = semidefinite(&scaled)?
             {
+                let is_unique = if least.is_some() { Some(true) } else { proven(&scaled, &factor) };
                 if scaled.is_alike {
-                    let is_unique = if least.is_some() { Some(true) } else { scaled.is_symmetric.then_some(false) };
-                    let (class, factor) = (Class::Symmetric, Some(factor));
-                    return Ok(Known { scaled, class, is_unique, least, factor });
+                    let compared = (!scaled.is_symmetric).then(|| Scaled::by_entries(lcp));
+                    let is_unique = is_unique.filter(|&one| one || scaled.is_symmetric);
+                    let is_given = scaled.is_symmetric && !is_shared;
+                    let class = if is_given { Class::Symmetric } else { Class::Symmetrizable };
+                    return Ok(Known { scaled, class, is_unique, least, factor: Some(factor), compared });
                 }
-                monotone = Some((scaled, Some(factor), least));
+                monotone = Some((scaled, is_unique, Some(factor), least));
             }
         }
         let by_entries = Scaled::by_entries(lcp);
-        let class = if comparison_solution(&by_entries, &vec![1.0; n]).is_some() {
+        let class = if comparison_solution(&by_entries.matrix, by_entries.is_alike, &vec![1.0; n]).is_some() {
             Class::H
         } else if monotone.is_some() {
             Class::Monotone
@@ -65,10 +74,51 @@ impl Known {
         } else {
             Class::General
         };
-        let (scaled, factor, least) = monotone.unwrap_or((by_entries, None, None));
-        let is_unique = (least.is_some() || [Class::H, Class::P].contains(&class)).then_some(true);
-        Ok(Known { scaled, class, is_unique, least, factor })
+        let is_p = [Class::H, Class::P].contains(&class) || monotone.as_ref().is_some_and(|one| one.1 == Some(true));
+        let (is_unique, compared) = (is_p.then_some(true), monotone.is_some().then(|| by_entries.clone()));
+        let (scaled, _, factor, least) = monotone.unwrap_or((by_entries, None, None, None));
+        Ok(Known { scaled, class, is_unique, least, factor, compared })
     }
+
+    /// Where bounds by the comparison matrix are computed.
+    pub fn units(&self) -> &Scaled {
+        self.compared.as_ref().unwrap_or(&self.scaled)
+    }
+
+    /// Vectors d and `<A> d` of positive entries, rounding taken off, the second about as large as `right` if possible;
+    /// both in these units.
+    pub fn comparison(&self, right: &[f64]) -> Option<[Vec<f64>; 2]> {
+        let solution = |right: &[f64]| comparison_solution(&self.units().matrix, self.units().is_alike, right);
+        solution(right).or_else(|| solution(&vec![1.0; right.len()]))
+    }
+}
+
+/// `Some(true)` if A + A' is shown to be definite, `Some(false)` if semidefinite, without any rounding: in integers, or
+/// by the comparison matrix of what is left of a symmetric A without the copies of its columns.
+fn proven(scaled: &Scaled, factor: &Cholesky) -> Option<bool> {
+    let (n, matrix) = (scaled.offset.len(), &scaled.matrix);
+    if !scaled.is_exact {
+        return None;
+    }
+    let in_integers = if n <= SMALL { is_definite(&dense(matrix)) } else { None };
+    if in_integers.is_some() || !scaled.is_symmetric {
+        return in_integers;
+    }
+    let own = diagonal(matrix);
+    let is_like = |i: usize, j: usize| own[i] == own[j] && matrix.column(i).eq(matrix.column(j));
+    let first = |j: usize| matrix.column(j).find(|&(i, value)| i >= j || (value == own[j] && is_like(i, j)));
+    let first: Vec<usize> = (0..n).map(|j| first(j).map_or(j, |entry| entry.0.min(j))).collect();
+    let mut d: Vec<f64> = first.iter().enumerate().map(|(j, &first)| if first == j { 0.0 } else { 1.0 }).collect();
+    first.iter().zip(factor.solve(&vec![1.0; n])).for_each(|(&first, x)| d[first] += x);
+    let left = matrix.triplets().filter(|&(i, j, _)| i == j || (first[i] == i && first[j] == j));
+    comparison_bounds(left, &d).map(|_| first.into_iter().eq(0..n))
+}
+
+/// The rows of a small matrix.
+pub fn dense(matrix: &SparseMatrix) -> Vec<Vec<f64>> {
+    let mut rows = vec![vec![0.0; matrix.columns()]; matrix.rows()];
+    matrix.triplets().for_each(|(i, j, value)| rows[i][j] = value);
+    rows
 }
 
 /// `None` if (A + A') / 2 is not positive semidefinite to rounding.
@@ -88,7 +138,7 @@ fn semidefinite(scaled: &Scaled) -> Result<Option<(Cholesky, Option<f64>)>, Erro
     {
         return Ok(None);
     }
-    let shift = LEAST_NEGATIVE.max(8.0 * f64::EPSILON * n);
+    let shift = LEAST_NEGATIVE.max(2.0 * f64::EPSILON * n);
     let Some(factor) = if_definite(&scaled.symmetric_part(shift)?)? else { return Ok(None) };
     // Rounding of the factorisation, and of the scaled entries and their means.
     let largest = |sums: Vec<f64>| sums.into_iter().fold(0.0, f64::max);
@@ -121,30 +171,29 @@ pub fn if_definite(matrix: &SymmetricMatrix) -> Result<Option<Cholesky>, Error> 
 /// A vector d of positive entries with `<A> d` of about `right`, and positive lower bounds on `<A> d`, rounding taken
 /// off: they show that A is an H-matrix with positive diagonal. `None` if none was found. The diagonal is lowered a
 /// little, so that `<A> d` stays above the rounding of its terms.
-pub fn comparison_solution(scaled: &Scaled, right: &[f64]) -> Option<[Vec<f64>; 2]> {
-    let (n, matrix) = (right.len(), &scaled.matrix);
+fn comparison_solution(matrix: &SparseMatrix, is_alike: bool, right: &[f64]) -> Option<[Vec<f64>; 2]> {
+    let n = right.len();
     let entry = |i: usize, j: usize, value: f64| if i == j { (1.0 - MARGIN) * value } else { -value.abs() };
-    let d = if scaled.is_alike {
+    let d = if is_alike {
         let below = matrix.triplets().filter(|&(i, j, _)| i >= j).map(|(i, j, value)| (i, j, entry(i, j, value)));
         let below = SparseMatrix::from_triplets(n, n, &below.collect::<Vec<_>>()).ok()?;
         Cholesky::of(&SymmetricMatrix::from_lower(below).ok()?).ok()?.solve(right)
-    } else if n <= DENSE {
-        let mut rows = vec![vec![0.0; n]; n];
-        matrix.triplets().for_each(|(i, j, value)| rows[i][j] = entry(i, j, value));
-        Lu::of(rows)?.solve(right)
     } else {
-        return None;
+        let entries: Vec<_> = matrix.triplets().map(|(i, j, value)| (j, i, entry(i, j, value))).collect();
+        Lu::of_transposed(&SparseMatrix::from_triplets(n, n, &entries).ok()?, ENTRIES)?.solve(right)
     };
-    let (mut own, mut others) = (vec![0.0; n], vec![0.0; n]);
-    for (i, j, value) in matrix.triplets() {
-        let sums = if i == j { &mut own } else { &mut others };
-        sums[i] += if i == j { value * d[j] } else { value.abs() * d[j] };
-    }
-    let rounding = (n + 8) as f64 * f64::EPSILON;
-    let bound = |(own, others): (&f64, &f64)| own - others - rounding * (own + others) - f64::MIN_POSITIVE;
-    let bounds: Vec<f64> = own.iter().zip(&others).map(bound).collect();
+    comparison_bounds(matrix.triplets(), &d).map(|bounds| [d, bounds])
+}
+
+/// Positive lower bounds on `<A> d`, rounding taken off, if d is positive and there are such.
+fn comparison_bounds(entries: impl Iterator<Item = (usize, usize, f64)>, d: &[f64]) -> Option<Vec<f64>> {
+    let mut sums = vec![[0.0; 2]; d.len()];
+    entries.for_each(|(i, j, value)| sums[i][usize::from(i != j)] += if i == j { value } else { value.abs() } * d[j]);
+    let rounding = (d.len() + 8) as f64 * f64::EPSILON;
+    let bound = |[own, others]: [f64; 2]| own - others - rounding * (own + others) - f64::MIN_POSITIVE;
+    let bounds: Vec<f64> = sums.into_iter().map(bound).collect();
     let is_positive = |value: &f64| *value > 0.0 && value.is_finite();
-    (d.iter().all(is_positive) && bounds.iter().all(is_positive)).then_some([d, bounds])
+    (d.iter().all(is_positive) && bounds.iter().all(is_positive)).then_some(bounds)
 }
 
 /// Returns `true` if all principal minors are positive, with bounds on all rounding.

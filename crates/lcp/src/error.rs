@@ -28,13 +28,13 @@ pub enum Error {
     },
     /// Inequalities that no point meets, so that there is no solution.
     #[error(
-        "infeasible: no z between its bounds has w = M z + q of the required signs: the rows, weighted with the ray y, demand {needed:.3e} \
-         of a sum that is at most zero"
+        "infeasible: no z between its bounds has w = M z + q of the required signs: the rows, weighted with the ray y (y.mtx of \
+         an output), demand {needed:.3e} of a sum that is at most zero"
     )]
     Infeasible {
-        /// The ray y, one entry per row, in units of z, largest entry 1: `y_i >= 0` if only the lower bound is finite,
-        /// `<= 0` if only the upper one is, 0 if both are. With c = M'y, `c_i <= 0` if the upper bound is infinite and
-        /// `c_i >= 0` if the lower one is (for z >= 0: y >= 0, M'y <= 0, q'y < 0).
+        /// The ray y, one entry per row, in units of z, largest entry from 1 to 2: `y_i >= 0` if only the lower bound
+        /// is finite, `<= 0` if only the upper one is, 0 if both are. Without any rounding, with c = M'y, `c_i <= 0`
+        /// if the upper bound is infinite and `c_i >= 0` if the lower one is (for z >= 0: y >= 0, M'y <= 0, q'y < 0).
         ray: Vec<f64>,
         /// The positive number -(q'y + sum of c_i u_i over c_i > 0 and of c_i l_i over c_i < 0), in units of q times y.
         needed: f64,

@@ -2,7 +2,8 @@
 //! proves something only if M is monotone; no caller takes it as a proof without a check.
 //!
 //! Bounds become nonnegative unknowns: z = l + x or z = u - x; an unknown between two bounds also has its slack
-//! v = u - l - x, with the negative part of w as its complement; one without bounds is a difference of two.
+//! v = u - l - x, with the negative part of w as its complement. One without bounds is basic from the start and never
+//! leaves; if that cannot be, it is a difference of two.
 //!
 //! # Source
 //! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem* (1992), sections 4.4 and 4.9.
@@ -20,11 +21,11 @@ const ROUNDING: f64 = 1e-11;
 /// Constants below this, of the largest at the start, and entries of the inverse of the basis are zero.
 const ZERO: f64 = 1e-13;
 
+/// A pivot of the start below this is zero, in scaled units.
+const SINGULAR: f64 = 1e-6;
+
 /// Its multiples are spread evenly over the fractions.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
-/// A sum below this share of its first term has cancelled to nothing.
-const CANCELLED: f64 = 64.0 * f64::EPSILON;
 
 /// The unknown x of a column: the unknown of the problem, and the sign by which it enters; of a slack its place.
 #[derive(Clone, Copy)]
@@ -39,6 +40,8 @@ struct Tableau {
     rows: Vec<Vec<f64>>,
     basic: Vec<usize>,
     others: Vec<usize>,
+    /// The variables x without bounds.
+    free: Vec<bool>,
     /// The unit of the constants.
     unit: f64,
 }
@@ -51,14 +54,51 @@ impl Tableau {
         own.iter_mut().for_each(|entry| *entry /= -pivot);
         for row in self.rows.iter_mut().filter(|row| !row.is_empty() && row[column] != 0.0) {
             let factor = std::mem::take(&mut row[column]);
-            row.iter_mut().zip(&own).for_each(|(entry, own)| {
-                let sum = *entry + factor * own;
-                // What cancels to nothing is nothing.
-                *entry = if sum.abs() <= CANCELLED * entry.abs() { 0.0 } else { sum };
-            });
+            row.iter_mut().zip(&own).for_each(|(entry, own)| *entry += factor * own);
         }
         self.rows[place] = own;
         std::mem::swap(&mut self.basic[place], &mut self.others[column]);
+    }
+
+    fn is_free(&self, place: usize) -> bool {
+        self.free.get(self.basic[place]) == Some(&true)
+    }
+
+    /// Exchanges these variables x for their complements, by principal blocks of one or two; `false` if some are left.
+    fn exchange(&mut self, mut left: Vec<usize>) -> bool {
+        let mut is_whole = true;
+        loop {
+            let size = |row: usize, column: usize| self.rows[row][column].abs();
+            let best = (0..left.len()).max_by(|&a, &b| size(left[a], left[a]).total_cmp(&size(left[b], left[b])));
+            let Some(best) = best else { return is_whole };
+            let k = left.swap_remove(best);
+            let of_two = |l: usize| size(k, l).min(size(l, k));
+            let other = (0..left.len()).max_by(|&a, &b| of_two(left[a]).total_cmp(&of_two(left[b])));
+            match other.filter(|&at| of_two(left[at]) > SINGULAR) {
+                _ if size(k, k) > SINGULAR => self.pivot(k, k),
+                Some(at) => {
+                    let l = left.swap_remove(at);
+                    self.pivot(k, l);
+                    self.pivot(l, k);
+                }
+                None => is_whole = false,
+            }
+        }
+    }
+
+    /// Gives the artificial variable a column, and the constants a unit. Slacks do not need it: the first attempt,
+    /// without it, finds a point for every matrix if each unknown has two bounds.
+    fn cover(&mut self, columns: &[Column], attempt: usize) {
+        let count = self.rows.len();
+        let is_slack =
+            |place: usize| matches!(columns.get(self.basic[place].wrapping_sub(count)), Some(Column::Slack { .. }));
+        let is_covered = |place: &usize| !self.is_free(*place) && (attempt > 0 || !is_slack(*place));
+        let places: Vec<usize> = (0..count).filter(is_covered).collect();
+        self.unit = self.rows.iter().map(|row| row[count + 1].abs()).fold(f64::MIN_POSITIVE, f64::max);
+        self.rows.iter_mut().for_each(|row| row[count + 1] /= self.unit);
+        for place in places {
+            self.rows[place][count] = 1.0 + (GOLDEN * ((place + 1) * (attempt + 1)) as f64).fract();
+        }
     }
 
     /// The basic variable that becomes zero first as the variable at `column` grows, by the lexicographic rule; the
@@ -66,7 +106,8 @@ impl Tableau {
     fn first_to_vanish(&self, column: usize) -> Option<usize> {
         let count = self.rows.len();
         let largest = self.rows.iter().map(|row| row[column].abs()).fold(0.0, f64::max);
-        let falling: Vec<usize> = (0..count).filter(|&place| self.rows[place][column] < -ROUNDING * largest).collect();
+        let is_falling = |place: &usize| self.rows[*place][column] < -ROUNDING * largest && !self.is_free(*place);
+        let falling: Vec<usize> = (0..count).filter(is_falling).collect();
         let ratio = |place: usize| {
             let constant = self.rows[place][count + 1];
             if constant.abs() > ZERO { -constant / self.rows[place][column] } else { 0.0 }
@@ -84,27 +125,20 @@ impl Tableau {
 /// # Errors
 /// [`Error::TooLarge`].
 pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &Settings) -> Result<Found, Error> {
-    let (lower, upper) = (&scaled.lower, &scaled.upper);
-    let mut columns = Vec::new();
-    for of in 0..lower.len() {
-        let (is_above, is_below) = (lower[of].is_finite(), upper[of].is_finite());
-        columns.push(Column::Part { of, sign: if is_below && !is_above { -1.0 } else { 1.0 } });
-        match (is_above, is_below) {
-            (true, true) => columns.push(Column::Slack { of }),
-            (false, false) => columns.push(Column::Part { of, sign: -1.0 }),
-            _ => {}
-        }
-    }
+    let (mut tableau, columns) = start(scaled, allowed)?;
     let count = columns.len();
-    check_size(count, count, allowed)?;
-    let mut tableau = standard(scaled, &columns, attempt);
+    let is_drawn = |k: &usize| attempt > 0 && (GOLDEN * ((k + 1) * (attempt + 1)) as f64).fract() < 0.5;
+    tableau.exchange((0..count).filter(|k| !tableau.free[*k] && is_drawn(k)).collect());
+    tableau.cover(&columns, attempt);
     let end = |reason: &str| Ok(Found::Nothing(format!("Lemke's method {reason}")));
     let needed = |place: usize| tableau.rows[place][count + 1] / tableau.rows[place][count];
-    let lowest = (0..count).rev().min_by(|&a, &b| needed(a).total_cmp(&needed(b)));
+    let places = (0..count).rev().filter(|&place| tableau.rows[place][count] > 0.0);
+    let lowest = places.min_by(|&a, &b| needed(a).total_cmp(&needed(b)));
     let Some(lowest) = lowest.filter(|&place| needed(place) < 0.0) else {
         return Ok(point(&tableau, scaled, &columns, 0));
     };
-    let mut entering = tableau.basic[lowest] - count;
+    let complement = |variable: usize| if variable < count { variable + count } else { variable - count };
+    let mut entering = complement(tableau.basic[lowest]);
     tableau.pivot(lowest, count);
     for step in 1..=settings.max_iterations {
         if settings.watch.is_over() {
@@ -114,14 +148,14 @@ pub fn lemke(scaled: &Scaled, attempt: usize, allowed: f64, settings: &Settings)
             return end("lost its basis to rounding");
         };
         let Some(leaving) = tableau.first_to_vanish(column) else {
-            return Ok(Found::Ray(ray(&tableau, column, &columns, lower.len())));
+            return Ok(Found::Ray(ray(&tableau, column, &columns, scaled.lower.len())));
         };
         let left = tableau.basic[leaving];
         tableau.pivot(leaving, column);
         if left == 2 * count {
             return Ok(point(&tableau, scaled, &columns, step));
         }
-        entering = if left < count { left + count } else { left - count };
+        entering = complement(left);
     }
     end("used up its pivots")
 }
@@ -138,12 +172,34 @@ fn base(scaled: &Scaled, of: usize) -> f64 {
     }
 }
 
-/// The first tableau, with constants of at most one.
-fn standard(scaled: &Scaled, columns: &[Column], attempt: usize) -> Tableau {
+/// The first tableau, without its artificial column. Unknowns without bounds are basic, or differences of two if their
+/// block is singular.
+///
+/// # Errors
+/// [`Error::TooLarge`].
+fn start(scaled: &Scaled, allowed: f64) -> Result<(Tableau, Vec<Column>), Error> {
+    let (mut tableau, columns) = standard(scaled, false, allowed)?;
+    let free: Vec<usize> = (0..columns.len()).filter(|&k| tableau.free[k]).collect();
+    if tableau.exchange(free) { Ok((tableau, columns)) } else { standard(scaled, true, allowed) }
+}
+
+fn standard(scaled: &Scaled, is_split: bool, allowed: f64) -> Result<(Tableau, Vec<Column>), Error> {
+    let n = scaled.lower.len();
+    let mut columns = Vec::new();
+    for of in 0..n {
+        let (is_above, is_below) = (scaled.lower[of].is_finite(), scaled.upper[of].is_finite());
+        columns.push(Column::Part { of, sign: if is_below && !is_above { -1.0 } else { 1.0 } });
+        match (is_above, is_below) {
+            (true, true) => columns.push(Column::Slack { of }),
+            (false, false) if is_split => columns.push(Column::Part { of, sign: -1.0 }),
+            _ => {}
+        }
+    }
     let count = columns.len();
-    let mut at = vec![Vec::new(); scaled.lower.len()];
+    check_size(count, count, allowed)?;
+    let mut at = vec![Vec::new(); n];
     let mut rows = vec![vec![0.0; count + 2]; count];
-    let bases: Vec<f64> = (0..at.len()).map(|of| base(scaled, of)).collect();
+    let bases: Vec<f64> = (0..n).map(|of| base(scaled, of)).collect();
     let moved = scaled.matrix.mul(&bases);
     for (k, column) in columns.iter().enumerate() {
         rows[k][count + 1] = match *column {
@@ -163,12 +219,11 @@ fn standard(scaled: &Scaled, columns: &[Column], attempt: usize) -> Tableau {
             at[j].iter().for_each(|&(column, of_column)| rows[row][column] = of_row * of_column * value);
         }
     }
-    let unit = rows.iter().map(|row| row[count + 1].abs()).fold(f64::MIN_POSITIVE, f64::max);
-    for (k, row) in rows.iter_mut().enumerate() {
-        let artificial = 1.0 + (GOLDEN * ((k + 1) * (attempt + 1)) as f64).fract();
-        (row[count], row[count + 1]) = (artificial, row[count + 1] / unit);
-    }
-    Tableau { rows, basic: (count..2 * count).collect(), others: (0..count).chain([2 * count]).collect(), unit }
+    let is_free = |of: usize| scaled.lower[of].is_infinite() && scaled.upper[of].is_infinite();
+    let is_free = |column: &Column| matches!(*column, Column::Part { of, .. } if !is_split && is_free(of));
+    let free = columns.iter().map(is_free).collect();
+    let (basic, others) = ((count..2 * count).collect(), (0..count).chain([2 * count]).collect());
+    Ok((Tableau { rows, basic, others, free, unit: 1.0 }, columns))
 }
 
 /// The direction of the unknowns along the ray of a column. If M is monotone it is the y that shows that there is no

@@ -22,9 +22,9 @@
 //!
 //! | class of M | methods in order |
 //! |---|---|
-//! | symmetric, semidefinite | principal pivoting if it is singular; the QP min 1/2 z'Mz + q'z; Lemke |
-//! | H-matrix with positive diagonal, P-matrix (n <= 16) | block principal pivoting; Lemke |
+//! | symmetric, semidefinite | principal pivoting and Lemke if it is singular; the QP min 1/2 z'Mz + q'z; Lemke |
 //! | M + M' semidefinite | the convex gap program, or the QP whose multipliers are unknowns as well; Lemke |
+//! | H-matrix with positive diagonal, P-matrix (n <= 16), M + M' definite | block principal pivoting before the others |
 //! | any other | Lemke |
 //!
 //! A point is answered if its residual, recomputed from M, q, l and u, meets the tolerance, whatever it comes from.
@@ -36,10 +36,11 @@ mod answer;
 mod basis;
 mod certificate;
 mod class;
-mod dense;
 mod error;
+mod exact;
 mod files;
 mod lemke;
+mod lu;
 mod pivoting;
 mod problem;
 mod quadratic;

@@ -1,16 +1,21 @@
 //! The convex programs behind a complementarity problem, solved by the QP: that of a symmetric M, also with
 //! multipliers, and the gap of a monotone one. The rays that show that there is no point are found and checked here.
 
-use signorini_qp::{ContactProblem, Error as QpError, Settings, SparseMatrix, SymmetricMatrix, solve};
+use signorini_qp::{ContactProblem, Error as QpError, Settings, SparseMatrix, SymmetricMatrix, largest, solve};
 
 use crate::answer::Found;
+use crate::class::{SMALL, dense};
 use crate::error::Error;
+use crate::exact::null_vector;
 use crate::lemke::lemke;
 use crate::problem::Lcp;
 use crate::scaled::Scaled;
 
-/// Sums that must vanish along a ray may keep this share of their terms, which are doubles.
+/// Sums below this share of their terms are taken for zero, and made so.
 const ROUNDING: f64 = 1e-12;
+
+/// What is added to the diagonal of a program that has many points.
+const SHIFT: f64 = 1e-11;
 
 /// Entries of a ray below this share of the largest are rounding, in scaled units.
 const DUST: f64 = 1e-14;
@@ -122,14 +127,25 @@ impl<'a> Program<'a> {
 ///
 /// # Errors
 /// Those of the QP that are not about this problem.
-pub fn quadratic_program(scaled: &Scaled, is_multiplier: &[bool], settings: &Settings) -> Result<Found, Error> {
+pub fn quadratic_program(
+    scaled: &Scaled,
+    is_multiplier: &[bool],
+    shift: f64,
+    settings: &Settings,
+) -> Result<Found, Error> {
     let mut program = Program::of(scaled, |i| is_multiplier[i]);
     program.push_signs(|i| is_multiplier[i]);
     let lower = scaled.matrix.triplets().filter(|entry| entry.0 >= entry.1);
     let lower = lower.filter_map(|(i, j, value)| Some((program.columns[i]?, program.columns[j]?, value)));
     let n = program.load.len();
-    let lower: Vec<_> = lower.collect();
-    program.solved(SparseMatrix::from_triplets(n, n, &lower).and_then(SymmetricMatrix::from_lower), settings)
+    let lower: Vec<_> = lower.chain((0..n).map(|k| (k, k, shift))).collect();
+    match program.solved(SparseMatrix::from_triplets(n, n, &lower).and_then(SymmetricMatrix::from_lower), settings)? {
+        // One of many points.
+        Found::Nothing(reason) if shift == 0.0 && reason.ends_with("under-held") => {
+            quadratic_program(scaled, is_multiplier, SHIFT, settings)
+        }
+        found => Ok(found),
+    }
 }
 
 /// Minimises the gap `sum (x - l)_i (w_i)+ + (u - x)_i (-w_i)+` of a monotone A over the points that meet the
@@ -157,18 +173,13 @@ pub fn gap_program(scaled: &Scaled, settings: &Settings) -> Result<Found, Error>
     program.solved(stiffness.map(|stiffness| stiffness.with_empty(parts)), settings)
 }
 
-/// The ray that shows that no point meets the inequalities `B x <= g`, if one is found: that of a single row, or by
+/// The ray that shows that no point meets the inequalities `B x <= g`, if one is found by
 /// Lemke's method on the skew problem of x and y >= 0 with 0 = B'y and `g - B x >= 0`.
 ///
 /// # Errors
 /// Those of Lemke's method.
 pub fn contradiction(lcp: &Lcp, scaled: &Scaled, allowed: f64, settings: &Settings) -> Result<Option<Error>, Error> {
     let n = lcp.unknowns();
-    let unit = |i: usize, sign: f64| -> Vec<f64> { (0..n).map(|j| if i == j { sign } else { 0.0 }).collect() };
-    let of_row = |i: usize| infeasible(lcp, scaled, &unit(i, 1.0)).or_else(|| infeasible(lcp, scaled, &unit(i, -1.0)));
-    if let Some(error) = (0..n).find_map(of_row) {
-        return Ok(Some(error));
-    }
     let mut program = Program::of(scaled, |_| false);
     program.push_signs(|_| true);
     let (size, entries) = (n + program.gaps.len(), &program.entries);
@@ -192,31 +203,52 @@ fn ray_of(demands: &[Option<(usize, f64)>], n: usize, weights: impl Iterator<Ite
     ray
 }
 
-/// The error of a problem with this ray, in scaled units; `None` if it shows nothing.
+/// The error of a problem with this ray, in scaled units; `None` if it shows nothing. What must vanish along a ray
+/// vanishes for the ray in integers near it, or only to rounding, which shows nothing.
 pub fn infeasible(lcp: &Lcp, scaled: &Scaled, ray: &[f64]) -> Option<Error> {
-    let (n, lower, upper) = (lcp.unknowns(), lcp.lower(), lcp.upper());
-    let dust = DUST * ray.iter().fold(0.0, |largest: f64, y| largest.max(y.abs()));
-    let ray: Vec<f64> = ray.iter().map(|&y| if y.abs() > dust { y } else { 0.0 }).collect();
-    let largest = (0..n).map(|i| (ray[i] * scaled.row[i]).abs()).fold(0.0, f64::max);
-    let allowed = |i: usize, y: f64| {
-        let low = if upper[i].is_infinite() { f64::INFINITY } else { 0.0 };
-        let high = if lower[i].is_infinite() { f64::INFINITY } else { 0.0 };
-        y.clamp(-high, low)
+    let dust = DUST * largest(ray);
+    let allowed = |i: usize| {
+        let low = if lcp.upper()[i].is_infinite() { f64::INFINITY } else { 0.0 };
+        let high = if lcp.lower()[i].is_infinite() { f64::INFINITY } else { 0.0 };
+        if ray[i].abs() > dust { ray[i].clamp(-high, low) } else { 0.0 }
     };
-    let ray: Vec<f64> = (0..n).map(|i| allowed(i, ray[i] * scaled.row[i] / largest)).collect();
-    let (sums, sizes) = (lcp.matrix().mul_transposed(&ray), lcp.matrix().mul_abs_transposed(&ray));
+    let ray: Vec<f64> = (0..lcp.unknowns()).map(allowed).collect();
+    shown(lcp, scaled, &ray).or_else(|| shown(lcp, scaled, &in_integers(scaled, &ray)?))
+}
+
+/// The ray in integers near another of a small problem: the columns that vanish along that to rounding vanish along it.
+fn in_integers(scaled: &Scaled, ray: &[f64]) -> Option<Vec<f64>> {
+    let (sums, sizes) = (scaled.matrix.mul_transposed(ray), scaled.matrix.mul_abs_transposed(ray));
+    let own: Vec<usize> = (0..ray.len()).filter(|&i| ray[i] != 0.0).collect();
+    if !scaled.is_exact || ray.len() > SMALL {
+        return None;
+    }
+    let columns = dense(&scaled.matrix.transposed());
+    let vanish = (0..ray.len()).filter(|&j| sums[j].abs() <= ROUNDING * sizes[j]);
+    let rows: Vec<Vec<f64>> = vanish.map(|j| own.iter().map(|&i| columns[j][i]).collect()).collect();
+    let found = null_vector(&rows, &own.iter().map(|&i| ray[i]).collect::<Vec<_>>())?;
+    let mut exact = vec![0.0; ray.len()];
+    own.into_iter().zip(found).for_each(|(i, y)| exact[i] = if y * ray[i] > 0.0 { y } else { 0.0 });
+    Some(exact)
+}
+
+/// The error of a problem with this ray, if all its signs are right without any rounding.
+fn shown(lcp: &Lcp, scaled: &Scaled, ray: &[f64]) -> Option<Error> {
+    let (n, matrix) = (lcp.unknowns(), lcp.matrix());
+    let ray: Vec<f64> = (0..n).map(|i| ray[i] * scaled.row[i]).collect();
+    let unit = (-largest(&ray).log2().floor()).exp2();
+    let ray: Vec<f64> = ray.iter().map(|y| y * unit).collect();
+    let (sums, sizes) = (matrix.mul_transposed(&ray), matrix.mul_abs_transposed(&ray));
+    let signs = matrix.signs_transposed(&ray)?;
     let (mut needed, mut terms) = (0.0, 0.0);
     for i in 0..n {
-        let bound = if sums[i] > 0.0 { upper[i] } else { lower[i] };
-        let share = match bound.is_finite() {
-            true => sums[i] * bound,
-            // What should vanish is rounding.
-            false if sums[i].abs() <= ROUNDING * sizes[i] => 0.0,
-            false => return None,
-        };
-        for term in [ray[i] * lcp.offset()[i], share] {
-            (needed, terms) = (needed - term, terms + term.abs());
+        let bound = [lcp.lower()[i], 0.0, lcp.upper()[i]][(signs[i] + 1) as usize];
+        if bound.is_infinite() {
+            return None;
         }
+        let own = ray[i] * lcp.offset()[i];
+        needed -= own + sums[i] * bound;
+        terms += own.abs() + sizes[i] * bound.abs();
     }
     (needed > DECISIVE * terms).then_some(Error::Infeasible { ray, needed })
 }

@@ -24,6 +24,10 @@ enum Way {
     Lemke(usize),
 }
 
+/// Most attempts of Lemke's method, and most of their unknowns to the third power; but three of any.
+const ATTEMPTS: usize = 64;
+const EFFORT: usize = 10_000_000;
+
 impl Way {
     /// The methods of a class, in order: the only place that decides them. A method of the settings leaves programs
     /// alone or pivoting alone, of which the active set on a quadratic program is one.
@@ -32,23 +36,22 @@ impl Way {
         let (is_singular, is_program) = (known.least.is_none(), known.scaled.multipliers.is_some());
         let (by_program, by_pivoting) = match method {
             Method::Qp(_) | Method::Penalty(_) => (true, false),
-            Method::ActiveSet => (known.class == Class::Symmetric, true),
+            Method::ActiveSet => (known.class.is_alike(), true),
             _ => (true, true),
         };
-        // A stack with more contacts than it needs: if all close, one factor is enough.
-        let is_principal = match known.class {
-            Class::Symmetric => is_singular,
-            class => class == Class::H || class == Class::P,
-        };
+        // A stack with more contacts than it needs: if all close, one factor is enough. Else the QP would wander.
+        let is_alike = known.class.is_alike();
+        let is_principal = if is_alike { is_singular } else { known.is_unique == Some(true) };
         let ways = [
             (PrincipalPivoting, by_pivoting && is_principal),
+            (Lemke(0), by_pivoting && is_alike && is_singular),
             (QuadraticProgram, by_program && known.factor.is_some() && is_program),
             (GapProgram, by_program && known.factor.is_some() && !is_program),
-            (Lemke(0), by_pivoting),
-            (Lemke(1), by_pivoting),
-            (Lemke(2), by_pivoting),
         ];
-        ways.into_iter().filter_map(|(way, is_tried)| is_tried.then_some(way)).collect()
+        let n = known.scaled.offset.len();
+        let attempts = if by_pivoting { (EFFORT / (n * n * n).max(1)).clamp(3, ATTEMPTS) } else { 0 };
+        let ways = ways.into_iter().filter_map(|(way, is_tried)| is_tried.then_some(way));
+        ways.chain((usize::from(is_alike && is_singular)..attempts).map(Lemke)).collect()
     }
 
     fn name(self) -> &'static str {
@@ -63,12 +66,12 @@ impl Way {
     fn found(self, lcp: &Lcp, known: &Known, allowed: f64, settings: &Settings) -> Result<Found, Error> {
         let scaled = &known.scaled;
         match (self, &scaled.multipliers) {
-            (Way::QuadraticProgram, Some(multipliers)) => quadratic_program(scaled, multipliers, settings),
+            (Way::QuadraticProgram, Some(multipliers)) => quadratic_program(scaled, multipliers, 0.0, settings),
             (Way::QuadraticProgram, None) => Ok(Found::Nothing("the problem has no quadratic program".into())),
             (Way::GapProgram, _) => gap_program(scaled, settings),
             (Way::PrincipalPivoting, _) => principal_pivoting(lcp, known, first_places(lcp, known), allowed, settings),
-            (Way::Lemke(_), _) if known.class != Class::General && lcp.unknowns() > DENSE => {
-                Ok(Found::Nothing(format!("Lemke's method is not tried on more than {DENSE} unknowns of this class")))
+            (Way::Lemke(_), _) if known.class != Class::General && lcp.unknowns() > TABLEAU => {
+                Ok(Found::Nothing(format!("Lemke's method is not tried on more than {TABLEAU} unknowns of this class")))
             }
             (Way::Lemke(attempt), _) => lemke(scaled, attempt, allowed, settings),
         }
@@ -77,7 +80,7 @@ impl Way {
 
 fn first_places(lcp: &Lcp, known: &Known) -> Vec<Place> {
     let place = |i: usize| match (lcp.lower()[i].is_finite(), lcp.upper()[i].is_finite()) {
-        _ if known.class == Class::Symmetric => Place::Between,
+        _ if known.class.is_alike() => Place::Between,
         (true, _) => Place::Lower,
         (false, true) => Place::Upper,
         (false, false) => Place::Between,
@@ -88,31 +91,30 @@ fn first_places(lcp: &Lcp, known: &Known) -> Vec<Place> {
 /// Residuals below this are rounding: no factorisation would improve the point.
 const ROUNDING: f64 = 1e-15;
 
-/// A point with a larger residual, even if it meets the tolerance, waits for the other methods and for a ray: far away
-/// along a ray, where terms are large, all conditions hold relative to them.
+/// A point with a larger residual, even if it meets the tolerance, waits for the other methods and for a ray. So does
+/// one that is larger than q and the bounds by `FAR`, in scaled units: far away along a ray, where terms are large, all
+/// conditions hold relative to them.
 const SHARP: f64 = 1e-13;
+const FAR: f64 = 1e12;
+
+/// The residual of a point, which is not sharp if the point is far away.
+fn rank(known: &Known, point: &Placed) -> f64 {
+    let Known { scaled, .. } = known;
+    let bounds = scaled.lower.iter().chain(&scaled.upper).filter(|bound| bound.is_finite());
+    let size = bounds.chain(&scaled.offset).fold(0.0, |size: f64, value| size.max(value.abs()));
+    let is_far = point.z.iter().zip(&scaled.column).any(|(z, unit)| (z / unit).abs() > FAR * size);
+    worst(&point.residual).1.max(if is_far { 2.0 * SHARP } else { 0.0 })
+}
 
 /// Most unknowns for a dense tableau where it is not the only method, and for the search for a ray.
+const TABLEAU: usize = 2000;
 const DENSE: usize = 1000;
-
-/// Unknowns below this share of the largest, in scaled units, may be zero.
-const DUST: f64 = 1e-14;
-
-/// The point with zeros for what rounding has left in place of them.
-fn without_dust(known: &Known, z: &[f64]) -> Vec<f64> {
-    let size = |(z, unit): (&f64, &f64)| (z / unit).abs();
-    let largest = z.iter().zip(&known.scaled.column).map(size).fold(0.0, f64::max);
-    z.iter().zip(&known.scaled.column).map(|entry| if size(entry) <= DUST * largest { 0.0 } else { *entry.0 }).collect()
-}
 
 /// The points near one that a method has found: settled with its places, and moved onto them.
 fn near(lcp: &Lcp, known: &Known, z: Vec<f64>, allowed: f64, settings: &Settings) -> Result<Vec<Placed>, Error> {
-    let (clean, residual) = (without_dust(known, &z), |point: &Placed| worst(&point.residual).1);
-    let rough = if clean == z { None } else { Some(placed(lcp, z)) };
-    let clean = placed(lcp, clean);
-    let rough = rough.filter(|rough| residual(rough) < residual(&clean)).unwrap_or(clean);
+    let rough = placed(lcp, z);
     let moved = onto(lcp, &rough.places, &rough.z);
-    let settled = match residual(&rough) <= ROUNDING {
+    let settled = match worst(&rough.residual).1 <= ROUNDING {
         true if moved == rough.z => return Ok(vec![rough]),
         true => None,
         // Wrong signs are exchanged.
@@ -146,7 +148,9 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             Found::Ray(ray) => match infeasible(lcp, &known.scaled, &ray) {
                 Some(error) => return Err(error),
                 None => {
-                    reasons.push(format!("{} ended in a ray that shows nothing", way.name()));
+                    let reason = "ended in a ray that proves nothing, at least not without rounding; with two finite \
+                                  bounds on every unknown it would end in a point";
+                    reasons.push(format!("{} {reason}", way.name()));
                     continue;
                 }
             },
@@ -156,11 +160,11 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             }
         };
         for point in near(lcp, &known, z, allowed, settings)? {
-            let residual = worst(&point.residual).1;
-            if best.as_ref().is_none_or(|best| residual < best.0) {
-                best = Some((residual, point, way.name(), iterations));
+            let rank = rank(&known, &point);
+            if best.as_ref().is_none_or(|best| rank < best.0) {
+                best = Some((rank, point, way.name(), iterations));
             }
-            if residual <= tolerance.min(SHARP) {
+            if rank <= tolerance.min(SHARP) {
                 break;
             }
         }
@@ -176,7 +180,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
     }
     // Attempts of one method end alike.
     reasons.dedup();
-    let Some((residual, point, method, iterations)) = best else {
+    let Some((_, point, method, iterations)) = best else {
         return Err(match settings.watch.acknowledge() {
             true => QpError::Interrupted.into(),
             false if settings.watch.is_over() => {
@@ -188,7 +192,7 @@ pub fn solved(lcp: &Lcp, settings: &Settings) -> Result<LcpSolution, Error> {
             false => Error::NotFound { reason: reasons.join("; ") },
         });
     };
-    let (index, solution) = (worst(&point.residual).0, examined(lcp, &known, point));
+    let ((index, residual), solution) = (worst(&point.residual), examined(lcp, &known, point));
     let solution = LcpSolution { method, iterations, seconds: start.elapsed().as_secs_f64(), ..solution };
     match residual <= tolerance {
         true => Ok(solution),

@@ -26,7 +26,9 @@ pub struct Scaled {
     pub multipliers: Option<Vec<bool>>,
     /// `true` if A is symmetric to rounding.
     pub is_alike: bool,
-    /// `true` if A is symmetric, and all scales are powers of two: without any rounding.
+    /// `true` if all scales are powers of two: then A has no rounding.
+    pub is_exact: bool,
+    /// `true` if it is so, and A is symmetric.
     pub is_symmetric: bool,
 }
 
@@ -70,13 +72,15 @@ impl Scaled {
         let is_plain =
             |i: usize| lcp.upper()[i].is_infinite() && (lcp.lower()[i] == 0.0 || lcp.lower()[i].is_infinite());
         let is_program = apart <= ALIKE && (0..own.len()).all(|i| !is_multiplier[i] || is_plain(i));
-        let is_exact = row.iter().chain(&column).all(|&scale| is_power(scale));
+        let is_kept = |(a, m): (&f64, &f64)| *m == 0.0 || a.is_normal();
+        let is_exact = row.iter().chain(&column).all(|&scale| is_power(scale))
+            && matrix.values().iter().zip(lcp.matrix().values()).all(is_kept);
         let is_alike = apart <= ALIKE && !is_multiplier.contains(&true);
         let (is_symmetric, multipliers) = (is_alike && is_exact && apart == 0.0, is_program.then_some(is_multiplier));
         let times = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect();
         let over = |bounds: &[f64]| bounds.iter().zip(&column).map(|(bound, unit)| bound / unit).collect();
         let (offset, lower, upper) = (times(lcp.offset(), &row), over(lcp.lower()), over(lcp.upper()));
-        Scaled { matrix, offset, lower, upper, row, column, multipliers, is_alike, is_symmetric }
+        Scaled { matrix, offset, lower, upper, row, column, multipliers, is_alike, is_exact, is_symmetric }
     }
 
     /// Unit diagonals after each row was multiplied by its share.

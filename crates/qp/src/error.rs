@@ -117,7 +117,7 @@ pub enum Error {
         direction: Vec<f64>,
     },
     /// A step that cannot be interrupted, such as a factorisation, would take longer than the time that is left.
-    #[error("the next step takes about {needed:.1e} s, and {time:.1e} s are left")]
+    #[error("the next step takes about {needed:.2} s, and {time:.2} s are left; allow more time")]
     OutOfTime {
         /// Seconds that the step takes, estimated.
         needed: f64,

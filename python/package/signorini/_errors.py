@@ -72,9 +72,9 @@ class Infeasible(SignoriniError):
     Attributes
     ----------
     ray : array, shape (n,), or None
-        Of a complementarity problem: y, its largest entry 1, which shows that no z meets the inequalities. Without upper
-        bounds y >= 0, M'y <= 0 and q'y < 0. `rows` and `weights` are its entries that are not zero, and `overlap` is what
-        the rows demand beyond what they can give. None for a contact problem.
+        Of a complementarity problem: y, its largest entry from 1 to 2, which shows that no z meets the inequalities.
+        Without upper bounds y >= 0, M'y <= 0 and q'y < 0. `rows` and `weights` are its entries that are not zero, and
+        `overlap` is what the rows demand beyond what they can give. None for a contact problem.
     rows : array of int
         Indices of the rows that contradict each other, counted from 0.
     weights : array, one per row of `rows`

@@ -360,6 +360,18 @@ impl SparseMatrix {
         self.transposed_product(y, |value| value)
     }
 
+    /// The signs of the entries of A' y, without any rounding; `None` if a product leaves the range in which that is
+    /// possible.
+    pub fn signs_transposed(&self, y: &[f64]) -> Option<Vec<i32>> {
+        let sign = |column: usize| {
+            let mut sum = ExactSum::default();
+            let entries = self.column(column).filter(|entry| y[entry.0] != 0.0);
+            entries.for_each(|(row, value)| sum.add_product(value, y[row]));
+            sum.sign()
+        };
+        (0..self.columns()).map(sign).collect()
+    }
+
     /// The product A' y, of which `entry` makes the entries of A.
     fn transposed_product(&self, y: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let of_column = |column: usize| {

@@ -190,6 +190,33 @@ impl LcpCase {
     }
 }
 
+impl LcpCase {
+    pub fn is_symmetric(&self) -> bool {
+        (0..self.unknowns()).all(|i| (0..i).all(|j| self.matrix[i][j] == self.matrix[j][i]))
+    }
+
+    /// Returns `true` if a symmetric M is positive semidefinite, by Schur complements times their pivots.
+    pub fn is_semidefinite(&self) -> bool {
+        let exact = |row: &Vec<f64>| row.iter().map(|&value| Dyadic::from(value)).collect();
+        let mut rows: Vec<Vec<Dyadic>> = self.matrix.iter().map(exact).collect();
+        while let Some(last) = rows.pop() {
+            let pivot = &last[rows.len()];
+            if pivot.sign() < 0 || (pivot.is_zero() && last.iter().any(|entry| !entry.is_zero())) {
+                return false;
+            }
+            let count = rows.len();
+            if !pivot.is_zero() {
+                for row in &mut rows {
+                    let factor = row[count].clone();
+                    (0..count).for_each(|j| row[j] = &(&row[j] * pivot) - &(&factor * &last[j]));
+                }
+            }
+            rows.iter_mut().for_each(|row| row.truncate(count));
+        }
+        true
+    }
+}
+
 fn has_positive_minors(mut rows: Vec<Vec<BigInt>>) -> bool {
     let Some(last) = rows.pop() else { return true };
     let place = rows.len();
