@@ -52,12 +52,13 @@ impl LcpSolution {
         self.inner.class
     }
 
-    /// "one" if there is no other solution, "same-w" if all solutions have the same w, "unknown" if nothing is proven.
+    /// "one" if there is no other solution, "several" if all have the same w and there may be several z, "unknown" if
+    /// nothing is proven.
     #[getter]
     fn unique(&self) -> &'static str {
         match self.inner.is_unique {
             Some(true) => "one",
-            Some(false) => "same-w",
+            Some(false) => "several",
             None => "unknown",
         }
     }

@@ -35,7 +35,7 @@ def test_bounds_take_their_part() -> None:
 @pytest.mark.parametrize(
     ("matrix", "q", "kind", "unique"),
     [
-        ([[1, -1], [-1, 1]], [1, 1], "symmetric", "same-w"),
+        ([[1, -1], [-1, 1]], [1, 1], "symmetric", "several"),
         ([[2, -1], [0, 1]], [-1, -1], "h-matrix", "one"),
         ([[0, 1], [-1, 0]], [-1, 2], "monotone", "unknown"),
         ([[1, 3, 0], [0, 1, 3], [3, 0, 1]], [-1, -1, -1], "p-matrix", "one"),

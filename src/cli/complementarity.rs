@@ -216,7 +216,7 @@ fn class_in_words(solution: &LcpSolution) -> &'static str {
 fn unique(solution: &LcpSolution) -> &'static str {
     match solution.is_unique {
         Some(true) => "one",
-        Some(false) => "same-w",
+        Some(false) => "several",
         None => "unknown",
     }
 }

@@ -47,7 +47,7 @@ fn every_class_is_solved_compared_and_verified() {
     classes(&desk);
     for (name, class, unique, method) in [
         ("symmetric", "symmetric", "one", "quadratic-program"),
-        ("semidefinite", "symmetric", "same-w", ""),
+        ("semidefinite", "symmetric", "several", ""),
         ("h-matrix", "h-matrix", "one", "principal-pivoting"),
         ("monotone", "monotone", "unknown", "gap-program"),
         ("p-matrix", "p-matrix", "one", "principal-pivoting"),
