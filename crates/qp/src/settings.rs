@@ -292,9 +292,6 @@ impl Settings {
     }
 
     /// Checks the range of every setting.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for the first that is not in its range.
     fn check(&self) -> Result<(), Error> {
         for (name, value) in [("tolerance", self.tolerance), ("accuracy", self.accuracy)] {
             value.map_or(Ok(()), |value| positive(name, value))?;

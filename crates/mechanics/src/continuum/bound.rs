@@ -123,10 +123,6 @@ impl Side {
 
 impl<'a> Bracket<'a> {
     /// Solves both problems on a mesh, and checks their properties. Both start from the given touching nodes.
-    ///
-    /// # Errors
-    /// Those of [`solve`]; [`qp::Error::Interrupted`] if no time is left for a bound; [`qp::Error::Numerical`] if the
-    /// check finds a defect beyond rounding: then there is no guarantee.
     pub fn new(
         problem: &'a ContinuumProblem,
         mesh: &'a SimplexMesh,

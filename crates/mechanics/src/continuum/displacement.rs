@@ -95,9 +95,6 @@ impl<'a> Displacements<'a> {
 
     /// The rows that keep a displacement out of the obstacles, each function and obstacle once: those with a free
     /// unknown, and then those that supports hold.
-    ///
-    /// # Errors
-    /// [`qp::Error::Infeasible`] if a prescribed displacement leads into an obstacle.
     pub fn rows(&self, unknowns: &Unknowns) -> Result<[Vec<Row>; 2], Error> {
         let mut gaps: BTreeMap<(usize, usize, Option<usize>), f64> = BTreeMap::new();
         let dimension = self.mesh.dimension;

@@ -46,8 +46,6 @@ pub struct Place {
 type Congruence = ([[u64; 3]; MOST_CORNERS - 1], usize, Option<[u64; 3]>);
 
 impl<'a> Stresses<'a> {
-    /// # Errors
-    /// [`qp::Error::Numerical`] for a flat simplex.
     pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Result<Self, Error> {
         let dimension = mesh.dimension;
         let of_facet = dimension * dimension;

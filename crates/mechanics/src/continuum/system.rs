@@ -392,9 +392,6 @@ impl Unknowns {
 
     /// The problem of simplices with these unknowns and matrices, under a load on all unknowns, with rows. At each of
     /// the `places` a linear displacement has the values of the unknowns along the axes.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
     pub fn problem(
         &self,
         dimension: usize,

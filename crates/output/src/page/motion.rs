@@ -34,9 +34,6 @@ pub(super) struct MotionShown {
 
 impl MotionShown {
     /// The motion with its kept frames.
-    ///
-    /// # Errors
-    /// Those of reading frames, and of the recovery of stresses.
     pub fn of(
         frames: &MotionFrames,
         shape: &Shape,

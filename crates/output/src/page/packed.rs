@@ -115,9 +115,6 @@ impl Packer {
     }
 
     /// The block, deflated without a header, in base64.
-    ///
-    /// # Errors
-    /// [`qp::Error::Numerical`] if the encoder fails.
     pub fn finished(self) -> Result<String, Error> {
         let failed = |error: std::io::Error| qp::Error::Numerical { step: "packing a page", reason: error.to_string() };
         let mut deflated = DeflateEncoder::new(Vec::new(), Compression::default());

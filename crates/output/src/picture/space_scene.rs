@@ -88,9 +88,6 @@ struct Shared {
 
 /// Draws a series of one model in space with common colours, a common magnification and a common part of the contact:
 /// those of its first `leading` pictures.
-///
-/// # Errors
-/// As [`Drawing::write`](crate::Drawing::write).
 pub(crate) fn draw_space_series(
     folder: &Path,
     series: &[(String, SpaceScene)],

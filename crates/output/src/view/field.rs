@@ -75,9 +75,6 @@ pub(crate) struct Painted {
 
 impl Painted {
     /// `field` is a stress.
-    ///
-    /// # Errors
-    /// Those of the recovery of stresses.
     pub fn of(answer: &Answer, field: &Field) -> Result<Self, Error> {
         let principal = answer.stress()?.nodes.iter().flat_map(|of| [of.sigma_1, of.sigma_2, of.sigma_3]);
         let largest = principal.fold(0.0, |largest: f64, stress| largest.max(stress.abs()));

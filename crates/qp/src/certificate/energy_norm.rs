@@ -101,9 +101,6 @@ pub(super) struct Known {
 impl EnergyNorm {
     /// The energy norm of `stiffness`, with the boundary of the dofs in the rows `contact`; `None` if the stiffness is
     /// not positive definite to working precision.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
     pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>, Error> {
         if stiffness.diagonal().iter().any(|&value| value <= 0.0) {
             return Ok(None);

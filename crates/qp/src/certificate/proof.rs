@@ -68,9 +68,6 @@ impl ContactProblem {
 
     /// The same for vectors that fit, with the factor of the certificate that gave the evidence, or with one of its
     /// own.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::certify`].
     pub(crate) fn prove_alone(&self, mut answer: WithEvidence) -> Result<Option<ProvenSet>, Error> {
         let norm = match answer.evidence.as_mut().and_then(|evidence| evidence.norm.take()) {
             Some(norm) => Some(norm),

@@ -14,9 +14,6 @@ pub(super) struct Springs {
 
 impl Springs {
     /// `K + B_C' D B_C`; `None` if no row presses.
-    ///
-    /// # Errors
-    /// As [`SymmetricMatrix::plus_squares`](crate::linear::SymmetricMatrix::plus_squares).
     pub fn added_to(
         &self,
         stiffness: &SymmetricMatrix,

@@ -67,8 +67,6 @@ impl Change {
         Change { load: times(&self.load), distance: times(&self.distance) }
     }
 
-    /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit.
     pub(super) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
         check_vector("change of the load", &self.load, (dofs, "dofs"), f64::is_finite, "finite")?;
         check_vector(

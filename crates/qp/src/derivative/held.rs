@@ -24,9 +24,6 @@ pub(super) struct Held {
 impl Derivatives {
     /// `K x - B_C' y = force`, `B_C x = distances` on the rows of `closed`: with a factor, corrected by residuals in
     /// twice the precision. `None` if the rows do not hold the body, or follow from each other.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] and [`Error::Interrupted`].
     pub(super) fn held(&self, closed: &ContactSet, force: &[f64], distances: &[f64]) -> Result<Option<Held>, Error> {
         let watch = &self.settings.watch;
         let is_exact = self.engine.hierarchy().is_none();

@@ -33,9 +33,6 @@ pub(super) enum Rows {
 }
 
 /// The rows of the exact answer of `problem`, of which `solution` is the answer in doubles.
-///
-/// # Errors
-/// [`Error::Length`] for an answer that does not fit, and those of the proof.
 pub(super) fn rows_of(
     problem: &ContactProblem,
     engine: &dyn Engine,

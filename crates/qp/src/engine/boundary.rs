@@ -25,9 +25,6 @@ impl Factored {
     /// The result of the method with the certificate of the condensed problem: its conditions recomputed there, and its
     /// error bound if it is asked for. `None` if it does not meet the goal, or if the condensed problem is that of a
     /// refinement only.
-    ///
-    /// # Errors
-    /// As [`Engine::make`](super::interface::Engine::make).
     pub(super) fn found_on_boundary(
         &self,
         task: &Task,
@@ -46,9 +43,6 @@ impl Factored {
     }
 
     /// The same as an answer of the whole problem.
-    ///
-    /// # Errors
-    /// As [`Engine::make`](super::interface::Engine::make).
     pub fn answer_on_boundary(self: Arc<Self>, task: &Task, is_bounded: bool) -> Result<Option<OnBoundary>, Error> {
         let Some((found, condensed_certificate)) = self.found_on_boundary(task, is_bounded)? else { return Ok(None) };
         Ok(Some(OnBoundary {

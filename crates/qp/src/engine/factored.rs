@@ -272,9 +272,6 @@ impl Factored {
 
     /// A watch that is over as soon as there is no time left for one more factorisation of a loop and for the
     /// certificate.
-    ///
-    /// # Errors
-    /// [`Error::OutOfTime`] if there is no time for the first factorisation.
     fn watch_of_loop(&self, method: ByFactor, watch: &Watch) -> Result<Watch, Error> {
         if watch.time_left().is_none() {
             return Ok(watch.clone());

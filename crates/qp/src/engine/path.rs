@@ -29,9 +29,6 @@ impl Expansion for ToRows {
 impl Factored {
     /// The way from the answer of a task to the answer at the gaps `to`; `None` if the task has no answer on the
     /// boundary that meets its goal.
-    ///
-    /// # Errors
-    /// As [`Prepared::path`](crate::Prepared::path).
     pub fn walk_to(self: Arc<Self>, from: &Task, to: &[f64]) -> Result<Option<Walk>, Error> {
         let reduction = &self.reduction;
         let is_walkable = reduction.is_definite();

@@ -25,9 +25,6 @@ pub(super) struct ScaledStep<'a> {
 
 impl ScaledStep<'_> {
     /// The outcome of `step`; `None` if the step has no means here.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory, and if a solver refuses its input.
     pub fn outcome(self, step: Step) -> Result<Option<Outcome>, Error> {
         match step {
             Step::Method => self.by_method().map(Some),

@@ -85,25 +85,16 @@ fn triangle(columns: usize) -> usize {
 
 impl AugmentedMatrix {
     /// Joins the patterns of K (n x n) and B (m x n) and analyses them once.
-    ///
-    /// # Errors
-    /// As [`Analysis::of`].
     pub fn new(stiffness: &SymmetricMatrix, rows: &SparseMatrix) -> Result<Self, FactorError> {
         Self::analysed(stiffness, rows, Analysis::of)
     }
 
     /// As [`AugmentedMatrix::new`], with the columns of `last` eliminated last.
-    ///
-    /// # Errors
-    /// As [`Analysis::with_last`].
     pub fn with_last(stiffness: &SymmetricMatrix, rows: &SparseMatrix, last: &[usize]) -> Result<Self, FactorError> {
         Self::analysed(stiffness, rows, |joined| Analysis::with_last(joined, last))
     }
 
     /// As [`AugmentedMatrix::new`], with an available `analysis` of K, if K has a place for every entry.
-    ///
-    /// # Errors
-    /// As [`Analysis::of`].
     pub fn with_analysis(
         stiffness: &SymmetricMatrix,
         rows: &SparseMatrix,
@@ -152,9 +143,6 @@ impl AugmentedMatrix {
     }
 
     /// Factorises a matrix that [`AugmentedMatrix::matrix`] returned, and frees it.
-    ///
-    /// # Errors
-    /// As [`Analysis::factor`].
     pub fn factor(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
         self.analysis.factor_last(matrix)
     }
@@ -184,9 +172,6 @@ impl Augmented {
     }
 
     /// The augmented matrix, analysed when it is first asked for.
-    ///
-    /// # Errors
-    /// As [`AugmentedMatrix::new`].
     pub fn matrix(&self) -> Result<&AugmentedMatrix, FactorError> {
         let Augmented { stiffness, rows, analysis, threads, .. } = self;
         let made = || {

@@ -46,9 +46,6 @@ impl Cholesky {
 impl SymmetricMatrix {
     /// Returns `true` if the matrix is positive semidefinite, to rounding: its equilibrated form plus a small multiple
     /// of the unit matrix has a factor.
-    ///
-    /// # Errors
-    /// Those of the factorisation, except for [`FactorError::NotPositiveDefinite`].
     pub(crate) fn is_semidefinite(&self) -> Result<bool, FactorError> {
         let diagonal = self.diagonal();
         let has_none = |dof: usize| diagonal[dof] == 0.0;

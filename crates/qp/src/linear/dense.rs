@@ -58,9 +58,6 @@ pub fn take_out(vector: &mut [f64], direction: &[f64]) -> f64 {
 }
 
 /// Checks that a vector has an entry for each of those that it belongs to, and that its values are allowed.
-///
-/// # Errors
-/// [`Error::Length`], [`Error::NotFinite`].
 pub fn check_vector(
     name: &'static str,
     values: &[f64],

@@ -30,9 +30,6 @@ impl From<FactorError> for Error {
 }
 
 /// The factor of a matrix that may not be positive definite; `None` if it is not.
-///
-/// # Errors
-/// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
 pub fn if_definite<T>(factor: Result<T, FactorError>) -> Result<Option<T>, Error> {
     match factor {
         Err(FactorError::NotPositiveDefinite) => Ok(None),
@@ -68,9 +65,6 @@ pub(crate) struct Permuted {
 }
 
 /// Factorises a matrix.
-///
-/// # Errors
-/// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for lack of memory.
 pub(super) fn factorise(
     supernodes: &supernodal::SymbolicSupernodalCholesky<usize>,
     permuted: &Permuted,

@@ -480,9 +480,6 @@ impl<E: Fn(f64) -> f64> WithSimd for Product<'_, E> {
 }
 
 /// The rows of a matrix are numbered by 32 bits.
-///
-/// # Errors
-/// [`Error::Pattern`] for more rows.
 fn check_rows(rows: usize) -> Result<(), Error> {
     match u32::try_from(rows) {
         Ok(_) => Ok(()),

@@ -79,9 +79,6 @@ impl SymmetricMatrix {
     ///
     /// Inverse iteration with A + 1e-10 I, each vector orthogonal to those before, ends at the first vector with
     /// energy; `shifts` are those of this matrix.
-    ///
-    /// # Errors
-    /// [`FactorError::NotPositiveDefinite`] if an eigenvalue is clearly negative, and those of the factorisation.
     pub(crate) fn null_space(&self, shifts: &AugmentedMatrix) -> Result<Option<NullSpace>, FactorError> {
         let factor = shifts.shifted(SHIFT)?.ok_or(FactorError::NotPositiveDefinite)?;
         let (mut found, components): (Vec<Vec<f64>>, _) = (Vec::new(), self.components());
@@ -213,9 +210,6 @@ impl SymmetricMatrix {
 
     /// A direction of negative energy, if there is one beyond rounding: largest entry one. `None` also if the `watch`
     /// is over.
-    ///
-    /// # Errors
-    /// Those of the factorisation.
     pub(crate) fn negative_direction(
         &self,
         shifts: &AugmentedMatrix,
@@ -242,9 +236,6 @@ impl SymmetricMatrix {
     }
 
     /// The factor of `A + shift I`; `None` if that is not positive definite.
-    ///
-    /// # Errors
-    /// Those of the factorisation, except for [`FactorError::NotPositiveDefinite`].
     pub(super) fn shifted_factor(&self, shift: f64) -> Result<Option<Cholesky>, FactorError> {
         self.shifts(Analysis::of(self)?)?.shifted(shift)
     }

@@ -32,9 +32,6 @@ pub struct Fill {
 
 impl Fill {
     /// The fill of the factor of `matrix`, found without a factorisation.
-    ///
-    /// # Errors
-    /// [`FactorError::Failed`] if memory or the index range does not suffice.
     pub fn by_minimum_degree(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
         call(|| {
             let quotient = Quotient::of(matrix.lower());
@@ -48,9 +45,6 @@ impl Fill {
 ///
 /// Columns with the same neighbours (the dofs of a node) are ordered as one, which is faster and gives less fill. The
 /// order is that of minimum degree, or of nested dissection if that is worth its time and needs fewer multiplications.
-///
-/// # Errors
-/// [`FactorError::Failed`] if memory or the index range does not suffice.
 pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, FactorError> {
     let mut quotient = Quotient::of(lower);
     let (by_degree, fill) = minimum_degree(&quotient)?;

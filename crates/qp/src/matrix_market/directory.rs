@@ -67,10 +67,6 @@ fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactP
 }
 
 /// Reads the gaps in `g1.mtx` and the load in `f1.mtx` of a directory, as [`ContactProblem::read_other_end`] describes.
-///
-/// # Errors
-/// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps
-/// that are infinite in other rows.
 pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem, Error> {
     let [gap_file, load_file] = ["g1.mtx", "f1.mtx"].map(|name| directory.join(name));
     if !gap_file.exists() && !load_file.exists() {
@@ -180,17 +176,11 @@ pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
 }
 
 /// A vector, in the unit of its file, that may have the entries `-inf` and `inf`.
-///
-/// # Errors
-/// As [`read_vector`].
 pub fn read_bounds(file: &Path) -> Result<Vec<f64>, Error> {
     vector(file, Values::Bounds)
 }
 
 /// All entries of a file; if it is symmetric, it holds the lower triangle only.
-///
-/// # Errors
-/// As [`read_vector`].
 pub fn read_matrix(file: &Path) -> Result<SparseMatrix, Error> {
     let mut content = read(file, Values::Finite)?;
     check_filled(file, &content, content.rows.max(content.columns))?;

@@ -34,18 +34,12 @@ impl Lines {
     }
 
     /// The next line, with its number from 1 and without blanks at its ends.
-    ///
-    /// # Errors
-    /// [`Error::File`].
     pub fn next(&mut self) -> Result<Option<(usize, &str)>, Error> {
         let there = self.advance().map_err(|source| Error::File { action: "read", path: self.file.clone(), source })?;
         Ok(there.then(|| (self.number, self.text.trim())))
     }
 
     /// The next line that is neither blank nor a comment.
-    ///
-    /// # Errors
-    /// As [`Lines::next`].
     pub fn next_data(&mut self) -> Result<Option<(usize, &str)>, Error> {
         loop {
             match self.next()? {

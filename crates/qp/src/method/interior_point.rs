@@ -73,9 +73,6 @@ impl Solver for Barrier<'_> {
     ///
     /// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the
     /// outcome is then unsettled, and at rest if there is no answer in it.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if the solver refuses its input.
     fn solve(&self, _: Start) -> Result<Outcome, Error> {
         let (problem, watch) = (self.scaled.problem, self.scaled.watch());
         if problem.rows() == 0 {

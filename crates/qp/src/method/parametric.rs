@@ -121,10 +121,6 @@ impl Compliance {
     }
 
     /// Walks from t = 0 to t = 1, from the set that holds at the beginning.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if the closed rows are dependent beyond repair, or if the walk does not end;
-    /// [`Error::Interrupted`].
     pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>), Error> {
         let (mut pieces, mut events) = (Vec::new(), Vec::new());
         let mut closed = ContactSet::open(self.rows());

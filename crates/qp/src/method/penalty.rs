@@ -87,9 +87,6 @@ const FINAL_SOLVES: usize = 2;
 
 impl Solver for PenaltyLoop<'_> {
     /// Climbs the ladder from the contact set of `start`.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let PenaltyLoop { scaled, ladder, .. } = self;
         let mut climb = Climb::new(scaled.problem, start);

@@ -17,9 +17,6 @@ pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
 /// A method, together with the problem that it works on.
 pub trait Solver {
     /// The result of the method from `start`.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory, and those of the method.
     fn solve(&self, start: Start) -> Result<Outcome, Error>;
 }
 
@@ -85,25 +82,16 @@ impl<'a> ScaledProblem<'a> {
     }
 
     /// The analysed pattern of K + B'B.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub(super) fn augmented(&self) -> Result<&AugmentedMatrix, Error> {
         Ok(self.augmented.matrix()?)
     }
 
     /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub(super) fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> Result<SymmetricMatrix, Error> {
         Ok(self.augmented()?.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift))
     }
 
     /// The factor of such a matrix; `None` if it is not positive definite.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub(super) fn factor(&self, matrix: SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
         let clock = Instant::now();
         let factor = if_definite(self.augmented()?.factor(matrix));

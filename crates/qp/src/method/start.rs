@@ -55,9 +55,6 @@ impl Start {
     }
 
     /// Refuses a start that does not fit a problem with this number of dofs and rows, or is not finite.
-    ///
-    /// # Errors
-    /// [`Error::Length`], [`Error::NotFinite`].
     pub(crate) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
         let lengths = [
             ("the displacement to start from", self.displacement.as_ref().map(Vec::len), dofs, "dofs"),

@@ -32,9 +32,6 @@ struct Pivot {
 impl Bonded {
     /// The space in which the rows of B (m x n) with the indices `closed` vanish. The unknowns of `first` are
     /// eliminated where they can be; otherwise that with the largest entry of a row.
-    ///
-    /// # Errors
-    /// [`Error::IndexOutOfRange`] for a row beyond the last.
     pub fn of(rows: &SparseMatrix, closed: &[usize], first: &[usize]) -> Result<Self, Error> {
         let by_row = rows.transposed();
         let mut pivots: Vec<Pivot> = Vec::with_capacity(closed.len());
@@ -108,9 +105,6 @@ impl Bonded {
     }
 
     /// The matrix `Z'A Z` of a matrix A (n x n).
-    ///
-    /// # Errors
-    /// [`Error::Length`] for a matrix of another size, [`Error::NotFinite`] if its entries overflow.
     pub fn reduced<'a>(&self, matrix: &'a SymmetricMatrix) -> Result<Cow<'a, SymmetricMatrix>, Error> {
         match self.is_free() && matrix.dim() == self.lift.columns() {
             true => Ok(Cow::Borrowed(matrix)),

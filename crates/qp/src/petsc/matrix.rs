@@ -44,9 +44,6 @@ pub(super) struct Row {
 
 impl Rows {
     /// Opens a sparse matrix, and reads the lengths of its rows.
-    ///
-    /// # Errors
-    /// [`Error::File`], [`Error::FileBytes`].
     pub fn open(path: &Path) -> Result<Self, Error> {
         let (mut source, [rows, columns], announced) = read_header(path)?;
         if announced == DENSE {
@@ -86,10 +83,6 @@ impl Rows {
     }
 
     /// Reads the next row; `false` behind the last.
-    ///
-    /// # Errors
-    /// [`Error::File`]; [`Error::FileBytes`] for columns that do not increase or lie outside, and for values that are
-    /// not finite.
     pub fn read(&mut self, into: &mut Row) -> Result<bool, Error> {
         let Some(&length) = self.lengths.get(self.next) else { return Ok(false) };
         let row = self.next;
@@ -132,9 +125,6 @@ impl Rows {
 }
 
 /// The columns of a matrix of `rows` rows that is stored with all its entries.
-///
-/// # Errors
-/// [`Error::File`]; [`Error::FileBytes`] for another shape or form, and for values that are not finite.
 pub(super) fn dense_columns(path: &Path, rows: usize) -> Result<Vec<Vec<f64>>, Error> {
     let (mut source, [found, count], announced) = read_header(path)?;
     if found != rows || count == 0 {

@@ -50,9 +50,6 @@ pub(crate) struct Ladder {
 
 impl Ladder {
     /// The ladder for `problem`.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if neither a factor nor multigrid fits into the memory, [`Error::NearlyLinear`].
     pub fn of(problem: &ContactProblem, known: Known, settings: &Settings) -> Result<Self, Error> {
         let mut ladder = Ladder {
             attempts: Vec::with_capacity(8),

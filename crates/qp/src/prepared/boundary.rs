@@ -50,9 +50,6 @@ impl BoundarySolution {
     }
 
     /// The whole answer, with the certificate of the problem itself.
-    ///
-    /// # Errors
-    /// [`Error::NotCertified`] and [`Error::Infeasible`], as [`solve`](crate::solve()).
     pub fn solution(self) -> Result<Solution, Error> {
         match self.inside {
             Inside::Whole(solution) => Ok(*solution),

@@ -52,9 +52,6 @@ impl ContactProblem {
     }
 
     /// The same with all rows, whether they follow from each other or not.
-    ///
-    /// # Errors
-    /// As [`with_equalities`](Self::with_equalities).
     pub(crate) fn with_all_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
         if rows.columns() != self.dofs() {
             let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));

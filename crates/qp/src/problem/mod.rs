@@ -120,9 +120,6 @@ impl ContactProblem {
     }
 
     /// The same for numbers that come from another problem: every finite gap is a length, and none is rounding.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
     pub(crate) fn computed(
         stiffness: SymmetricMatrix,
         load: Vec<f64>,
@@ -267,9 +264,6 @@ impl ContactProblem {
     }
 
     /// Returns `true` if K is positive semidefinite, to rounding. One factorisation, at the first use.
-    ///
-    /// # Errors
-    /// Those of the factorisation, for example for lack of memory.
     pub(crate) fn is_semidefinite(&self) -> Result<bool, Error> {
         if let Some(&found) = self.semidefinite.get() {
             return Ok(found);
@@ -331,10 +325,6 @@ impl ContactProblem {
     }
 
     /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping
-    /// gaps.
     pub(crate) fn check_rows(&self) -> Result<(), Error> {
         match self.opposed_rows().check(&self.gap) {
             Err(Error::Infeasible { rows, weights, .. }) if self.equality_rows > 0 => {
@@ -396,17 +386,11 @@ impl ContactProblem {
 }
 
 /// Checks that `load` has the right length and allowed values.
-///
-/// # Errors
-/// [`Error::Length`], [`Error::NotFinite`].
 pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
     check_vector("load vector", load, (dofs, "dofs"), f64::is_finite, "finite")
 }
 
 /// Checks that `gap` has the right length and allowed values.
-///
-/// # Errors
-/// [`Error::Length`], [`Error::NotFinite`] for a gap that is NaN or minus infinity.
 pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
     let allowed = "finite, or +inf for a row without obstacle";
     check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)

@@ -76,10 +76,6 @@ impl OpposedRows {
     }
 
     /// Checks that no rows contradict each other at sight under `gap` (length m).
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping
-    /// gaps.
     pub fn check(&self, gap: &[f64]) -> Result<(), Error> {
         if let Some(&row) = self.unmoved.iter().find(|&&row| gap[row] < 0.0) {
             let reason =

@@ -16,9 +16,6 @@ use crate::settings::Settings;
 use crate::solution::{Certificate, Seconds, Solution, Why};
 
 /// The answer of `problem` from a start, by the ladder of `settings`.
-///
-/// # Errors
-/// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for a start that does not fit.
 pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
     by(problem, start, settings, |ladder| ladder)
 }
@@ -39,9 +36,6 @@ fn by(
 }
 
 /// The engine with these means; `None` for the problem alone.
-///
-/// # Errors
-/// Those of the engine.
 pub(crate) fn engine_by(
     means: Means,
     problem: &ContactProblem,
@@ -100,9 +94,6 @@ impl<'a> Run<'a> {
     }
 
     /// Carries out the ladder; the best answer, if it meets the goal.
-    ///
-    /// # Errors
-    /// As [`solve`](crate::solve()).
     pub fn solved(mut self) -> Result<Solution, Error> {
         self.carry_out();
         self.ended()

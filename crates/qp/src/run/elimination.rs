@@ -29,9 +29,6 @@ pub(crate) struct KeptRest<'a> {
 
 /// The answer, found by `solve` without the equalities, or by what is `kept`, with the equalities put back and without
 /// a certificate; nothing if they are not eliminated, or if it is left to the whole whether there is an answer.
-///
-/// # Errors
-/// [`Error::Infeasible`] with rows of the whole; [`Error::Interrupted`].
 pub(super) fn solved(
     problem: &ContactProblem,
     start: &Start,

@@ -41,9 +41,6 @@ impl Condensation {
 
     /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does
     /// not pay.
-    ///
-    /// # Errors
-    /// As [`Analysis::sparse_with_last`].
     pub fn analyse(stiffness: &SymmetricMatrix, contact_dofs: &[usize]) -> Result<Option<Analysis>, FactorError> {
         let (dim, count) = (stiffness.dim() as f64, contact_dofs.len() as f64);
         if !Self::pays(count, dim, f64::INFINITY) {
@@ -64,9 +61,6 @@ impl Condensation {
 
     /// Condenses with a factorisation of K, or if it `holds_rows` of K + B'B, that put `contact_dofs` last; the rows
     /// are subtracted from the Schur complement.
-    ///
-    /// # Errors
-    /// Those of the sparse matrices, if the data leave the range of double precision.
     pub fn new(
         cholesky: Cholesky,
         holds_rows: bool,
@@ -178,9 +172,6 @@ fn subtract_rows(schur: &mut [f64], contact: &SparseMatrix) {
 }
 
 /// The lower triangle of a dense matrix (n x n, column by column), zeros included.
-///
-/// # Errors
-/// [`Error::NotFinite`] for an entry that is not finite.
 fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
     let entries = size * (size + 1) / 2;
     let (mut starts, mut rows, mut values) =

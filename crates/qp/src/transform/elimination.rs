@@ -54,9 +54,6 @@ pub struct Elimination {
 impl Elimination {
     /// The elimination of all equalities of `problem`; `None` if it would fill the stiffness, or if it is open within
     /// rounding whether some of them follow from others or contradict them.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for equalities that contradict each other.
     pub fn of(problem: &ContactProblem) -> Result<Option<Self>, Error> {
         match Self::cut(problem, usize::MAX)? {
             Some(elimination) => Ok(Some(elimination)),
@@ -145,9 +142,6 @@ impl Elimination {
     }
 
     /// The problem in the dofs that stay.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
     pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
         let (stiffness, load) = (self.stiffness(problem)?, self.load(problem));
         let (by_row, mut sums) = (problem.contact().transposed(), Sums::default());

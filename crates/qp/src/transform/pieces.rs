@@ -43,9 +43,6 @@ impl Pieces {
     }
 
     /// One piece of `problem`.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
     pub fn problem(&self, problem: &ContactProblem, piece: usize) -> Result<ContactProblem, Error> {
         let (dofs, rows) = (&self.dofs[piece], &self.rows[piece]);
         let columns = |matrix: &SparseMatrix, of: &[usize], place: &[usize], count: usize| {

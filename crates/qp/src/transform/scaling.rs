@@ -53,9 +53,6 @@ fn largest_exponents(contact: &SparseMatrix, d: &[i32]) -> Vec<i32> {
 
 impl Scaling {
     /// Scales the stiffness K (n x n) and the contact rows B (m x n).
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`] if the data leave the range of double precision.
     pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Self, Error> {
         let equilibration = Equilibration::of(stiffness);
         let d = &equilibration.diagonal;

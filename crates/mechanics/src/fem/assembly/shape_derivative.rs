@@ -132,9 +132,6 @@ pub(crate) fn body_force_by_places(
 }
 
 /// The same for the load of [`add_gravity`](super::add_gravity).
-///
-/// # Errors
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
 pub(crate) fn gravity_by_places(
     body: &ElasticBody,
     acceleration: [f64; 3],
@@ -151,9 +148,6 @@ pub(crate) fn gravity_by_places(
 }
 
 /// The same for the load of [`add_centrifugal`](super::add_centrifugal).
-///
-/// # Errors
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
 pub(crate) fn centrifugal_by_places(
     body: &ElasticBody,
     omega: f64,

@@ -180,9 +180,6 @@ impl ElasticBody {
 
     /// The same body on a mesh of parts of its elements, region by region, with [`Integration::Standard`]; the second
     /// argument gives, for each element of that mesh, the element that it is a part of.
-    ///
-    /// # Errors
-    /// As [`ElasticBody::new`].
     pub(crate) fn on(&self, mesh: Mesh, parents: &[usize]) -> Result<Self, Error> {
         let regions = Region::on(&self.regions, &mesh, parents);
         let body = Self::new(mesh, *self.phases[0].material(), self.formulation)?;
@@ -192,9 +189,6 @@ impl ElasticBody {
     }
 
     /// The same body with another named boundary.
-    ///
-    /// # Errors
-    /// As [`Mesh::with_boundary`].
     pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
         self.mesh = self.mesh.with_boundary(boundary)?;
         Ok(self)
@@ -443,9 +437,6 @@ impl ElasticBody {
     }
 
     /// Checks that a nodal vector has `dimension` entries per node.
-    ///
-    /// # Errors
-    /// [`qp::Error::Length`] if it has not.
     pub(crate) fn check_nodal(&self, name: &'static str, found: usize) -> Result<(), Error> {
         Ok(qp::Error::check_length(name, found, self.nodal_dofs(), "nodal dofs")?)
     }

@@ -82,8 +82,6 @@ impl OwnStress {
 }
 
 impl Phase {
-    /// # Errors
-    /// As [`Material::law`].
     pub(super) fn new(material: Material, formulation: &Formulation) -> Result<Self, Error> {
         Ok(Phase { material, law: material.law(formulation)?, integration: Integration::Standard, own: None })
     }

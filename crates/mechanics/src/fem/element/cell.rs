@@ -151,9 +151,6 @@ impl Cell {
 
     /// Checks that the determinant of the Jacobian is positive at the quadrature points of `table`, and not zero at the
     /// nodes; returns the worst node at which it is negative, if there is one.
-    ///
-    /// # Errors
-    /// `NonPositiveJacobian` with the worst point.
     pub fn check(&self, table: &Tabulated) -> Result<Option<NonPositiveJacobian>, NonPositiveJacobian> {
         let determinants = table.nodes.iter().chain(&table.points).enumerate().map(|(point, tabulated)| {
             let value = determinant(&self.jacobian(&tabulated.derivative), self.reference.dimension);

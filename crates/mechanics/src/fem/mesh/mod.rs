@@ -312,9 +312,6 @@ impl Mesh {
     }
 
     /// The same mesh with one more boundary, after the others.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] for a name that exists, facets of the wrong kind, a facet that is not a face of an element.
     pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
         if self.boundary(&boundary.name).is_some() {
             return named_twice(&boundary.name);

@@ -30,10 +30,6 @@ pub(crate) struct Pieces {
 
 impl Pieces {
     /// The pieces of a mesh in the plane or in space.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] for an element with edges that are so curved that a piece has no size, and in space for any
-    /// curved edge.
     pub fn of(mesh: &Mesh) -> Result<Self, Error> {
         let straight = is_straight(mesh);
         if !straight && mesh.dimension() == 3 {

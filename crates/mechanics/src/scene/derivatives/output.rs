@@ -111,9 +111,6 @@ impl Output {
     }
 
     /// The output of this name.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] with the outputs that there are.
     pub fn of(name: &str, model: &Model) -> Result<Self, Error> {
         let names = Self::names(model);
         let kind = match name.split_once('@') {

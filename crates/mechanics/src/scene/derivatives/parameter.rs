@@ -66,9 +66,6 @@ impl Scene {
     }
 
     /// The parameter of this name.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] with the names that there are.
     pub(crate) fn parameter(&self, name: &str) -> Result<Parameter, Error> {
         let all = self.all_parameters();
         if let Some(found) = all.iter().find(|parameter| parameter.name == name) {
@@ -163,9 +160,6 @@ impl Scene {
     }
 
     /// The scene with a parameter of its shapes, loads, materials or temperatures changed by `by`.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a value that the scene does not allow.
     pub(crate) fn varied(&self, parameter: &Parameter, by: f64) -> Result<Scene, Error> {
         let mut varied = self.clone();
         let value = parameter.value + by;
@@ -217,9 +211,6 @@ impl Parameter {
 impl Scene {
     /// The scene with a one in the place of a number to which a load is proportional, and zeros in those of its other
     /// components.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] if the load does not allow it.
     pub(crate) fn unit_load(&self, parameter: &Parameter) -> Result<Scene, Error> {
         let mut unit = self.clone();
         let Kind::InLoad(index, own) = &parameter.kind else { return Ok(unit) };

@@ -63,9 +63,6 @@ pub(crate) struct ReferencePoint {
 
 impl Scene {
     /// The number of a reference point.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a name that no point has.
     pub(super) fn point_named(&self, name: &str, path: &str) -> Result<usize, Error> {
         self.points.iter().position(|point| point.name == name).ok_or_else(|| {
             let names = || self.points.iter().map(|point| point.name.as_str());
@@ -76,9 +73,6 @@ impl Scene {
     }
 
     /// The number of a reference point that equations, springs and couplings may name.
-    ///
-    /// # Errors
-    /// As [`point_named`](Self::point_named); [`Error::Scene`] for a point that stands for a bolt.
     fn joining(&self, name: &str, path: &str) -> Result<usize, Error> {
         match self.bolt_of(name) {
             None => self.point_named(name, path),
@@ -90,10 +84,6 @@ impl Scene {
     }
 
     /// A sum of terms, and the place of the first one in the list; points come after the nodes.
-    ///
-    /// # Errors
-    /// As [`terms_of`]; [`Error::Scene`] for a point that does not exist or stands for a bolt, and a rotation of a
-    /// node.
     fn sum_of(&self, terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<(Sum, usize), Error> {
         let (mut sum, nodes) = (Sum::default(), body.mesh().nodes().len());
         let point = |name: &str, path: String| self.joining(name, &path).map(|point| nodes + point);
@@ -107,10 +97,6 @@ impl Scene {
     }
 
     /// The reference points, eliminated from all ties, springs and loads.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a point without a name of its own, for couplings and terms that name no point or no node,
-    /// for equations that prescribed components contradict, and for a force or a spring on a component that is free.
     pub(crate) fn reference_points(&self, body: &ElasticBody) -> Result<ReferencePoints, Error> {
         let nodes = body.mesh().nodes().len();
         let mut points = ReferencePoints { nodes, ..ReferencePoints::default() };
@@ -264,9 +250,6 @@ impl Elimination {
     }
 
     /// The points after the elimination of all their components.
-    ///
-    /// # Errors
-    /// As [`Scene::reference_points`].
     fn points(
         mut self,
         scene: &Scene,

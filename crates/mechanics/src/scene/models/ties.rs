@@ -59,10 +59,6 @@ impl Ties {
 
 impl Scene {
     /// The ties, without equations that supports alone fulfil.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a boundary or a node that does not exist, surfaces that do not face each other, an equation
-    /// without terms, and for one that supports contradict.
     pub(crate) fn tied(
         &self,
         body: &ElasticBody,

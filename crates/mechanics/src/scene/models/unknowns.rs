@@ -111,9 +111,6 @@ impl Unknowns {
     }
 
     /// The displacement of the free dofs at values of the unknowns.
-    ///
-    /// # Errors
-    /// [`qp::Error::Length`] if there is not one value for each unknown.
     pub fn displacement<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         let mut moved = self.motion(values)?;
         if let Some(on_faces) = &self.on_faces {
@@ -123,9 +120,6 @@ impl Unknowns {
     }
 
     /// The motion of the free dofs in one of the unknowns.
-    ///
-    /// # Errors
-    /// As [`Unknowns::displacement`].
     pub fn motion<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         qp::Error::check_length("displacement", values.len(), self.count(), "unknowns")?;
         let of_body = &values[..self.of_body()];

@@ -42,9 +42,6 @@ impl NodalLoads {
 impl Scene {
     /// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is the JSON path of the
     /// motion.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a load that does not exist or has two factors, and for an invalid factor.
     pub(crate) fn loads_in_time(&self, body: &ElasticBody, spec: &DynamicSpec) -> Result<NodalLoads, Error> {
         let changes = |load: usize| spec.loads_in_time.iter().any(|changing| changing.load == load);
         let mut constant = vec![0.0; body.nodal_dofs()];

@@ -22,9 +22,6 @@ const ACCURATE: f64 = 1e-6;
 /// that a small pivot may spoil it. The pivots are exactly those of a matrix A + E. A random load b excites the
 /// eigenvector of A + E that is nearest to singular by the inverse of its eigenvalue; if the solution leaves little of
 /// b, E is small beside that eigenvalue, and no sign is that of rounding.
-///
-/// # Errors
-/// [`Error::Numerical`] for lack of memory.
 pub fn negative_eigenvalues(
     analysis: &Analysis,
     matrix: &SymmetricMatrix,

@@ -210,9 +210,6 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
     }
 
     /// The eigenpairs of the operator in the space.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if the iteration for the small matrix fails.
     pub fn pairs(&self) -> Result<Pairs, Error> {
         let count = self.columns();
         let matrix = Mat::from_fn(count, count, |i, j| self.projected[j.max(i)][i.min(j)]);

@@ -102,9 +102,6 @@ fn smoother_of_finest<T: Real>(matrix: &BlockMatrix<T>, threads: usize) -> Cheby
 
 impl<T: Real> Hierarchy<T> {
     /// Builds the levels of `matrix`.
-    ///
-    /// # Errors
-    /// [`FactorError`] if the coarsest matrix has a negative eigenvalue, or if memory does not suffice for its factor.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, FactorError> {
         let hierarchy = Self::with_steps(matrix, near_null, threads, 1)?;
         if !hierarchy.is_slow() {

@@ -216,9 +216,6 @@ impl Face<'_> {
 }
 
 /// Checks that a dof without stiffness has no coupling either: a cycle then leaves it to itself.
-///
-/// # Errors
-/// [`Error::NotConvex`] for a diagonal entry that is negative, or zero beside a coupling.
 fn check_diagonal(matrix: &SymmetricMatrix) -> Result<(), Error> {
     let diagonal = matrix.diagonal();
     if diagonal.iter().all(|&value| value > 0.0) {

@@ -45,10 +45,6 @@ impl Bounds {
     /// The bounds that rows B (m x n) and gaps g give if the dofs have these `units` and `travels` have no stiffness.
     /// The rows are taken in the order that is preferred, means last. Those without entries or with an infinite gap
     /// give no bounds.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for rows that share dofs with too many others; for a row of several travels, and for an
-    /// unknown whose rows have different travels.
     pub fn of(
         (contact, gap): (&SparseMatrix, &[f64]),
         order: &Preferred,

@@ -74,9 +74,6 @@ pub struct DualActiveSet<'a> {
 
 impl<'a> DualActiveSet<'a> {
     /// Factorises the problem; `None` if that fails or the problem is too large for a dense basis of its rows.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub fn of(scaled: &'a ScaledProblem<'a>) -> Result<Option<Self>, Error> {
         Ok(Polyhedron::of(scaled)?.map(|polyhedron| DualActiveSet { scaled, polyhedron }))
     }
@@ -87,9 +84,6 @@ impl Solver for DualActiveSet<'_> {
     ///
     /// The answer is not settled if the method was cut short or if its corrections do not converge, for example if rows
     /// and stiffness do not hold the body: the method makes no claim about that.
-    ///
-    /// # Errors
-    /// None.
     fn solve(&self, _: Start) -> Result<Outcome, Error> {
         let (dofs, rows) = (self.scaled.problem.dofs(), self.scaled.problem.rows());
         let mut search = Search {

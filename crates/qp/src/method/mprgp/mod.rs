@@ -102,10 +102,6 @@ impl Solver for Mprgp<'_> {
     ///
     /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations
     /// together do not halve the residual; those that change the face count only beyond one for each row.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for rows that cannot be bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a
-    /// negative eigenvalue.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let Mprgp { problem, multigrid, limits, .. } = *self;
         let (rows, units, mut start) = ((problem.contact(), problem.gap()), multigrid.units(), start);

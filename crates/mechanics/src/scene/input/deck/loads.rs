@@ -38,8 +38,6 @@ pub(super) struct Loads<'a, 'd> {
 }
 
 impl<'a, 'd> Loads<'a, 'd> {
-    /// # Errors
-    /// An error with the line for a load that is not read.
     pub fn of(
         deck: &'a Deck,
         thickness: f64,

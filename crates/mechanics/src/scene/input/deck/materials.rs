@@ -48,9 +48,6 @@ pub(super) struct Sections {
 }
 
 impl Sections {
-    /// # Errors
-    /// An error with the line for a material that is not read, a section without a set or a material, elements without
-    /// a section, sections of different thickness.
     pub fn of(deck: &Deck, space: Space) -> Result<Self, Error> {
         let mut noted = Vec::new();
         let (materials, orientations) = (materials(deck, &mut noted)?, orientations(deck)?);

@@ -82,9 +82,6 @@ pub(crate) struct Reading<'a> {
 
 impl DeckScene {
     /// The scene of the deck `file`, which it calls `named`.
-    ///
-    /// # Errors
-    /// As [`Deck::read`]; [`qp::Error::FileSyntax`] with the line for what changes the answer and is not read.
     pub fn read(file: &Path, named: &str, Reading { permits, step, earlier }: Reading) -> Result<Self, Error> {
         let within = file.parent().filter(|_| !permits.contains(&"outside"));
         let deck = Deck::read(file, within, step)?;

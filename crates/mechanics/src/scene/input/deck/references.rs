@@ -53,8 +53,6 @@ pub(super) struct Entries {
 }
 
 impl<'a> References<'a> {
-    /// # Errors
-    /// An error with the line for an equation, a constraint, a coupling or a spring that is not read.
     pub fn of(deck: &'a Deck, mut rigid_bodies: RigidBodies, transforms: &Transforms) -> Result<Self, Error> {
         let couplings = std::mem::take(&mut rigid_bodies.couplings);
         let (mut equations, springs) = (equations(deck, transforms)?, springs(deck, transforms)?);

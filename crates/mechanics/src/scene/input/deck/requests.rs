@@ -80,10 +80,6 @@ const OTHERS: [&str; 4] = ["FACEPRINT", "SECTIONPRINT", "SECTIONFILE", "ENERGYPR
 
 impl Requests {
     /// What a deck asks for at the end of its step; `references` are its reference nodes.
-    ///
-    /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a set that does not exist, and for
-    /// what is not read.
     pub(super) fn of(deck: &Deck, references: Vec<ReferenceNode>) -> Result<Self, Error> {
         let end = Temperatures::of(deck, &Amplitudes::of(deck)?)?.end;
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();

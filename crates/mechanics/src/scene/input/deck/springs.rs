@@ -17,10 +17,6 @@ pub(super) struct Spring {
 }
 
 /// The springs of a deck.
-///
-/// # Errors
-/// An error with the line for springs without a card *SPRING, of a model of revolution, or with values that are not
-/// read.
 pub(super) fn springs(deck: &Deck, transforms: &Transforms) -> Result<Vec<Spring>, Error> {
     let mut springs: Vec<Option<Spring>> = vec![None; deck.springs.all.len()];
     for card in deck.source.cards.iter().filter(|card| card.is("SPRING")) {

@@ -111,9 +111,6 @@ impl RigidBodyModes {
     }
 
     /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
-    ///
-    /// # Errors
-    /// [`qp::Error::UnderHeld`] with the names of all such motions.
     pub fn check_held(&self, parts: &Parts, rows: &[ContactRow]) -> Result<(), Error> {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
