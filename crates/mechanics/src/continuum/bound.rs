@@ -388,7 +388,6 @@ impl<'a> Bracket<'a> {
         self.work_on_supports() + self.work_on_obstacles() - stored / 2.0
     }
 
-    /// The work of the loads with the displacement.
     pub(super) fn work_of_loads(&self) -> f64 {
         let load = self.displacements.load();
         self.primal.values.iter().zip(&load).map(|(value, load)| value * load).sum()

@@ -77,7 +77,6 @@ impl<'a> Displacements<'a> {
         weighted_mean(self.mesh.dimension, place.corner, &self.towards(values, &place.on, place.obstacle))
     }
 
-    /// The largest component of a displacement.
     pub fn largest(&self, values: &[f64]) -> f64 {
         let functions = self.mesh.nodes.len() + self.mesh.edges.len();
         let of_places = values.iter().take(self.mesh.dimension * functions);

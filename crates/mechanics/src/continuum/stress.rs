@@ -33,11 +33,9 @@ pub struct Stresses<'a> {
 /// The place at which a contact row of the stress acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The facet.
     pub on: OuterFacet,
     /// The number of its corner.
     pub corner: usize,
-    /// The obstacle.
     pub obstacle: usize,
 }
 
@@ -254,7 +252,6 @@ impl<'a> Stresses<'a> {
         self.corners_by_unknowns(outer).iter().map(|line| [0, 1, 2].map(|axis| along(line, axis))).collect()
     }
 
-    /// The facets on springs.
     pub fn on_springs(&self) -> impl Iterator<Item = OuterFacet> + '_ {
         self.mesh.surface().filter(|outer| self.problem.springs(outer).is_there())
     }

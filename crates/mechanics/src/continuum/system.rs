@@ -264,7 +264,6 @@ impl Unknowns {
         &self.offset
     }
 
-    /// Number of all unknowns.
     pub fn count(&self) -> usize {
         self.offset.len()
     }

@@ -57,7 +57,6 @@ pub struct Parameter {
 pub(super) trait Advance: fmt::Debug + Send + Sync {
     /// The first state.
     fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error>;
-    /// The state after one step.
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error>;
     /// The balance of forces that the step from `before` to `after` solved, with the multiplier of `after`, at some
     /// dofs.

@@ -149,7 +149,6 @@ fn path_of(pieces: &[Vec<[i64; 2]>], line: Line) -> Option<Path> {
     path.finish()
 }
 
-/// The outlines of the letters of a text.
 fn outline(text: &Text) -> Option<Path> {
     let mut path = PathBuilder::new();
     let whole = typeface::width(&text.text, text.size, text.weight);

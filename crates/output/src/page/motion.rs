@@ -15,9 +15,7 @@ pub(crate) struct MotionFrames<'a> {
     /// Time, contact force, number of closed rows, penetration, kinetic, strain, potential and total energy, step after
     /// step.
     pub history: &'a [[f64; 9]],
-    /// The times of the frames.
     pub times: &'a [f64],
-    /// The answer of a frame.
     pub answer: &'a dyn Fn(usize) -> Result<Answer, Error>,
 }
 

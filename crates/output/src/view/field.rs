@@ -10,14 +10,12 @@ use signorini_mechanics::scene::{Answer, Units};
 /// Flag of a node that is not a candidate; candidates have 0 (open) or 1 (closed).
 const NO_CANDIDATE: f64 = -1.0;
 
-/// A field.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
     /// Its name in files.
     pub name: &'static str,
     /// Components of a value: 1, 3 of a vector, 6 of a symmetric tensor in the order xx, yy, zz, xy, yz, zx.
     pub components: usize,
-    /// Its unit.
     pub unit: fn(&Units) -> String,
     /// How a body is coloured by it; `None` if it is not.
     pub colours: Option<Colours>,

@@ -52,7 +52,6 @@ pub(crate) struct EnergyNorm {
 /// one, on which no force may act.
 #[derive(Clone, Debug)]
 pub(super) struct Loose {
-    /// The dofs.
     pub dofs: Vec<usize>,
     /// `true` for each row that acts on one of them.
     pub rows: Vec<bool>,

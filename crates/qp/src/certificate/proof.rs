@@ -317,7 +317,6 @@ impl<'a> ComplianceFactor<'a> {
         }
     }
 
-    /// Multiplications of the compliance of this number of rows.
     fn work(&self, rows: usize) -> f64 {
         (rows * rows) as f64 * (self.length() + rows) as f64
     }

@@ -7,7 +7,6 @@ use crate::problem::{ContactProblem, Parts};
 pub(super) struct Scales {
     /// The least reach of each row: the distance by which a shift of unit energy norm of a single dof moves it.
     pub reach: Vec<f64>,
-    /// The parts.
     pub of_parts: Vec<OfPart>,
     /// All parts together.
     pub whole: OfPart,

@@ -19,12 +19,10 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// A displacement in these units.
     pub fn displacement(&self, displacement: &[f64]) -> Vec<f64> {
         displacement.iter().map(|&value| ldexp(value, -self.length)).collect()
     }
 
-    /// A force in these units.
     pub fn force(&self, force: &[f64]) -> Vec<f64> {
         force.iter().map(|&value| ldexp(value, -self.stiffness - self.length)).collect()
     }
@@ -66,7 +64,6 @@ impl ContactProblem {
         far.then_some(Units { stiffness, length })
     }
 
-    /// The same problem in other units.
     pub(super) fn in_units(&self, units: &Units) -> Result<Self, Error> {
         let lower = self.stiffness.lower();
         let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();

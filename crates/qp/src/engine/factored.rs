@@ -204,7 +204,6 @@ impl Factored {
         Ok(outcome.map(|outcome| Reduced { loading, problem, unit, outcome, factor_seconds }))
     }
 
-    /// The scaled problem with its means.
     fn scaled_problem<'a>(&'a self, problem: &'a ContactProblem) -> ScaledProblem<'a> {
         let scaled = ScaledProblem::new(problem, &self.augmented, self.reduction.definiteness());
         scaled.with_compliance(self.reduction.compliance())

@@ -133,7 +133,6 @@ pub(crate) trait Engine: Debug + Send + Sync {
         0
     }
 
-    /// The multigrid hierarchy, if there is one.
     fn hierarchy(&self) -> Option<&Multigrid> {
         None
     }

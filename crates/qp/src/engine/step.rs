@@ -40,7 +40,6 @@ impl ScaledStep<'_> {
         }
     }
 
-    /// The outcome of the method.
     fn by_method(self) -> Result<Outcome, Error> {
         let ScaledStep { scaled, start, method, accuracy, most_iterations, bound } = self;
         let Some(cold) = scaled.start()? else { return Ok(Outcome::at_rest(scaled.problem, Ending::Unheld)) };

@@ -58,7 +58,6 @@ pub struct Cholesky {
 #[derive(Clone, Debug)]
 enum Values {
     InColumns(Arc<Vec<f64>>),
-    /// A whole triangle.
     Dense(LowerTriangle),
 }
 

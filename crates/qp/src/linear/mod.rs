@@ -100,7 +100,6 @@ struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern with the rows of all entries.
     fn of(column_starts: Vec<usize>, mut rows: Vec<u32>) -> Self {
         let (mut row_starts, mut kept) = (Vec::with_capacity(column_starts.len() - 1), 0);
         for column in column_starts.windows(2) {
@@ -231,7 +230,6 @@ impl SparseMatrix {
         Self::from_parts(rows, starts, row_indices, values).finite()
     }
 
-    /// The matrix if all values are finite.
     fn finite(self) -> Result<Self, Error> {
         if self.values.iter().all(|value| value.is_finite()) {
             return Ok(self);
@@ -320,7 +318,6 @@ impl SparseMatrix {
         }
     }
 
-    /// Rows of the entries of one column.
     fn column_rows(&self, column: usize) -> &[u32] {
         self.column_slices(column).0
     }

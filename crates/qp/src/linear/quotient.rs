@@ -85,7 +85,6 @@ impl Quotient {
         &self.columns[self.member_starts[group as usize]..self.member_starts[group as usize + 1]]
     }
 
-    /// The groups that meet a group.
     pub fn neighbours(&self, group: u32) -> &[u32] {
         &self.all_neighbours[self.starts[group as usize] as usize..self.starts[group as usize + 1] as usize]
     }

@@ -13,7 +13,6 @@ pub struct Twice {
 }
 
 impl Twice {
-    /// Zero.
     pub const ZERO: Twice = Twice { head: 0.0, tail: 0.0 };
 
     /// The nearest double.

@@ -68,7 +68,6 @@ pub struct Goal<'a> {
 pub struct PenaltyLoop<'a> {
     /// The scaled problem with penalties on its rows.
     pub scaled: &'a ScaledProblem<'a>,
-    /// The ladder.
     pub ladder: Penalty,
     /// The relative energy error at which the ladder ends, if any.
     pub goal: Option<Goal<'a>>,

@@ -24,7 +24,6 @@ fn read_header(path: &Path) -> Result<(Source, [usize; 2], i32), Error> {
 pub(super) struct Rows {
     /// Rows and columns.
     pub shape: (usize, usize),
-    /// Number of entries.
     pub entries: usize,
     lengths: Vec<u32>,
     columns: Source,
@@ -118,7 +117,6 @@ impl Rows {
         self.values.fault(self.byte + REAL * place as u64, message)
     }
 
-    /// The error of a wrong shape.
     pub fn wrong_shape(&self, message: impl Into<String>) -> Error {
         self.values.fault(INTEGER, message)
     }

@@ -68,7 +68,6 @@ impl Source {
         self.byte
     }
 
-    /// The error at a byte of the file.
     pub fn fault(&self, byte: u64, message: impl Into<String>) -> Error {
         Error::FileBytes { file: self.path.clone(), byte: byte as usize, message: message.into() }
     }

@@ -9,7 +9,6 @@ use crate::solution::{Certificate, Goal, Seconds, Solution};
 /// What came of a step.
 #[derive(Debug)]
 pub enum Ended {
-    /// An answer.
     Answered(Answered),
     /// Nothing: the step has no means here, or does not find an answer.
     Empty,
@@ -37,11 +36,9 @@ impl Ended {
 /// An answer of a step, beside those before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answered {
-    /// `true` if the method settled.
     pub is_settled: bool,
     /// `true` if the method met a free motion, or a negative energy.
     pub is_unheld: bool,
-    /// Iterations of the method.
     pub iterations: usize,
     /// `true` if it is the best so far.
     pub is_best: bool,
@@ -162,7 +159,6 @@ impl History {
         answered
     }
 
-    /// The last answer of a method.
     pub fn last_answer(&self) -> Option<&Answered> {
         let answers = self.records.iter().rev().filter_map(|record| match &record.ended {
             Ended::Answered(answered) if !record.improves() => Some(answered),

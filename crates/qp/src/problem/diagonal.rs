@@ -12,7 +12,6 @@ pub(crate) struct Diagonal {
 }
 
 impl Diagonal {
-    /// The diagonal of a stiffness.
     pub fn of(stiffness: &SymmetricMatrix) -> Self {
         let values = stiffness.diagonal();
         Diagonal { roots: values.iter().map(|value| value.sqrt()).collect(), values }

@@ -60,7 +60,6 @@ impl Parts {
         self.count.max(1)
     }
 
-    /// The part of a dof.
     pub fn of_dof(&self, dof: usize) -> usize {
         self.of_dof[dof]
     }

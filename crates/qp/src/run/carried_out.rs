@@ -168,7 +168,6 @@ impl<'a> Run<'a> {
         Ok(self.made.clone())
     }
 
-    /// The start of a step.
     fn start_from(&self, from: From, step: Step) -> Start {
         let best = || self.history.best.as_ref().map(|best| &best.solution);
         match (from, step) {

@@ -21,7 +21,6 @@ pub(super) enum Rest {
 /// What is kept of a prepared problem without its equalities.
 pub(crate) struct KeptRest<'a> {
     pub elimination: &'a Elimination,
-    /// The energy norm of the whole, if it has one.
     pub norm: &'a Option<EnergyNorm>,
     /// The answer of the rest of a problem.
     pub solve: &'a dyn Fn(&Start, &Settings) -> Result<Solution, Error>,

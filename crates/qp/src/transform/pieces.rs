@@ -32,7 +32,6 @@ impl Pieces {
         Pieces { of_dof, of_row, place_of_dof, place_of_row, dofs, rows }
     }
 
-    /// Number of pieces.
     pub fn count(&self) -> usize {
         self.dofs.len()
     }

@@ -70,12 +70,10 @@ impl Scaling {
         &self.equilibration
     }
 
-    /// The scaled stiffness.
     pub fn stiffness(&self) -> &SymmetricMatrix {
         self.stiffness.get_or_init(|| self.equilibration.apply(&self.unscaled))
     }
 
-    /// The scaled contact rows.
     pub fn contact(&self) -> &SparseMatrix {
         &self.contact
     }

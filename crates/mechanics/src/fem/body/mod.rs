@@ -66,7 +66,6 @@ impl PartialEq for Skins {
 pub struct BodyElement<'a> {
     /// Its nodes, in the order of its kind.
     pub nodes: &'a [usize],
-    /// Its kind.
     pub kind: ElementKind,
     /// The cell with its coordinates.
     pub cell: Cell,
@@ -287,7 +286,6 @@ impl ElasticBody {
         self.per_kind(|reference| Tabulated::new(reference, self.rule()).extrapolation())
     }
 
-    /// A value for each kind of its elements.
     pub(crate) fn per_kind<T>(&self, make: impl Fn(&'static ReferenceElement) -> T) -> PerKind<T> {
         PerKind::of(self.mesh.kinds(), |kind| make(kind.reference()))
     }
@@ -461,7 +459,6 @@ pub(crate) struct Elastic {
 }
 
 impl Strained<'_> {
-    /// The deformation at a tabulated point.
     #[inline]
     pub fn displaced(&self, at: &TabulatedPoint) -> Displaced {
         self.body.displaced(&self.element.cell, at, &self.local)
@@ -479,7 +476,6 @@ impl Strained<'_> {
         self.element.cell.unit().powi(self.body.dimension() as i32 - 1)
     }
 
-    /// The stress at a tabulated point with this deformation.
     #[inline]
     pub fn stress(&self, at: &TabulatedPoint, point: &Displaced) -> Symmetric {
         self.element.stress(at, &point.strain(), self.mean_dilatation)

@@ -93,7 +93,6 @@ impl Cell {
         cell
     }
 
-    /// Number of nodes of the cell.
     pub fn nodes(&self) -> usize {
         self.reference.nodes.len()
     }

@@ -223,7 +223,6 @@ impl Mesh {
         &self.groups
     }
 
-    /// The same mesh with other groups of its elements.
     fn with_groups(self, groups: Vec<ElementGroup>) -> Self {
         Mesh { groups, ..self }
     }
@@ -233,7 +232,6 @@ impl Mesh {
         &self.node_names
     }
 
-    /// The same mesh with other names of its nodes.
     fn with_node_names(self, node_names: NodeNames) -> Self {
         Mesh { node_names, ..self }
     }

@@ -22,7 +22,6 @@ pub(crate) struct Pieces {
     pub nodes: Vec<[f64; 3]>,
     /// The nodes of each piece.
     pub cells: Vec<Vec<usize>>,
-    /// The element of each piece.
     pub elements: Vec<usize>,
     /// The number of each node of the mesh; `None` for a mid-edge node of a straight edge.
     numbers: Vec<Option<usize>>,

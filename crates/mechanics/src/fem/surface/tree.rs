@@ -87,7 +87,6 @@ impl Tree {
         [low, high]
     }
 
-    /// Limits of all.
     pub fn limits(&self) -> Limits {
         self.branches.first().map_or(NOWHERE, |all| [all.low, all.high])
     }

@@ -110,7 +110,6 @@ impl Output {
         names
     }
 
-    /// The output of this name.
     pub fn of(name: &str, model: &Model) -> Result<Self, Error> {
         let names = Self::names(model);
         let kind = match name.split_once('@') {
@@ -168,7 +167,6 @@ impl Output {
         })
     }
 
-    /// The unit of the output.
     pub fn unit(&self, model: &Model) -> String {
         let units = model.units();
         let product = || match (units.force.as_str(), units.length.as_str()) {
@@ -373,7 +371,6 @@ pub(super) fn stress_of(body: &ElasticBody, displacement: &[f64], element: &Body
     body.strained(&body.tabulated(), displacement, element).at(&point).1
 }
 
-/// A component of a stress, or its equivalent stress.
 fn of_component(stress: &Symmetric, component: usize) -> f64 {
     match stress.get(component) {
         Some(&value) => value,

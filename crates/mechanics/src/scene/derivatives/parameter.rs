@@ -65,7 +65,6 @@ impl Scene {
         self.varied(&parameter, value - parameter.value)
     }
 
-    /// The parameter of this name.
     pub(crate) fn parameter(&self, name: &str) -> Result<Parameter, Error> {
         let all = self.all_parameters();
         if let Some(found) = all.iter().find(|parameter| parameter.name == name) {

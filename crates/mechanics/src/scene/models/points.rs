@@ -229,7 +229,6 @@ impl Elimination {
         Ok(Elimination { nodes, equations, springs, load, whole, solved: Vec::new() })
     }
 
-    /// All sums.
     fn sums(&mut self) -> impl Iterator<Item = &mut Sum> {
         let Elimination { equations, springs, load, solved, .. } = self;
         let equations = equations.iter_mut().map(|(_, sum)| sum);

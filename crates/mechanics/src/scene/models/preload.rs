@@ -21,7 +21,6 @@ use crate::scene::input::schema::{PointSpec, PreloadSpec, Scene, TieSpec};
 /// The shortening of a bolt: the sum of `vector . u` over its terms.
 #[derive(Clone, Debug)]
 pub(crate) struct Shortening {
-    /// The number of its tie.
     pub tie: usize,
     /// Nodes with their vectors, as in [`TieRow`].
     pub terms: Vec<(usize, [f64; 3])>,

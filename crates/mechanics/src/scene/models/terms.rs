@@ -56,7 +56,6 @@ pub(super) fn terms_of(
     }
 }
 
-/// The one node of a term.
 fn node_of(place: &TermPlace, path: &str, body: &ElasticBody) -> Result<usize, Error> {
     let mesh = body.mesh();
     let (nodes, path) = match place {

@@ -161,7 +161,6 @@ fn means(facing: &Facing) -> Result<Vec<TieRow>, Error> {
     Ok((0..facing.body.dimension()).map(rows).collect::<Result<Vec<_>, Error>>()?.concat())
 }
 
-/// The row of an equation.
 fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMap) -> Result<TieRow, Error> {
     let path = format!("{path}.equation");
     finite(format!("{path}.value"), spec.value)?;

@@ -88,7 +88,6 @@ impl Unknowns {
         Ok(Unknowns { free: dofs.free().len(), on_faces, pressed })
     }
 
-    /// Number of unknowns of the body.
     fn of_body(&self) -> usize {
         self.on_faces.as_ref().map_or(self.free, |on_faces| on_faces.rows.rows())
     }

@@ -10,9 +10,7 @@ use crate::scene::input::schema::{DynamicSpec, FactorSpec, LoadInTimeSpec, Scene
 /// The loads on all nodes, in force, length `dim * n_nodes` each; or on some nodes, in their order.
 #[derive(Clone, Debug)]
 pub(crate) struct NodalLoads {
-    /// The sum of the constant loads.
     pub constant: Vec<f64>,
-    /// Each changing load with its factor.
     pub changing: Vec<(TimeFunction, Vec<f64>)>,
 }
 

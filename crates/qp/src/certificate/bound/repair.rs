@@ -144,7 +144,6 @@ impl<'a> Repair<'a> {
         }
     }
 
-    /// Makes the halves of these rows in one sweep.
     fn find_halves(&self, rows: &[usize]) {
         let missing: Vec<usize> = rows.iter().copied().filter(|&row| self.halves[row].get().is_none()).collect();
         let size = self.boundary.dofs.len();

@@ -117,7 +117,6 @@ impl<'a> Block<'a> {
         Block { own, values, below }
     }
 
-    /// The entries of column j.
     #[inline(always)]
     fn column(&self, j: usize) -> &'a [f64] {
         let height = self.own.len() + self.below.len();

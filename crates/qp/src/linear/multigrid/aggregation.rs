@@ -64,7 +64,6 @@ pub fn aggregate(graph: &Graph) -> (Vec<u32>, usize) {
     (of_node, count as usize)
 }
 
-/// The strong connections of a block matrix.
 pub fn strong_connections<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> Graph {
     let square = |place: usize| matrix.block(place).iter().map(|value| value.double() * value.double()).sum::<f64>();
     // Shared rows have few blocks.

@@ -156,7 +156,6 @@ impl<T: Real> Chebyshev<T> {
     }
 }
 
-/// The inverse of each diagonal block.
 fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
     let size = matrix.height;
     let mut inverse = RowByRow::new(size, matrix.rows());

@@ -23,7 +23,6 @@ pub struct Lines {
     graph: Graph,
     /// The aggregate of each node.
     pub of_node: Vec<u32>,
-    /// Number of aggregates.
     pub aggregates: usize,
 }
 

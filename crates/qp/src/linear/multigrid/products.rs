@@ -111,7 +111,6 @@ impl<T: Real> BlockMatrix<T> {
     }
 }
 
-/// The part of a matrix that is multiplied.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Part {
     Whole,

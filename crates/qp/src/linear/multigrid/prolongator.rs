@@ -24,7 +24,6 @@ const STEP: f64 = 4.0 / 3.0;
 pub struct Candidates {
     /// Number of vectors.
     pub count: usize,
-    /// Their values.
     pub values: Vec<f64>,
 }
 

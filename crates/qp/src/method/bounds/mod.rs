@@ -82,7 +82,6 @@ pub struct Bounds {
     reflections: Vec<Direction>,
     /// The reflections that touch each place.
     touching: HashMap<usize, Vec<usize>>,
-    /// The bounds.
     pub bounds: Vec<Bound>,
     /// `true` if all rows are bounds on single dofs, and nothing travels.
     pub is_plain: bool,
@@ -257,7 +256,6 @@ fn length(vector: &Direction) -> f64 {
     vector.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1))
 }
 
-/// The error of rows that are no bounds.
 fn no_bound(what: String) -> Error {
     Error::Numerical {
         step: "turning contact rows into bounds",

@@ -19,7 +19,6 @@ pub(super) type Numbers = Vec<Option<usize>>;
 pub(super) struct Body<'a> {
     kind: ElementKind,
     elements: Vec<Element<'a>>,
-    /// The groups of the elements.
     groups: Vec<ElementGroup>,
 }
 

@@ -169,7 +169,6 @@ fn factor(profile: Option<&Profile>, at: [f64; 3]) -> (f64, [f64; 3]) {
     profile.map_or((1.0, [0.0; 3]), |profile| (profile.at(at), profile.by_place(at)))
 }
 
-/// The points at which a load with this profile is integrated.
 fn points(profile: Option<&Profile>) -> Points<'_> {
     profile.map_or(Points::Own, |profile| Points::Fine(profile.kinks()))
 }

@@ -165,7 +165,6 @@ impl Coupling {
         matches!(self.kind, Kind::Kinematic(axes) if axes[..deck.dimension()].iter().all(|follows| *follows))
     }
 
-    /// Its equations.
     pub fn equations(&self, deck: &Deck) -> Result<Vec<Equation>, Error> {
         let fault = |message: String| deck.source.fault(self.place, message);
         if deck.is_axisymmetric() {

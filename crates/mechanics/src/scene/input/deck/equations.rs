@@ -40,7 +40,6 @@ pub(super) fn along(deck: &Deck, transforms: &Transforms, node: usize, vector: [
     Ok(sum)
 }
 
-/// The equations of all cards *EQUATION.
 pub(super) fn equations(deck: &Deck, transforms: &Transforms) -> Result<Vec<Equation>, Error> {
     let mut equations = Vec::new();
     for card in deck.source.cards.iter().filter(|card| card.is("EQUATION")) {

@@ -7,7 +7,6 @@ use crate::fem::mesh::deck::{Card, Deck, Place, key};
 /// A keyword that is read, in capitals without blanks.
 struct Read {
     keyword: &'static str,
-    /// Its parameters that are read.
     parameters: &'static [&'static str],
     /// Its parameters that change no answer.
     passed: &'static [&'static str],

@@ -184,7 +184,6 @@ impl<'a, 'd> Loads<'a, 'd> {
         Ok(())
     }
 
-    /// The vector of the next fields.
     fn vector(&self, fields: &mut Fields, what: &str) -> Result<[f64; 3], Error> {
         let mut vector = [0.0; 3];
         for (value, axis) in vector.iter_mut().zip(["x", "y", "z"]) {

@@ -317,7 +317,6 @@ fn one(deck: &Deck, card: &Card, what: &str) -> Result<f64, Error> {
     Ok(value)
 }
 
-/// The fields of the one line of a card.
 fn only_line<'a>(deck: &'a Deck, card: &Card) -> Result<Fields<'a>, Error> {
     match &card.lines[..] {
         [line] => Ok(deck.source.fields(line)),

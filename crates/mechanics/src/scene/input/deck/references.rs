@@ -204,7 +204,6 @@ impl<'a> References<'a> {
         Entries { points, ties, springs, warnings: self.warnings, nodes }
     }
 
-    /// A reference point.
     fn point(&self, node: usize) -> Value {
         let (dimension, turns) = (self.deck.dimension(), Coupling::turns(self.deck));
         let at = self.deck.place_of_node(node);
@@ -231,7 +230,6 @@ impl<'a> References<'a> {
         equations.chain(self.springs.iter_mut().map(|spring| &mut spring.elongation))
     }
 
-    /// The terms of a sum.
     fn terms(&self, sum: &Sum) -> Vec<Value> {
         let mut terms: BTreeMap<(bool, usize), Value> = BTreeMap::new();
         for (&(node, kind), &part) in &sum.terms {

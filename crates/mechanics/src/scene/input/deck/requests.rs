@@ -65,7 +65,6 @@ const FIELDS: [&str; 6] = ["NODEFILE", "ELFILE", "CONTACTFILE", "NODEOUTPUT", "E
 /// The cards that ask for tables.
 const TABLES: [&str; 3] = ["NODEPRINT", "ELPRINT", "CONTACTPRINT"];
 
-/// The kinds of requests.
 const KINDS: [&[&str]; 6] = [
     &["NODEFILE", "NODEOUTPUT"],
     &["ELFILE", "ELEMENTOUTPUT"],
@@ -154,7 +153,6 @@ impl Requests {
     }
 }
 
-/// The labels of a card with their places.
 fn labels(deck: &Deck, card: &Card) -> Vec<(String, Place)> {
     let mut labels = Vec::new();
     for line in &card.lines {

@@ -16,7 +16,6 @@ pub(super) struct Spring {
     pub place: Place,
 }
 
-/// The springs of a deck.
 pub(super) fn springs(deck: &Deck, transforms: &Transforms) -> Result<Vec<Spring>, Error> {
     let mut springs: Vec<Option<Spring>> = vec![None; deck.springs.all.len()];
     for card in deck.source.cards.iter().filter(|card| card.is("SPRING")) {
@@ -75,7 +74,6 @@ fn values(deck: &Deck, card: &Card, of_type: SpringType) -> Result<([usize; 2], 
     }
 }
 
-/// The elongation of a spring element.
 fn elongation(deck: &Deck, transforms: &Transforms, element: usize, directions: [usize; 2]) -> Result<Sum, String> {
     let element = &deck.springs.all[element];
     let (mut sum, nodes) = (Sum::default(), &element.nodes[..]);

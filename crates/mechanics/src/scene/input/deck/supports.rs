@@ -32,7 +32,6 @@ struct Boundaries<'a> {
 
 /// A line: the displacements that it prescribes for some nodes.
 struct Prescribed {
-    /// The number of its card.
     card: usize,
     target: String,
     nodes: Vec<usize>,

@@ -201,7 +201,6 @@ impl Factor {
         Ok(Factor { counts_radius, profile: spec.map(|spec| Profile::of(spec, &path, dimension)).transpose()?, path })
     }
 
-    /// The factor on a facet.
     fn on(&self, facet: &Facet) -> Result<Linear, WhyNot> {
         let Some(profile) = &self.profile else { return Ok(Linear::constant(1.0)) };
         if self.counts_radius && facet.corners.iter().any(|corner| corner[0] != facet.corners[0][0]) {
