@@ -2,6 +2,7 @@
 
 use super::SparseMatrix;
 use super::grouped::grouped;
+use super::power_iteration::scramble;
 
 /// No group has this number.
 const NONE: u32 = u32::MAX;
@@ -109,12 +110,12 @@ impl Quotient {
 fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
     let dim = lower.columns();
     // A sum of scrambled indices represents the set of neighbours; a collision costs fill, not correctness.
-    let mut signature: Vec<u64> = (0..dim).map(scramble).collect();
+    let mut signature: Vec<u64> = (0..dim).map(|column| scramble(column as u64)).collect();
     for column in 0..dim {
-        let own = scramble(column);
+        let own = scramble(column as u64);
         let mut sum = signature[column];
         for (row, _) in lower.column(column).filter(|entry| entry.0 != column) {
-            sum = sum.wrapping_add(scramble(row));
+            sum = sum.wrapping_add(scramble(row as u64));
             signature[row] = signature[row].wrapping_add(own);
         }
         signature[column] = sum;
@@ -148,11 +149,4 @@ fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
         };
     }
     (of_column, count as usize)
-}
-
-fn scramble(index: usize) -> u64 {
-    let mut z = (index as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }

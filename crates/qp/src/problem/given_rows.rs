@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::ContactProblem;
-use super::empty_rows::largest_finite;
+use super::opposed::largest_finite;
 use crate::error::Error;
 use crate::linear::equations::{FOLLOWS, Following};
 use crate::linear::{SparseMatrix, check_vector};

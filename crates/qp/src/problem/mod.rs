@@ -1,7 +1,5 @@
 //! The contact problem as a convex QP, checked once.
 
-mod diagonal;
-mod empty_rows;
 mod given_rows;
 mod opposed;
 mod parts;
@@ -12,8 +10,8 @@ pub(crate) use parts::Parts;
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use diagonal::Diagonal;
-use opposed::OpposedRows;
+use opposed::{OpposedRows, settle, without_entries};
+use parts::Diagonal;
 
 use crate::error::Error;
 use crate::linear::equations::Following;
@@ -115,7 +113,7 @@ impl ContactProblem {
         gap: Vec<f64>,
     ) -> Result<Self, Error> {
         let mut problem = Self::computed(stiffness, load, contact, with_infinite(gap))?;
-        problem.rounded = empty_rows::settle(&problem.without_entries, &mut problem.gap);
+        problem.rounded = settle(&problem.without_entries, &mut problem.gap);
         Ok(problem)
     }
 
@@ -136,7 +134,7 @@ impl ContactProblem {
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
-        let without_entries: Arc<[usize]> = empty_rows::without_entries(&contact).into();
+        let without_entries: Arc<[usize]> = without_entries(&contact).into();
         let (diagonal, parts, free_motions) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
         let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
         let semidefinite = FoundOnce::default();
@@ -237,7 +235,7 @@ impl ContactProblem {
         check_gap(&gap, self.rows())?;
         let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
         let mut gap = with_infinite(gap);
-        let rounded = empty_rows::settle(&self.without_entries, &mut gap);
+        let rounded = settle(&self.without_entries, &mut gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
         let (parts, free_motions) = match same_rows {
             true => (self.parts.clone(), self.free_motions.clone()),
@@ -326,7 +324,7 @@ impl ContactProblem {
 
     /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
     pub(crate) fn check_rows(&self) -> Result<(), Error> {
-        match self.opposed_rows().check(&self.gap) {
+        match self.opposed_rows().check(&self.without_entries, &self.gap) {
             Err(Error::Infeasible { rows, weights, .. }) if self.equality_rows > 0 => {
                 Err(self.infeasible(&rows, &weights))
             }

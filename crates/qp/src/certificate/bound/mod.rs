@@ -32,8 +32,7 @@ mod witness;
 use std::sync::Arc;
 
 use super::EnergyNorm;
-use super::energy_norm::Loose;
-use super::springs::Springs;
+use super::energy_norm::{Loose, Springs};
 use crate::error::Error;
 use crate::linear::SparseMatrix;
 use crate::problem::{ContactProblem, Parts};

@@ -7,8 +7,8 @@ use faer::sparse::linalg::cholesky::supernodal::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut};
 
+use super::super::power_iteration::random;
 use super::super::{Analysis, FactorError, SymmetricMatrix, call, largest, par};
-use super::random::random;
 use crate::error::Error;
 
 /// A solution with the factor leaves at most this share of its load, if the pivots are those of the matrix and not of

@@ -4,8 +4,8 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
+use super::super::power_iteration::random;
 use super::super::{FactorError, call, dot, norm};
-use super::random::random;
 use crate::error::Error;
 
 /// Number of columns that are added at once: eigenvalues of up to this multiplicity converge together.

@@ -16,7 +16,6 @@ mod coarser;
 mod coarsest;
 mod conjugate_gradients;
 mod cycle;
-mod degree;
 mod dual_norm;
 mod face;
 mod filling;
