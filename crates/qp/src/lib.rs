@@ -60,7 +60,7 @@ pub use matrix_market::{format_vector, read_vector};
 pub use method::interior_point::InteriorPoint;
 pub use method::penalty::Penalty;
 pub use method::{Ending, Outcome, Start};
-pub use petsc::Layout as PetscLayout;
+pub use petsc::PetscLayout;
 pub use prepared::{Delassus, Path, Prepared};
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Settings};

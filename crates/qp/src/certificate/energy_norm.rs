@@ -38,7 +38,7 @@ pub(crate) struct EnergyNorm {
     /// The contact boundary, if it is known.
     pub(super) boundary: Option<Arc<Boundary>>,
     /// Rows whose compliance the method knows.
-    pub(super) known: Option<Arc<Known>>,
+    pub(super) known: Option<Arc<KnownRows>>,
     /// The springs that made a singular K definite.
     pub(super) springs: Option<Arc<Springs>>,
     /// The dofs without stiffness, in which the matrix has a stiffness of one, if these made K singular.
@@ -91,7 +91,7 @@ impl RowsOnBoundary {
 
 /// The rows of a contact matrix, as a method has them.
 #[derive(Debug)]
-pub(super) struct Known {
+pub(super) struct KnownRows {
     contact: SparseMatrix,
     rows: RowsOnBoundary,
 }
@@ -136,7 +136,7 @@ impl EnergyNorm {
         let known = Compliance::of(&self.cholesky, last, scaled).map(|compliance| {
             let (by_row, shift) = (compliance.by_row().clone(), shift.to_vec());
             let rows = RowsOnBoundary { by_row, shift, compliance: Some(Arc::new(compliance)) };
-            Arc::new(Known { contact: contact.clone(), rows })
+            Arc::new(KnownRows { contact: contact.clone(), rows })
         });
         EnergyNorm { known, ..self }
     }
@@ -146,7 +146,7 @@ impl EnergyNorm {
         let rows = self.rows_on_boundary(contact, |_| true).filter(|rows| rows.compliance.is_none());
         let Some(rows) = rows else { return self };
         let compliance = Some(Arc::new(Compliance::on(&self.cholesky, rows.by_row.clone())));
-        let known = Known { contact: contact.clone(), rows: RowsOnBoundary { compliance, ..rows } };
+        let known = KnownRows { contact: contact.clone(), rows: RowsOnBoundary { compliance, ..rows } };
         EnergyNorm { known: Some(Arc::new(known)), ..self }
     }
 

@@ -7,7 +7,7 @@ use super::interface::{Body, Expansion, OnBoundary, Task, Walk};
 use crate::certificate::Bounding;
 use crate::error::Error;
 use crate::linear::ldexp;
-use crate::method::parametric::Compliance;
+use crate::method::parametric::ParametricLcp;
 use crate::solution::{Certificate, ContactSet};
 
 /// The result on the boundary, from which the displacement of the body follows.
@@ -89,7 +89,7 @@ impl Factored {
         let constant =
             free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
         let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
-        let compliance = Compliance::new(condensed.compliance(), constant, slope);
+        let compliance = ParametricLcp::new(condensed.compliance(), constant, slope);
         let (pieces, mut events) = compliance.walk(&outcome.contact_set, &from.settings.watch)?;
         events.iter_mut().for_each(|event| event.row = reduction.selection.kept()[event.row]);
         Ok(Some(Walk { pieces, events, to_rows: Arc::new(ToRows { unit: *unit, engine: self.clone() }) }))

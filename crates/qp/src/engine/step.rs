@@ -62,7 +62,7 @@ impl ScaledStep<'_> {
                 Barrier { scaled, tolerance }.solve(Start::default())
             }
             ByFactor::Penalty(ladder) => {
-                let goal = accuracy.map(|accuracy| penalty::Goal { accuracy, bound });
+                let goal = accuracy.map(|accuracy| penalty::AccuracyGoal { accuracy, bound });
                 let climb = PenaltyLoop { scaled, ladder, goal, most_iterations };
                 climb.solve(start.unwrap_or(cold).into())
             }

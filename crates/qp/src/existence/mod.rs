@@ -16,7 +16,7 @@
 mod cone;
 mod rigid;
 
-use cone::{Cone, Face, Row, Solve};
+use cone::{Cone, ConeFace, Row, Solve};
 use rigid::{is_rigid, place_of_largest};
 
 use super::cost::{Kept, check_memory, check_time, seconds};
@@ -259,7 +259,7 @@ impl Existence {
     fn is_carried_by(&self, forces: &[f64]) -> bool {
         let (mut left, mut terms) = (self.against_load.values.clone(), Vec::new());
         terms.extend(left.iter().map(|value| value.rounded().abs()));
-        let mut face = Face::default();
+        let mut face = ConeFace::default();
         for (row, of_row) in self.rows.iter().filter(|(row, _)| forces[*row] != 0.0) {
             face.hold(of_row, self.rounding.vanishes);
             for ((left, terms), &value) in left.iter_mut().zip(&mut terms).zip(&of_row.values) {

@@ -34,7 +34,7 @@ impl Squares {
         {
             return Squares::Rows(by_row);
         }
-        let mut search = Search::of(matrix);
+        let mut search = EntrySearch::of(matrix);
         let (mut row_starts, mut products) = (vec![0], Vec::new());
         for row in 0..by_row.columns() {
             products.extend(by_row.square(row).map(|(second, first, product)| {
@@ -191,7 +191,7 @@ fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>
     if lower.entries() == triangle(lower.columns()) {
         return lower.clone();
     }
-    let mut search = Search::of(lower);
+    let mut search = EntrySearch::of(lower);
     let diagonal = (0..lower.columns()).map(|column| (column, column));
     let is_missing = |&(column, row): &(usize, usize)| search.place(column, row).is_err();
     let mut missing: Vec<(usize, usize)> = added.chain(diagonal).filter(is_missing).collect();
@@ -220,16 +220,16 @@ fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>
 }
 
 /// A search for entries of a matrix, which are mostly asked for in their order: down a column, one after the other.
-struct Search<'a> {
+struct EntrySearch<'a> {
     matrix: &'a SparseMatrix,
     /// The entry that was asked for last, and the place after it in its column.
     last: Option<(usize, usize)>,
     next: usize,
 }
 
-impl<'a> Search<'a> {
+impl<'a> EntrySearch<'a> {
     fn of(matrix: &'a SparseMatrix) -> Self {
-        Search { matrix, last: None, next: 0 }
+        EntrySearch { matrix, last: None, next: 0 }
     }
 
     /// The place of an entry within its column, or the place that it would have.
@@ -258,7 +258,7 @@ mod tests {
             .flat_map(|(column, rows)| rows.iter().map(move |&row| (row, column, 1.0)))
             .collect();
         let matrix = SparseMatrix::from_triplets(9, 3, &entries).unwrap();
-        let mut search = Search::of(&matrix);
+        let mut search = EntrySearch::of(&matrix);
         // Down each column, then every entry after every other.
         let all: Vec<_> = (0..3).flat_map(|column| (0..9).map(move |row| (column, row))).collect();
         let pairs = all.iter().flat_map(|&first| all.iter().flat_map(move |&second| [first, second]));

@@ -376,7 +376,7 @@ impl SparseMatrix {
     /// The product A x, of which `entry` makes the entries of A.
     fn product(&self, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut y = vec![0.0; self.rows];
-        Arch::new().dispatch(Product { matrix: self, x, y: &mut y, entry });
+        Arch::new().dispatch(AddedProduct { matrix: self, x, y: &mut y, entry });
         y
     }
 
@@ -454,20 +454,20 @@ impl SparseMatrix {
 }
 
 /// The product A x, added to y, of which `entry` makes the entries of A.
-struct Product<'a, E> {
+struct AddedProduct<'a, E> {
     matrix: &'a SparseMatrix,
     x: &'a [f64],
     y: &'a mut [f64],
     entry: E,
 }
 
-impl<E: Fn(f64) -> f64> WithSimd for Product<'_, E> {
+impl<E: Fn(f64) -> f64> WithSimd for AddedProduct<'_, E> {
     type Output = ();
 
     // A plain closure would be a call to code that is not compiled for the processor.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Product { matrix, x, y, entry } = self;
+        let AddedProduct { matrix, x, y, entry } = self;
         for (column, &at_column) in x.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
             matrix.with_rows(column, y, |y, value| *y += entry(value) * at_column);
         }

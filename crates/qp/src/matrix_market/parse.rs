@@ -37,7 +37,7 @@ const LONGEST_EXCERPT: usize = 80;
 
 /// The values that a file may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Values {
+pub(super) enum AllowedValues {
     Finite,
     /// Gaps: `inf` is a row without obstacle.
     FiniteOrInfinite,
@@ -54,9 +54,9 @@ pub(super) enum Quotes {
 }
 
 /// Parses an open file; errors name its path.
-pub(super) fn parse(file: &Path, text: Capped, values: Values, quotes: Quotes) -> Result<Content, Error> {
-    let source = Source { file, length: text.length, values, quotes };
-    let mut lines = Lines::of(file, text);
+pub(super) fn parse(file: &Path, text: Capped, values: AllowedValues, quotes: Quotes) -> Result<Content, Error> {
+    let source = TextSource { file, length: text.length, values, quotes };
+    let mut lines = TextLines::of(file, text);
     let header = match lines.next()? {
         Some((_, first)) => source.header(first)?,
         None => return Err(source.fault(1, "the file is empty")),
@@ -74,11 +74,11 @@ pub(super) fn parse(file: &Path, text: Capped, values: Values, quotes: Quotes) -
 }
 
 /// A file and its permitted content.
-struct Source<'a> {
+struct TextSource<'a> {
     file: &'a Path,
     /// Bytes of the file, if known.
     length: u64,
-    values: Values,
+    values: AllowedValues,
     quotes: Quotes,
 }
 
@@ -88,7 +88,7 @@ struct Header {
     symmetric: bool,
 }
 
-impl Source<'_> {
+impl TextSource<'_> {
     fn fault(&self, line: usize, message: impl Into<String>) -> Error {
         Error::FileSyntax { file: self.file.to_path_buf(), line, message: message.into() }
     }
@@ -143,7 +143,7 @@ impl Source<'_> {
     }
 
     /// One value a line, column by column.
-    fn array(&self, mut content: Content, lines: &mut Lines) -> Result<Content, Error> {
+    fn array(&self, mut content: Content, lines: &mut TextLines) -> Result<Content, Error> {
         let Content { rows, columns, symmetric, .. } = content;
         self.make_room(&mut content, rows.saturating_mul(columns));
         let mut places =
@@ -167,7 +167,7 @@ impl Source<'_> {
     }
 
     /// One entry a line: row, column, value.
-    fn coordinates(&self, mut content: Content, announced: usize, lines: &mut Lines) -> Result<Content, Error> {
+    fn coordinates(&self, mut content: Content, announced: usize, lines: &mut TextLines) -> Result<Content, Error> {
         self.make_room(&mut content, announced);
         while let Some((line, words)) = lines.next_data()? {
             let entry = self.entry(&content, words).map_err(|message| self.fault(line, message))?;
@@ -218,15 +218,17 @@ impl Source<'_> {
     }
 }
 
-impl Values {
+impl AllowedValues {
     fn check(self, value: f64) -> Result<(), String> {
         match self {
             _ if value.is_finite() => Ok(()),
-            Values::FiniteOrInfinite if value == f64::INFINITY => Ok(()),
-            Values::Bounds if !value.is_nan() => Ok(()),
-            Values::Bounds => Err(format!("the value is {value}; it must be a number, or -inf or inf without a bound")),
-            Values::Finite => Err(format!("the value is {value}; it must be finite")),
-            Values::FiniteOrInfinite => {
+            AllowedValues::FiniteOrInfinite if value == f64::INFINITY => Ok(()),
+            AllowedValues::Bounds if !value.is_nan() => Ok(()),
+            AllowedValues::Bounds => {
+                Err(format!("the value is {value}; it must be a number, or -inf or inf without a bound"))
+            }
+            AllowedValues::Finite => Err(format!("the value is {value}; it must be finite")),
+            AllowedValues::FiniteOrInfinite => {
                 Err(format!("the value is {value}; it must be finite, or inf for a row without obstacle"))
             }
         }
@@ -247,7 +249,7 @@ impl Quotes {
 }
 
 /// The lines of a file, one at a time.
-struct Lines {
+struct TextLines {
     file: PathBuf,
     reader: BufReader<Capped>,
     number: usize,
@@ -255,11 +257,11 @@ struct Lines {
     text: String,
 }
 
-impl Lines {
+impl TextLines {
     /// Before the first line.
     fn of(file: &Path, text: Capped) -> Self {
         let reader = BufReader::with_capacity(PIECE, text);
-        Lines { file: file.to_path_buf(), reader, number: 0, bytes: Vec::new(), text: String::new() }
+        TextLines { file: file.to_path_buf(), reader, number: 0, bytes: Vec::new(), text: String::new() }
     }
 
     /// Number of lines that were read.

@@ -21,7 +21,7 @@ fn read_header(path: &Path) -> Result<(Source, [usize; 2], i32), Error> {
 }
 
 /// A sparse matrix that is read row by row.
-pub(super) struct Rows {
+pub(super) struct RowReader {
     /// Rows and columns.
     pub shape: (usize, usize),
     pub entries: usize,
@@ -36,12 +36,12 @@ pub(super) struct Rows {
 
 /// A row: columns from 0, increasing, and values.
 #[derive(Default)]
-pub(super) struct Row {
+pub(super) struct MatrixRow {
     pub columns: Vec<u32>,
     pub values: Vec<f64>,
 }
 
-impl Rows {
+impl RowReader {
     /// Opens a sparse matrix, and reads the lengths of its rows.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let (mut source, [rows, columns], announced) = read_header(path)?;
@@ -78,11 +78,11 @@ impl Rows {
         source.ends_at(after_columns + REAL * entries, holds)?;
         let values = Source::from_byte(path, after_columns)?;
         let (shape, entries) = ((rows, columns), entries as usize);
-        Ok(Rows { shape, entries, lengths, columns: source, values, next: 0, byte: after_columns })
+        Ok(RowReader { shape, entries, lengths, columns: source, values, next: 0, byte: after_columns })
     }
 
     /// Reads the next row; `false` behind the last.
-    pub fn read(&mut self, into: &mut Row) -> Result<bool, Error> {
+    pub fn read(&mut self, into: &mut MatrixRow) -> Result<bool, Error> {
         let Some(&length) = self.lengths.get(self.next) else { return Ok(false) };
         let row = self.next;
         into.columns.clear();

@@ -23,7 +23,7 @@ mod source;
 mod write;
 
 pub use directory::read_problem;
-pub use write::{Layout, streamed_files};
+pub use write::{PetscLayout, streamed_files};
 
 /// The file that makes a directory one of PETSc's files.
 pub const STIFFNESS: &str = "K.petsc";

@@ -13,7 +13,7 @@ use crate::problem::ContactProblem;
 
 /// The nodes that have a free dof, in their order, with a place for each of their components.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layout {
+pub struct PetscLayout {
     /// Components of a node.
     pub size: usize,
     /// The place `size * node + component` of each free dof, increasing.
@@ -22,7 +22,7 @@ pub struct Layout {
     pub coordinates: Vec<f64>,
 }
 
-impl Layout {
+impl PetscLayout {
     /// The layout of free dofs, `size * node + component` each and increasing, of these nodes, in length.
     pub fn of(size: usize, free: &[usize], nodes: &[[f64; 3]]) -> Self {
         let (mut place, mut coordinates) = (Vec::with_capacity(free.len()), Vec::new());
@@ -35,7 +35,7 @@ impl Layout {
             }
             place.push((coordinates.len() - size + dof % size) as u32);
         }
-        Layout { size, place, coordinates }
+        PetscLayout { size, place, coordinates }
     }
 
     /// Number of places.
@@ -59,7 +59,7 @@ impl Layout {
 }
 
 /// The files of a problem with this layout of dofs.
-pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a Layout) -> Vec<Streamed<'a>> {
+pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a PetscLayout) -> Vec<Streamed<'a>> {
     let (stiffness, place) = (problem.stiffness(), &layout.place);
     let (contact, gap) = problem.inequalities_given();
     let contact = contact.transposed();
@@ -112,13 +112,13 @@ fn write_vector(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
 }
 
 /// The load, with 0 at supported components.
-fn write_load(out: &mut dyn Write, load: &[f64], layout: &Layout) -> io::Result<()> {
+fn write_load(out: &mut dyn Write, load: &[f64], layout: &PetscLayout) -> io::Result<()> {
     write_header(out, VECTOR, &[layout.places()])?;
     layout.each_place(|_, dof| out.write_all(&dof.map_or(0.0, |dof| load[dof]).to_be_bytes()))
 }
 
 /// The vectors as columns, with 0 at supported components.
-fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &Layout) -> io::Result<()> {
+fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &PetscLayout) -> io::Result<()> {
     write_header(out, MATRIX, &[layout.places(), modes.count()])?;
     out.write_all(&DENSE.to_be_bytes())?;
     layout.each_place(|_, dof| {
@@ -128,7 +128,7 @@ fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &Layout) -> i
 }
 
 /// Contact or equality rows, each a column of `rows`.
-fn write_rows_of(out: &mut dyn Write, rows: &SparseMatrix, layout: &Layout) -> io::Result<()> {
+fn write_rows_of(out: &mut dyn Write, rows: &SparseMatrix, layout: &PetscLayout) -> io::Result<()> {
     write_header(out, MATRIX, &[rows.columns(), layout.places(), rows.entries()])?;
     for column in rows.column_starts().windows(2) {
         out.write_all(&integer(column[1] - column[0])?.to_be_bytes())?;
@@ -138,7 +138,7 @@ fn write_rows_of(out: &mut dyn Write, rows: &SparseMatrix, layout: &Layout) -> i
 }
 
 /// The stiffness; a supported component has the mean size of the diagonal as its diagonal entry, and no other entry.
-fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &Layout) -> io::Result<()> {
+fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &PetscLayout) -> io::Result<()> {
     let lengths = stiffness.row_lengths();
     let supported = layout.places() - stiffness.dim();
     let entries = lengths.iter().map(|&length| u64::from(length)).sum::<u64>() + supported as u64;
@@ -160,7 +160,7 @@ fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &La
 fn write_rows<const COUNT: usize>(
     out: &mut dyn Write,
     stiffness: &SymmetricMatrix,
-    layout: &Layout,
+    layout: &PetscLayout,
     own: impl Fn(usize) -> [u8; COUNT],
     bytes: impl Fn(u32, f64) -> [u8; COUNT],
 ) -> io::Result<()> {

@@ -56,7 +56,7 @@ impl Lanes {
 
     fn swept(mut self, factor: &Cholesky, direction: Direction) -> Self {
         match factor.block_columns() {
-            Some((nodes, values)) => Arch::new().dispatch(Sweep { nodes, values, x: &mut self.rows, direction }),
+            Some((nodes, values)) => Arch::new().dispatch(LaneSweep { nodes, values, x: &mut self.rows, direction }),
             // Nothing passes for a solution.
             None => self.rows.fill([f64::NAN; LANES]),
         }
@@ -192,7 +192,7 @@ fn divided<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], by: f64) -> 
 }
 
 /// A sweep through the block columns of a factor.
-struct Sweep<'a> {
+struct LaneSweep<'a> {
     nodes: &'a SymbolicSupernodalCholesky<usize>,
     values: &'a [f64],
     x: &'a mut [Lane],
@@ -205,7 +205,7 @@ enum Direction {
     Backward,
 }
 
-impl WithSimd for Sweep<'_> {
+impl WithSimd for LaneSweep<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -218,11 +218,11 @@ impl WithSimd for Sweep<'_> {
     }
 }
 
-impl Sweep<'_> {
+impl LaneSweep<'_> {
     /// Runs with P vectors for each row.
     #[inline(always)]
     fn run<S: Simd, const P: usize>(self, simd: S) {
-        let Sweep { nodes, values, x, direction } = self;
+        let LaneSweep { nodes, values, x, direction } = self;
         let mut buffer: Vec<f64> = Vec::new();
         let count = nodes.n_supernodes();
         for step in 0..count {

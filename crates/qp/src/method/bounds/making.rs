@@ -24,7 +24,7 @@ const MOST_BEYOND: usize = 24;
 const GROUPS_OF_A_PAIR: usize = 2;
 
 /// Rows by rows, with their gaps.
-struct Rows<'a> {
+struct GapRows<'a> {
     by_row: SparseMatrix,
     gap: &'a [f64],
     /// The node of each dof, one entry per dof.
@@ -33,7 +33,7 @@ struct Rows<'a> {
 
 /// Bounds that are being made.
 struct Making<'a> {
-    rows: &'a Rows<'a>,
+    rows: &'a GapRows<'a>,
     all: Bounds,
     /// The bound of each place.
     bound_of: Vec<Option<usize>>,
@@ -51,7 +51,7 @@ impl Bounds {
         units: &Units,
         travels: Vec<usize>,
     ) -> Result<Self, Error> {
-        let rows = Rows { by_row: contact.transposed(), gap, groups: &units.groups };
+        let rows = GapRows { by_row: contact.transposed(), gap, groups: &units.groups };
         let mut means = rows.means(&travels);
         loop {
             let (bounds, without_pivot) = Making::of(&rows, order, &means, units, travels.clone())?;
@@ -64,7 +64,7 @@ impl Bounds {
     }
 }
 
-impl Rows<'_> {
+impl GapRows<'_> {
     /// The entries of a row that are not zero.
     fn entries(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.by_row.column(row).filter(|entry| entry.1 != 0.0)
@@ -94,7 +94,7 @@ impl Rows<'_> {
 impl Making<'_> {
     /// All bounds: of other rows first, then of `means`; and the means that have no pivot.
     fn of(
-        rows: &Rows,
+        rows: &GapRows,
         order: &Preferred,
         means: &[usize],
         units: &Units,

@@ -30,7 +30,7 @@ use crate::linear::multigrid::{Face, Multigrid};
 use crate::problem::ContactProblem;
 use crate::watch::Watch;
 use exchange::{Exchange, order};
-use iterate::{Conjugate, Iterate};
+use iterate::{BoundedIterate, Conjugate};
 use nested::nested_start;
 use travel::Travels;
 pub use travel::takes_travels;
@@ -186,8 +186,8 @@ impl Mprgp<'_> {
 }
 
 /// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
-fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> Iterate<'a> {
-    let at = |start: Start| Iterate::new(mprgp.problem, bounds, start, mprgp.multigrid);
+fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> BoundedIterate<'a> {
+    let at = |start: Start| BoundedIterate::new(mprgp.problem, bounds, start, mprgp.multigrid);
     let from_nothing = || at(nested(mprgp, bounds).unwrap_or_default());
     if start.is_unknown() {
         return from_nothing();
@@ -260,7 +260,7 @@ impl Progress {
 
     /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement
     /// is left.
-    fn has_settled(&mut self, iterate: &mut Iterate) -> bool {
+    fn has_settled(&mut self, iterate: &mut BoundedIterate) -> bool {
         iterate.refresh_gradient_accurately();
         let checked = iterate.residual();
         if checked > NO_GAIN * self.last_checked {
@@ -286,7 +286,7 @@ struct Steps<'a> {
 impl Steps<'_> {
     /// Takes a proportioning, conjugate gradient or expansion step. Returns `false` at a direction along which nothing
     /// is held, or along which the energy is negative.
-    fn take_one(&mut self, iterate: &mut Iterate) -> Result<bool, Error> {
+    fn take_one(&mut self, iterate: &mut BoundedIterate) -> Result<bool, Error> {
         if iterate.is_disproportionate() {
             iterate.proportion();
             return Ok(true);
