@@ -34,11 +34,6 @@ pub struct Condensation {
 }
 
 impl Condensation {
-    /// The dofs that appear in the rows B, in increasing order.
-    pub fn contact_dofs(contact: &SparseMatrix) -> Vec<usize> {
-        contact.columns_with_entries()
-    }
-
     /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does
     /// not pay.
     pub fn analyse(stiffness: &SymmetricMatrix, contact_dofs: &[usize]) -> Result<Option<Analysis>, FactorError> {
