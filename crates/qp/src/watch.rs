@@ -276,7 +276,6 @@ struct Deadline {
     at: Instant,
     /// Time from setting the deadline to the deadline.
     span: Duration,
-    /// What the deadline cut short first.
     cut: Arc<OnceLock<Cut>>,
 }
 

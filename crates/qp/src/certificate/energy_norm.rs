@@ -35,7 +35,6 @@ pub(crate) struct EnergyNorm {
     pub(super) cholesky: Cholesky,
     /// D and c, as exponents of two: `K^-1 = c D (c D K D)^-1 D`.
     pub(super) equilibration: Equilibration,
-    /// The contact boundary, if it is known.
     pub(super) boundary: Option<Arc<Boundary>>,
     /// Rows whose compliance the method knows.
     pub(super) known: Option<Arc<KnownRows>>,

@@ -214,7 +214,6 @@ impl ContactProblem {
 /// The force that is left over at each dof.
 struct Unbalanced {
     force: Vec<f64>,
-    /// `true` if it is the residual of the answer.
     is_residual: bool,
 }
 
@@ -241,7 +240,6 @@ impl<'a> ComplianceFactor<'a> {
         }
     }
 
-    /// Length of a column.
     fn length(&self) -> usize {
         self.boundary.map_or(self.norm.cholesky.dim(), |boundary| boundary.dofs.len())
     }

@@ -12,7 +12,6 @@ const MOST_CORRECTIONS: usize = 8;
 /// A correction below this, relative, is the last: the next one would be about its square.
 const ENOUGH: f64 = 1e-9;
 
-/// A solution of the linear system.
 pub(super) struct HeldSolution {
     pub displacement: Vec<f64>,
     /// One entry for each row of the problem.

@@ -48,7 +48,6 @@ pub(crate) struct Factored {
 #[derive(Clone, Debug)]
 pub(super) struct Reduced {
     pub loading: Arc<Loading>,
-    /// The problem that the method worked on.
     pub problem: ContactProblem,
     pub unit: i32,
     pub outcome: Outcome,

@@ -34,7 +34,6 @@ pub(crate) struct Task<'a> {
 /// What a step found, in terms of the whole problem.
 pub(crate) struct Found {
     pub outcome: Outcome,
-    /// Seconds of its factorisations.
     pub factor_seconds: f64,
 }
 

@@ -16,7 +16,6 @@ pub(super) struct Reduction {
     pub condensation: Option<Condensation>,
 }
 
-/// The energy norm of the stiffness.
 #[derive(Clone, Debug)]
 pub(super) enum Norm {
     /// The stiffness is not definite by itself.
@@ -27,7 +26,6 @@ pub(super) enum Norm {
 }
 
 impl Reduction {
-    /// The definiteness of the stiffness by itself.
     pub fn definiteness(&self) -> Definiteness {
         match self.norm {
             Norm::Missing => Definiteness::Semidefinite,
@@ -35,7 +33,6 @@ impl Reduction {
         }
     }
 
-    /// Returns `true` if the stiffness is definite by itself.
     pub fn is_definite(&self) -> bool {
         self.definiteness() == Definiteness::Definite
     }

@@ -10,10 +10,8 @@ use crate::plan::{PATIENCE, Step};
 use crate::settings::ByFactor;
 use crate::solution::ContactSet;
 
-/// A step on a scaled problem.
 pub(super) struct ScaledStep<'a> {
     pub scaled: &'a ScaledProblem<'a>,
-    /// The set that it starts from, if one is known.
     pub start: Option<ContactSet>,
     pub method: ByFactor,
     /// The relative accuracy that is good enough.

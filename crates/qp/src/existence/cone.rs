@@ -124,7 +124,6 @@ pub(super) struct ConeFace {
 }
 
 impl ConeFace {
-    /// The part of a vector in the face.
     fn along(&self, vector: &[Twice]) -> Vec<Twice> {
         let mut rest = vector.to_vec();
         for direction in (0..TURNS).flat_map(|_| &self.directions) {

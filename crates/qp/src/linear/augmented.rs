@@ -78,7 +78,6 @@ impl Squares {
     }
 }
 
-/// The number of entries of a lower triangle.
 fn triangle(columns: usize) -> usize {
     columns * (columns + 1) / 2
 }
@@ -120,7 +119,6 @@ impl AugmentedMatrix {
         Ok(Self { stiffness, squares, analysis })
     }
 
-    /// The same matrices, factorised with this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
     }

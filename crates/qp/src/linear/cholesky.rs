@@ -27,7 +27,6 @@ pub struct Analysis {
     threads: usize,
 }
 
-/// The structure of a factor.
 #[derive(Clone, Debug)]
 enum Structure {
     /// Block columns.
@@ -106,7 +105,6 @@ impl Analysis {
         Ok(Analysis { structure: Structure::Sparse(Arc::new(symbolic)), trailing: last.len(), threads: 1 })
     }
 
-    /// The same analysis, for factorisations with this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         Analysis { threads, ..self }
     }

@@ -78,7 +78,6 @@ impl Compliance {
         Compliance { cholesky, block, by_row, halves: OnceLock::new() }
     }
 
-    /// Memory of the values, in bytes.
     pub fn bytes(&self) -> f64 {
         let [size, count] = [self.by_row.rows(), self.by_row.columns()].map(|count| count as f64);
         (self.cholesky.entries() as f64 + size * count + count * count) * size_of::<f64>() as f64

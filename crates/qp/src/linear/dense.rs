@@ -93,7 +93,6 @@ impl LowerTriangle {
         &self.values
     }
 
-    /// An entry of the diagonal.
     pub fn diagonal(&self, place: usize) -> f64 {
         self.values[place * self.size + place]
     }
@@ -221,7 +220,6 @@ pub struct UpperTriangle {
 }
 
 impl UpperTriangle {
-    /// Number of columns.
     pub fn size(&self) -> usize {
         self.columns.len()
     }

@@ -62,7 +62,6 @@ pub struct Sums {
     of_places: Vec<Option<Sum>>,
     /// The places with a sum, in the order of their first terms.
     places: Vec<usize>,
-    /// Number of terms so far.
     terms: usize,
 }
 

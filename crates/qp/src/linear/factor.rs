@@ -48,12 +48,10 @@ pub fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, Facto
     guarded(work).map_err(FactorError::Failed)?
 }
 
-/// Memory for a call of faer.
 pub(super) fn memory(request: StackReq) -> Result<MemBuffer, FactorError> {
     MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
 }
 
-/// The values of a factor with its structure.
 pub(super) type Factor<'a> = supernodal::SupernodalLltRef<'a, usize, f64>;
 
 /// The lower triangle of a matrix in compressed columns, in the order of elimination; the rows of a column are in any
@@ -64,7 +62,6 @@ pub(crate) struct Permuted {
     pub values: Vec<f64>,
 }
 
-/// Factorises a matrix.
 pub(super) fn factorise(
     supernodes: &supernodal::SymbolicSupernodalCholesky<usize>,
     permuted: &Permuted,

@@ -245,7 +245,6 @@ impl SparseMatrix {
         SparseMatrix { rows, pattern: Arc::new(Pattern::of(column_starts, row_indices)), values: Arc::new(values) }
     }
 
-    /// The matrix with other values in the same pattern.
     pub(crate) fn with_values(&self, values: Vec<f64>) -> Self {
         SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
     }
@@ -320,7 +319,6 @@ impl SparseMatrix {
         self.column_slices(column).0
     }
 
-    /// Rows and values of one column.
     #[inline(always)]
     fn column_slices(&self, column: usize) -> (&[u32], &[f64]) {
         let Pattern { column_starts, row_starts, rows } = &*self.pattern;

@@ -46,7 +46,6 @@ const SOFTEST_STEPS: usize = 5;
 const LEAST_NEGATIVE: f64 = 1e-12;
 const NEGATIVE_BY_COLUMN: f64 = 8.0 * f64::EPSILON;
 
-/// A basis of the null space of a matrix.
 #[derive(Clone, Debug, Default)]
 pub struct NullSpace {
     /// Linearly independent vectors of length about one.
@@ -69,7 +68,6 @@ impl NullSpace {
     /// coefficients and right-hand sides*, Numer. Math. 6 (1964) 405-409.
     pub const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
 
-    /// Returns `true` if A vanishes exactly on all vectors.
     pub fn is_exact(&self) -> bool {
         self.shares.iter().all(|&share| share == 0.0)
     }

@@ -9,7 +9,6 @@ const NONE: u32 = u32::MAX;
 
 /// Groups of columns with the same neighbours, and the pairs of groups that meet.
 pub(super) struct Quotient {
-    /// Group of each column.
     of_column: Vec<u32>,
     /// Members of a group follow each other.
     member_starts: Vec<usize>,
@@ -21,7 +20,6 @@ pub(super) struct Quotient {
 }
 
 impl Quotient {
-    /// The quotient graph of a matrix given by its lower triangle.
     pub fn of(lower: &SparseMatrix) -> Self {
         let (of_column, count) = groups(lower);
         let (member_starts, columns) = grouped(count, &of_column);
@@ -66,7 +64,6 @@ impl Quotient {
         (self.starts, self.all_neighbours) = (starts, neighbours);
     }
 
-    /// Number of groups.
     pub fn count(&self) -> usize {
         self.member_starts.len() - 1
     }
@@ -81,7 +78,6 @@ impl Quotient {
         self.columns.len() as f64 / self.count().max(1) as f64
     }
 
-    /// The columns of a group.
     pub fn members(&self, group: u32) -> &[usize] {
         &self.columns[self.member_starts[group as usize]..self.member_starts[group as usize + 1]]
     }

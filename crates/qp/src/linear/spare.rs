@@ -22,7 +22,6 @@ impl<T: Copy + Default> Spare<T> {
         }
     }
 
-    /// A vector of zeros.
     pub fn zeros(&self, length: usize) -> Vec<T> {
         let mut vector = self.take(length);
         vector.fill(T::default());

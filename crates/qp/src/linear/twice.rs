@@ -20,7 +20,6 @@ impl Twice {
         self.head
     }
 
-    /// The magnitude.
     pub fn abs(self) -> Self {
         if self.head < 0.0 { -self } else { self }
     }

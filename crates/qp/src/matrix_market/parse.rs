@@ -18,7 +18,6 @@ const LARGEST_DIMENSION: usize = 100_000_000;
 /// The content of a file: shape, entries (indices from 0), and whether only one triangle is stored.
 #[derive(Debug)]
 pub(super) struct Content {
-    /// The line with the sizes.
     pub line: usize,
     pub rows: usize,
     pub columns: usize,
@@ -264,7 +263,6 @@ impl TextLines {
         TextLines { file: file.to_path_buf(), reader, number: 0, bytes: Vec::new(), text: String::new() }
     }
 
-    /// Number of lines that were read.
     fn number(&self) -> usize {
         self.number
     }

@@ -42,7 +42,6 @@ const PATIENCE: usize = 3;
 /// The active-set loop on a scaled problem.
 #[derive(Clone, Copy)]
 pub struct ActiveSet<'a> {
-    /// The scaled problem that the loop solves.
     pub scaled: &'a ScaledProblem<'a>,
     /// Largest number of sets, each with a factorisation.
     pub most_iterations: usize,
@@ -217,7 +216,6 @@ fn wrong_rows(
     })
 }
 
-/// The sum of the magnitudes.
 fn sum_of(values: &[f64]) -> f64 {
     values.iter().map(|value| value.abs()).sum()
 }

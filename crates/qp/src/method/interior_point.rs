@@ -22,7 +22,6 @@ const UNIT_EXPONENT: i32 = 6;
 /// A displacement below 2 to minus this power is only the tolerance.
 const NOTHING_EXPONENT: i32 = 60;
 
-/// Largest number of corrections of the unit.
 const UNIT_CORRECTIONS: usize = 4;
 
 /// Number of steps after which more do not help: on ill-conditioned data the residuals stall while the barrier

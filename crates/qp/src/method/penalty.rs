@@ -193,7 +193,6 @@ impl Climb {
     }
 }
 
-/// The answer of one penalty.
 #[derive(Clone)]
 struct PenaltyRung {
     penalty: f64,

@@ -23,7 +23,6 @@ pub trait Solver {
 /// The definiteness of a stiffness by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Definiteness {
-    /// It is positive definite.
     Definite,
     /// It may have modes without energy.
     Semidefinite,
@@ -66,7 +65,6 @@ impl<'a> ScaledProblem<'a> {
         self.swept_load.get_or_init(|| compliance.swept(self.problem.load())).clone()
     }
 
-    /// Returns `true` if K is positive definite by itself.
     pub fn is_definite(&self) -> bool {
         self.definiteness == Definiteness::Definite
     }

@@ -28,7 +28,6 @@ use crate::solution::{ContactSet, Solution};
 pub struct Start {
     /// A displacement near the answer, one entry per dof.
     pub(crate) displacement: Option<Vec<f64>>,
-    /// A contact set near that of the answer.
     pub(crate) contact_set: Option<ContactSet>,
 }
 

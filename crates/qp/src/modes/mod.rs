@@ -224,7 +224,6 @@ fn with_mass(pairs: &Pairs, count: usize) -> usize {
     pairs.values.iter().take(count).take_while(|value| **value > least).count()
 }
 
-/// The lowest pairs of a pencil.
 struct LowestPairs {
     values: Vec<f64>,
     vectors: Vec<Vec<f64>>,
@@ -346,7 +345,6 @@ impl Shifted<'_> {
         Some((widest.2, widest.1))
     }
 
-    /// The product of the operator with columns.
     fn apply(&self, columns: &[f64]) -> Vec<f64> {
         let Pencil { ordered, .. } = self.pencil;
         let swept = |columns: &[f64]| {

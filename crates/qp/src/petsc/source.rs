@@ -63,7 +63,6 @@ impl Source {
         Ok(Source { path: path.to_path_buf(), reader, byte, length })
     }
 
-    /// The byte that is read next.
     pub fn byte(&self) -> u64 {
         self.byte
     }
@@ -72,7 +71,6 @@ impl Source {
         Error::FileBytes { file: self.path.clone(), byte: byte as usize, message: message.into() }
     }
 
-    /// The next integer.
     pub fn integer(&mut self) -> Result<i32, Error> {
         self.bytes().map(i32::from_be_bytes)
     }

@@ -58,7 +58,6 @@ impl PetscLayout {
     }
 }
 
-/// The files of a problem with this layout of dofs.
 pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a PetscLayout) -> Vec<Streamed<'a>> {
     let (stiffness, place) = (problem.stiffness(), &layout.place);
     let (contact, gap) = problem.inequalities_given();
@@ -86,7 +85,6 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a PetscLayout) 
     files
 }
 
-/// The class and the sizes of an object.
 fn write_header(out: &mut dyn Write, class: Class, sizes: &[usize]) -> io::Result<()> {
     out.write_all(&class.number.to_be_bytes())?;
     sizes.iter().try_for_each(|&size| out.write_all(&integer(size)?.to_be_bytes()))

@@ -40,7 +40,6 @@ pub struct Answered {
     /// `true` if the method met a free motion, or a negative energy.
     pub is_unheld: bool,
     pub iterations: usize,
-    /// `true` if it is the best so far.
     pub is_best: bool,
     /// `true` if it misses by no more than half of what the best before missed by.
     pub gains: bool,
@@ -100,11 +99,9 @@ impl Record {
 #[derive(Debug)]
 pub struct Best {
     pub solution: Solution,
-    /// The attempt that it belongs to.
     pub attempt: usize,
     /// The method of that attempt, if its data were prepared.
     pub tried: Option<Tried>,
-    /// How its method ended.
     pub ending: Ending,
     pub evidence: Option<Evidence>,
 }
@@ -120,7 +117,6 @@ impl Best {
 #[derive(Debug)]
 pub struct History {
     pub goal: Goal,
-    /// The first attempt.
     pub first: usize,
     pub records: Vec<Record>,
     pub best: Option<Best>,

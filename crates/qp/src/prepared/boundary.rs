@@ -61,7 +61,6 @@ impl BoundarySolution {
 }
 
 impl From<Solution> for BoundarySolution {
-    /// The boundary of an answer that was not condensed.
     fn from(solution: Solution) -> Self {
         BoundarySolution {
             multiplier: solution.multiplier.clone(),

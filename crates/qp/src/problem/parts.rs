@@ -8,7 +8,6 @@ use crate::linear::{Forest, SparseMatrix, SymmetricMatrix};
 /// A coupling below this share of `sqrt(K_ii K_jj)` does not make two dofs one part.
 const WEAK_COUPLING: f64 = 1e-6;
 
-/// The diagonal of K.
 #[derive(Clone, Debug)]
 pub(crate) struct Diagonal {
     /// K_ii of each dof.

@@ -51,7 +51,6 @@ pub(crate) fn engine_by(
 /// The prepared data of an attempt, and its load.
 #[derive(Clone, Debug)]
 pub(crate) struct Workbench {
-    /// The number of the attempt in its ladder.
     pub attempt: usize,
     pub engine: Arc<dyn Engine>,
     pub load: Arc<Load>,
@@ -116,7 +115,6 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Makes a step and judges its answer.
     fn made_step(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
         match record.step {
             Step::Pieces => self.in_pieces(record),

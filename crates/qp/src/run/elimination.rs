@@ -14,7 +14,6 @@ pub(super) enum Rest {
     Answer(Box<Solution>, Option<Certificate>),
     /// It moves along a direction that nothing holds, as the error says in terms of the whole.
     Moves(Error),
-    /// Nothing.
     Open,
 }
 

@@ -82,12 +82,10 @@ impl Condensation {
         &self.contact_dofs
     }
 
-    /// The condensed stiffness S.
     pub fn stiffness(&self) -> &SymmetricMatrix {
         &self.stiffness
     }
 
-    /// The contact rows in the contact dofs.
     pub fn contact(&self) -> &SparseMatrix {
         &self.contact
     }

@@ -141,7 +141,6 @@ impl Elimination {
         Elimination { equalities, pivots, sums, place, dofs, rows }
     }
 
-    /// The problem in the dofs that stay.
     pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
         let (stiffness, load) = (self.stiffness(problem)?, self.load(problem));
         let (by_row, mut sums) = (problem.contact().transposed(), Sums::default());

@@ -65,7 +65,6 @@ impl Scaling {
         Ok(Scaling { equilibration, rows, unscaled: stiffness.clone(), stiffness: OnceLock::new(), contact })
     }
 
-    /// The equilibration of the stiffness.
     pub fn equilibration(&self) -> &Equilibration {
         &self.equilibration
     }

@@ -68,7 +68,6 @@ pub(super) struct ErrorBound {
 }
 
 impl ErrorBound {
-    /// No bound.
     pub fn none() -> Self {
         ErrorBound { whole: f64::INFINITY, of_parts: None }
     }

@@ -82,7 +82,6 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
         space
     }
 
-    /// Number of columns of the basis.
     pub fn columns(&self) -> usize {
         self.projected.len()
     }

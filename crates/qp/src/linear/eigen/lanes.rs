@@ -32,7 +32,6 @@ impl Lanes {
         Lanes { rows, columns: columns.len() / dim.max(1) }
     }
 
-    /// The columns, one after the other.
     pub fn into_columns(self) -> Vec<f64> {
         (0..self.columns).flat_map(|lane| self.rows.iter().map(move |row| row[lane])).collect()
     }
@@ -102,7 +101,6 @@ struct Block<'a> {
     own: Range<usize>,
     /// Its entries, column by column: the rows of its own columns, then those below.
     values: &'a [f64],
-    /// The rows below.
     below: &'a [usize],
 }
 
@@ -181,7 +179,6 @@ fn without<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], factor: f64,
     row
 }
 
-/// A row over a number.
 #[inline(always)]
 fn divided<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], by: f64) -> [S::f64s; P] {
     let by = simd.splat_f64s(by);

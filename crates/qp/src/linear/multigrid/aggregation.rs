@@ -14,7 +14,6 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The nodes to which this one is strongly connected.
     pub fn neighbours(&self, node: usize) -> &[u32] {
         &self.neighbours[self.starts[node]..self.starts[node + 1]]
     }

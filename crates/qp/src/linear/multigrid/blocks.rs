@@ -127,7 +127,6 @@ impl<T: Real> BlockMatrix<T> {
         found.ok().map(|place| places.start + place)
     }
 
-    /// Bytes of memory that the matrix holds.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.starts[..])
             + size_of_val(&self.indices[..])

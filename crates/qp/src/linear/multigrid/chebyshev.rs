@@ -62,7 +62,6 @@ impl<T: Real> Chebyshev<T> {
         smoother
     }
 
-    /// Returns `true` if it works on patches.
     pub fn has_patches(&self) -> bool {
         self.patches.is_some()
     }

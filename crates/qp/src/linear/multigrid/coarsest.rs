@@ -15,7 +15,6 @@ pub(super) const LOST_DIAGONAL: f64 = 3000.0;
 /// Shift that then holds the body, on a diagonal of order one: about as stiff as a coarse cell, as its contact will be.
 const SHIFT: f64 = 1e-3;
 
-/// The factor of a coarsest matrix.
 #[derive(Debug)]
 pub(super) struct Coarsest {
     analysis: Analysis,
@@ -78,12 +77,10 @@ impl Coarsest {
         }
     }
 
-    /// Number of values of the factor of the coarsest matrix.
     pub fn entries(&self) -> usize {
         self.cholesky.entries()
     }
 
-    /// The displacement under a force.
     pub fn solve(&self, force: &[f64]) -> Vec<f64> {
         let scale = &self.equilibration.diagonal;
         let scaled: Vec<f64> =

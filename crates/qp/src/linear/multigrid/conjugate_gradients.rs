@@ -24,7 +24,6 @@ impl Multigrid {
 pub struct ConjugateGradients {
     /// The solution x, one entry per dof.
     pub solution: Vec<f64>,
-    /// Number of cycles of the hierarchy.
     pub cycles: usize,
     /// `|b - A x| / |b|`, for the residual that the iteration updates.
     pub residual: f64,

@@ -35,7 +35,6 @@ pub struct FaceLevels<T> {
     pub changes: Vec<BlockMatrix<T>>,
     /// Smoothers of each level except the finest and the coarsest.
     pub smoothers: Vec<Chebyshev<T>>,
-    /// The factor of the coarsest matrix in the face.
     pub coarsest: Coarsest,
 }
 

@@ -47,7 +47,6 @@ use hierarchy::Hierarchy;
 /// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
 #[derive(Debug)]
 pub struct Multigrid {
-    /// The matrix that the hierarchy was made from.
     matrix: SymmetricMatrix,
     levels: Levels,
     /// Work vectors of the iteration around the cycles.

@@ -35,7 +35,6 @@ struct GapRows<'a> {
 struct Making<'a> {
     rows: &'a GapRows<'a>,
     all: Bounds,
-    /// The bound of each place.
     bound_of: Vec<Option<usize>>,
     /// The places that the shears of means contain: none of them becomes a pivot.
     carried: HashSet<usize>,

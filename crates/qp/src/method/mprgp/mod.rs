@@ -63,7 +63,6 @@ const NO_GAIN: f64 = 0.5;
 pub struct Limits {
     /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
     pub tolerance: f64,
-    /// Largest number of cycles of the hierarchy.
     pub most_cycles: usize,
     /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or
     /// after this number unless few are left.
@@ -89,7 +88,6 @@ impl Limits {
 pub struct Mprgp<'a> {
     /// The problem in its own units.
     pub problem: &'a ContactProblem,
-    /// The hierarchy.
     pub multigrid: &'a Multigrid,
     /// The accuracy and the cycles of this solve.
     pub limits: Limits,
@@ -130,7 +128,6 @@ impl Solver for Mprgp<'_> {
 }
 
 impl Mprgp<'_> {
-    /// The answer with some rows as bounds.
     fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome, Error> {
         let Mprgp { problem, multigrid, limits, watch } = *self;
         let mut iterate = started(self, bounds, start);
@@ -211,7 +208,6 @@ fn nested(mprgp: &Mprgp, bounds: &Bounds) -> Option<Start> {
     nested_start(mprgp.problem, bounds, mprgp.multigrid, below).map(Start::near)
 }
 
-/// The progress of the iteration.
 struct Progress {
     /// Cycles before the last change of the face, and the residual then.
     on_face: (usize, f64),
