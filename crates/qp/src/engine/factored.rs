@@ -204,7 +204,7 @@ impl Factored {
     }
 
     fn scaled_problem<'a>(&'a self, problem: &'a ContactProblem) -> ScaledProblem<'a> {
-        let scaled = ScaledProblem::new(problem, &self.augmented, self.reduction.definiteness());
+        let scaled = ScaledProblem::new(problem, &self.augmented, self.reduction.is_definite());
         scaled.with_compliance(self.reduction.compliance())
     }
 

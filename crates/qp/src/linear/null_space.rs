@@ -127,6 +127,7 @@ impl SymmetricMatrix {
         let shift = LEAST_NEGATIVE.max(NEGATIVE_BY_COLUMN * self.dim() as f64);
         Ok(Equilibration::of(self).apply(self).shifted_factor(shift)?.is_some())
     }
+
     /// A basis of the null space of a positive semidefinite matrix with a diagonal of order one or zero; `None` if it
     /// has more than 256 vectors.
     ///

@@ -20,20 +20,13 @@ pub trait Solver {
     fn solve(&self, start: Start) -> Result<Outcome, Error>;
 }
 
-/// The definiteness of a stiffness by itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Definiteness {
-    Definite,
-    /// It may have modes without energy.
-    Semidefinite,
-}
-
 /// A scaled problem with its pattern analysed: the input of every method.
 #[derive(Debug)]
 pub struct ScaledProblem<'a> {
     /// The data, dimensionless and of order one.
     pub problem: &'a ContactProblem,
-    definiteness: Definiteness,
+    /// `true` if the stiffness is definite by itself: it has no modes without energy.
+    is_definite: bool,
     augmented: &'a Augmented,
     /// The compliance of the rows, by which a method balances forces; `None` if factors of the augmented matrix cost
     /// less.
@@ -45,9 +38,9 @@ pub struct ScaledProblem<'a> {
 
 impl<'a> ScaledProblem<'a> {
     /// The problem with its K + B'B.
-    pub fn new(problem: &'a ContactProblem, augmented: &'a Augmented, definiteness: Definiteness) -> Self {
+    pub fn new(problem: &'a ContactProblem, augmented: &'a Augmented, is_definite: bool) -> Self {
         let (swept_load, factor_seconds, watch) = (OnceCell::new(), Cell::new(0.0), Watch::default());
-        ScaledProblem { problem, definiteness, augmented, compliance: None, swept_load, factor_seconds, watch }
+        ScaledProblem { problem, is_definite, augmented, compliance: None, swept_load, factor_seconds, watch }
     }
 
     /// The same problem, balanced by the compliance of its rows.
@@ -66,7 +59,7 @@ impl<'a> ScaledProblem<'a> {
     }
 
     pub fn is_definite(&self) -> bool {
-        self.definiteness == Definiteness::Definite
+        self.is_definite
     }
 
     /// The watch that the loops check, and to which they report their iterations.

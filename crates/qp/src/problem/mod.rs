@@ -135,27 +135,23 @@ impl ContactProblem {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
         let without_entries: Arc<[usize]> = without_entries(&contact).into();
-        let (diagonal, parts, free_motions) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
-        let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
-        let semidefinite = FoundOnce::default();
-        let near_null = None;
         Ok(ContactProblem {
             stiffness,
             load,
             contact,
             gap,
-            near_null,
-            diagonal,
-            semidefinite,
-            parts,
-            free_motions,
-            opposed,
-            equalities,
+            near_null: None,
+            diagonal: FoundOnce::default(),
+            semidefinite: FoundOnce::default(),
+            parts: FoundOnce::default(),
+            free_motions: FoundOnce::default(),
+            opposed: FoundOnce::default(),
+            equalities: FoundOnce::default(),
             equality_rows: 0,
             following: Arc::new([]),
             without_entries,
             rounded: Vec::new(),
-            two_sided,
+            two_sided: Vec::new(),
         })
     }
 
@@ -233,27 +229,17 @@ impl ContactProblem {
         check_load(&load, self.dofs())?;
         let gap = self.gaps_of_all_rows(gap);
         check_gap(&gap, self.rows())?;
-        let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
         let mut gap = with_infinite(gap);
         let rounded = settle(&self.without_entries, &mut gap);
-        let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
-        let (parts, free_motions) = match same_rows {
-            true => (self.parts.clone(), self.free_motions.clone()),
-            false => (FoundOnce::default(), FoundOnce::default()),
-        };
-        let equalities = if gap == self.gap { self.equalities.clone() } else { FoundOnce::default() };
-        Ok(ContactProblem {
-            stiffness,
-            load,
-            contact,
-            gap,
-            near_null,
-            parts,
-            free_motions,
-            equalities,
-            rounded,
-            ..self.clone()
-        })
+        let mut problem = ContactProblem { load, gap, rounded, ..self.clone() };
+        let same_rows = problem.gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
+        if !same_rows {
+            (problem.parts, problem.free_motions) = (FoundOnce::default(), FoundOnce::default());
+        }
+        if problem.gap != self.gap {
+            problem.equalities = FoundOnce::default();
+        }
+        Ok(problem)
     }
 
     /// The diagonal of K, computed at its first use.

@@ -25,7 +25,7 @@ mod polyhedron;
 
 use std::collections::HashSet;
 
-use super::{Definiteness, Ending, Outcome, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::linear::{Augmented, norm};
 use crate::problem::ContactProblem;
@@ -58,8 +58,7 @@ const ROW_MET: f64 = 4.0 * f64::EPSILON;
 /// As [`ContactProblem::dual_active_set`].
 pub(crate) fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Outcome, Error> {
     let augmented = Augmented::new(problem.stiffness(), problem.contact(), None, 1);
-    let definiteness = if is_definite { Definiteness::Definite } else { Definiteness::Semidefinite };
-    let scaled = ScaledProblem::new(problem, &augmented, definiteness);
+    let scaled = ScaledProblem::new(problem, &augmented, is_definite);
     let Some(method) = DualActiveSet::of(&scaled)? else {
         return Err(Error::NotCondensed { step: "the dual active set" });
     };
