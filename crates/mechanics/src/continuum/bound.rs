@@ -47,7 +47,6 @@ pub struct Bracket<'a> {
     pub dual: Side,
     /// The places at which the rows of the stress act.
     pub places: Vec<Place>,
-    /// The settings of every solve.
     pub settings: Settings,
     /// How forces are carried to the supports; `None` if these cannot carry every force.
     pub balance: Option<Balance>,
@@ -246,7 +245,6 @@ impl<'a> Bracket<'a> {
         }
     }
 
-    /// A stress at a point.
     pub fn stress_of(&self, stress: &[PartStress], cell: usize, k: usize, weights: Weights) -> Tensor {
         let value = stress[cell].at(k, weights);
         match self.problem.is_axisymmetric {

@@ -15,7 +15,6 @@ use crate::fem::geometry::{COORDINATES, key};
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
-/// Displacements on a mesh.
 #[derive(Debug)]
 pub struct Displacements<'a> {
     problem: &'a ContinuumProblem,

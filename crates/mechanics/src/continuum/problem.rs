@@ -48,7 +48,6 @@ pub struct Medium {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Linear {
     pub at_origin: f64,
-    /// Its gradient.
     pub slope: Point,
 }
 
@@ -102,7 +101,6 @@ impl Foundation {
         [0, 1, 2].map(|axis| self.along[axis] * displacement[axis] + towards * normal[axis])
     }
 
-    /// Returns `true` if there are springs.
     pub fn is_there(&self) -> bool {
         *self != Self::default()
     }
@@ -154,7 +152,6 @@ impl Linear {
 }
 
 impl Condition {
-    /// Adds a traction.
     pub fn pull_along(&mut self, traction: [Linear; 3]) {
         self.traction = [0, 1, 2].map(|axis| self.traction[axis].plus(traction[axis]));
     }
@@ -201,7 +198,6 @@ pub struct Pressed {
     pub cosine: f64,
 }
 
-/// The distance to an obstacle.
 pub trait Distance: Debug + Send + Sync {
     /// The gap on the straight facet between these corners, two in the plane and three in space; `None` if the obstacle
     /// is out of reach on all of the facet.

@@ -19,7 +19,6 @@ use crate::fem::geometry::COORDINATES;
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
-/// Stresses on a mesh.
 #[derive(Debug)]
 pub struct Stresses<'a> {
     pub problem: &'a ContinuumProblem,

@@ -247,7 +247,6 @@ impl Unknowns {
         unknowns
     }
 
-    /// Adds an unknown.
     fn push(&mut self, offset: f64, terms: impl Iterator<Item = (usize, f64)>) {
         self.offset.push(offset);
         self.terms.extend(terms.filter(|term| term.1 != 0.0).map(|(free, coefficient)| (free as u32, coefficient)));

@@ -53,7 +53,6 @@ impl KeptAnswers {
         bytes::of_answers(self.count as f64, self.dofs as f64)
     }
 
-    /// The settings of each solve.
     pub fn settings(&self, settings: &Settings) -> Settings {
         match self.allowed {
             Some(allowed) => settings.clone().with_memory((allowed - self.bytes()).max(1.0)),

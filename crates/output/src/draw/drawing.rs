@@ -60,7 +60,6 @@ impl Drawing {
         }
     }
 
-    /// A straight line.
     pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], paint: &Paint) {
         self.polyline(&[from, to], paint);
     }

@@ -60,7 +60,6 @@ pub(crate) fn about(weight: Weight) -> Option<About> {
     })
 }
 
-/// The file of a face.
 pub(crate) fn file(weight: Weight) -> &'static [u8] {
     FILES[weight as usize]
 }

@@ -10,7 +10,6 @@ use super::sweep::MOST_BYTES;
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::Answer;
 
-/// The output of a motion.
 pub(crate) struct MotionFrames<'a> {
     /// Time, contact force, number of closed rows, penetration, kinetic, strain, potential and total energy, step after
     /// step.
@@ -31,7 +30,6 @@ pub(super) struct MotionShown {
 }
 
 impl MotionShown {
-    /// The motion with its kept frames.
     pub fn of(
         frames: &MotionFrames,
         shape: &Shape,

@@ -41,7 +41,6 @@ struct Point<'a> {
 }
 
 impl<'a> SweepShown<'a> {
-    /// The sweep with its kept states.
     pub fn of(sweep: &'a Sweep, shape: &Shape, packer: &mut Packer) -> Result<(Self, Vec<State>), Error> {
         let first = &sweep.points[0];
         let model = first.answer.model();

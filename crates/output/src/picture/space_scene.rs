@@ -27,7 +27,6 @@ const BEYOND: f64 = 0.35;
 pub(crate) struct SpaceScene<'a> {
     title: String,
     answer: &'a Answer,
-    /// The field that is drawn.
     field: Painted,
 }
 

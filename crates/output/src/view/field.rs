@@ -22,7 +22,6 @@ pub(crate) struct Field {
     pub values: fn(&Source) -> Result<Values, Error>,
 }
 
-/// A field that colours a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Colours {
     /// The field in words.
@@ -42,7 +41,6 @@ pub(crate) enum Between {
     OfRoots,
 }
 
-/// The source of all fields.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source<'a> {
     pub answer: &'a Answer,

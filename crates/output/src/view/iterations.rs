@@ -11,7 +11,6 @@ use signorini_qp::{Iteration, Method, Penalty, Settings, solve};
 /// Largest number of iterations that are shown.
 const MOST_ITERATIONS: usize = 12;
 
-/// A step that is shown.
 pub(crate) struct Step {
     /// Its place in the history.
     pub index: usize,

@@ -235,7 +235,6 @@ pub(crate) fn interpolated(values: &PerNode<[f64; 3]>, shape: &PerNode<f64>, nod
         .fold([0.0; 3], |sum, (value, share)| [0, 1, 2].map(|axis| sum[axis] + share * value[axis]))
 }
 
-/// Adds vectors at some nodes to a nodal vector.
 pub(super) fn add(body: &ElasticBody, nodes: &[usize], vectors: &PerNode<[f64; 3]>, nodal: &mut [f64]) {
     let dimension = body.dimension();
     for (&node, vector) in nodes.iter().zip(vectors) {

@@ -42,7 +42,6 @@ pub struct ElasticBody {
     regions: Vec<Region>,
     /// The phases of a region are consecutive; each has an element.
     phases: Vec<Phase>,
-    /// The phase of each element.
     of_elements: Vec<u32>,
     /// Elements whose Jacobian is negative at a node alone: element, local node and determinant, relative to the size
     /// of the element to the power of its dimension.
@@ -71,7 +70,6 @@ pub struct BodyElement<'a> {
     pub cell: Cell,
     /// Its material and its stress without strain.
     pub phase: &'a Phase,
-    /// The number of the phase among the phases of the body.
     pub phase_number: u32,
 }
 
@@ -318,7 +316,6 @@ impl ElasticBody {
         &self.phases[self.of_elements[element] as usize]
     }
 
-    /// The number of the phase of an element among the phases of the body.
     pub(crate) fn phase_number(&self, element: usize) -> u32 {
         self.of_elements[element]
     }

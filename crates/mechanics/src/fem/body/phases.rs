@@ -127,7 +127,6 @@ mod tests {
     use crate::fem::mesh::bisection::Tetrahedra;
     use crate::fem::mesh::gmsh::GmshFile;
 
-    /// The volume of each phase.
     fn volumes(body: &ElasticBody) -> Vec<f64> {
         let (tables, mut volumes) = (body.tabulated(), vec![0.0; body.phases().len()]);
         for element in body.elements() {

@@ -50,7 +50,6 @@ pub struct Cell {
 pub struct Mapping {
     /// Gradients of the shape functions, per unit.
     pub gradients: PerNode<[f64; 3]>,
-    /// Determinant of the Jacobian.
     pub determinant: f64,
 }
 

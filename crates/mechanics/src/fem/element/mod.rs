@@ -166,7 +166,6 @@ impl ElementKind {
     }
 }
 
-/// A value for each kind of element of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct PerKind<T>(Vec<(ElementKind, T)>);
 

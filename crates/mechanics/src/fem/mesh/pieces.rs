@@ -20,7 +20,6 @@ const OF_HEXAHEDRON: [[usize; 4]; 6] =
 pub(crate) struct Pieces {
     /// The nodes of pieces, in the order of the mesh.
     pub nodes: Vec<[f64; 3]>,
-    /// The nodes of each piece.
     pub cells: Vec<Vec<usize>>,
     pub elements: Vec<usize>,
     /// The number of each node of the mesh; `None` for a mid-edge node of a straight edge.

@@ -26,7 +26,6 @@ const ON_ELEMENT: f64 = 1e-9;
 /// Components of a stress by name; the last is the equivalent stress.
 const COMPONENTS: [&str; 7] = ["xx", "yy", "zz", "xy", "yz", "zx", "von-mises"];
 
-/// An output of an answer.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Output {
     /// As `obstacles[0].force`.

@@ -264,7 +264,6 @@ fn in_words(place: &str) -> String {
     name
 }
 
-/// A part of a scene with another number.
 fn with_number<T: serde::Serialize + serde::de::DeserializeOwned>(
     part: &T,
     place: &str,

@@ -239,7 +239,6 @@ impl<'a> PlacedLoad<'a> {
         Ok(Acting::Centrifugal { omega: spec.omega, axis: (axis, point) })
     }
 
-    /// Checks that every material has a density.
     fn check_density(&self) -> Result<(), Error> {
         let lacks = |region: &Region| self.body.materials(region).any(|material| material.density().is_none());
         let without = self.body.regions().iter().position(lacks);

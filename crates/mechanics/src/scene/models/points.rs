@@ -26,7 +26,6 @@ const CONTRADICTION: f64 = 1e-9;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ReferencePoints {
     pub all: Vec<ReferencePoint>,
-    /// Number of nodes of the mesh.
     nodes: usize,
     /// The sums of each tie at points that are zero.
     pub ties: BTreeMap<usize, Vec<Sum>>,
@@ -40,7 +39,6 @@ pub(crate) struct ReferencePoints {
 /// What ties and springs at points are in the scene, before the elimination.
 #[derive(Clone, Debug, Default)]
 struct Whole {
-    /// Each equation with its tie.
     equations: Vec<(usize, Sum)>,
     /// The elongation of each spring, without points that no tie joins to a body: they are the ground.
     springs: BTreeMap<usize, Sum>,
@@ -48,7 +46,6 @@ struct Whole {
     sides: BTreeMap<usize, BTreeSet<usize>>,
 }
 
-/// A point, with what moves it.
 #[derive(Clone, Debug)]
 pub(crate) struct ReferencePoint {
     pub name: String,
@@ -62,7 +59,6 @@ pub(crate) struct ReferencePoint {
 }
 
 impl Scene {
-    /// The number of a reference point.
     pub(super) fn point_named(&self, name: &str, path: &str) -> Result<usize, Error> {
         self.points.iter().position(|point| point.name == name).ok_or_else(|| {
             let names = || self.points.iter().map(|point| point.name.as_str());

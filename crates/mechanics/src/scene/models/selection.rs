@@ -48,7 +48,6 @@ fn of_group(body: &ElasticBody, name: &str, path: &str) -> Result<Vec<usize>, Er
     Ok(elements)
 }
 
-/// The centroid of each element.
 pub(crate) fn centroids(body: &ElasticBody) -> Vec<[f64; 3]> {
     let tables = body.tabulated();
     body.elements().map(|element| element.cell.place(&tables.at(element.kind).centroid.shape)).collect()

@@ -190,7 +190,6 @@ impl Unknowns {
         })
     }
 
-    /// Returns `true` if there are rigid faces.
     pub fn has_faces(&self) -> bool {
         self.on_faces.is_some()
     }

@@ -18,7 +18,6 @@ struct Bolt {
     place: Place,
 }
 
-/// The bolts of a deck.
 pub(super) struct Bolts {
     all: Vec<Bolt>,
     dimension: usize,

@@ -24,7 +24,6 @@ struct OnVolume {
     elements: Vec<bool>,
 }
 
-/// The loads of a scene.
 pub(super) struct Loads<'a, 'd> {
     deck: &'a Deck,
     /// Of a plane model; otherwise 1.

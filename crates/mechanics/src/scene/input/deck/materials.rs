@@ -8,7 +8,6 @@ use crate::error::{Error, nearly};
 use crate::fem::geometry::minus;
 use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
 
-/// A material as it is given.
 #[derive(Clone, Debug, Default)]
 struct Given {
     elastic: Option<Elastic>,

@@ -70,7 +70,6 @@ impl Merged {
     }
 }
 
-/// The supports of a scene.
 pub(super) fn supports(
     deck: &Deck,
     amplitudes: &Amplitudes,

@@ -225,7 +225,6 @@ impl Factor {
     }
 }
 
-/// A facet of a boundary.
 struct Facet {
     corners: Vec<Point>,
     /// Inside the body, the normal of the boundary.

@@ -129,7 +129,6 @@ impl RigidBodyModes {
         parts.unknowns.of_motion(of_free, travel)
     }
 
-    /// Motions in words.
     pub fn names(&self, motions: &[Vec<f64>]) -> Vec<String> {
         motions.iter().map(|motion| self.describe(motion, Sense::Either)).collect()
     }
