@@ -22,17 +22,11 @@ pub struct Source {
 
 impl Source {
     /// The same at this load and these gaps.
-    ///
-    /// # Errors
-    /// Those of a load or gaps that do not fit.
     pub fn at(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
         Ok(Source { problem: Arc::new(self.problem.with(load, gap)?), ..self.clone() })
     }
 
     /// The derivatives of an answer, by the prepared data if there are some.
-    ///
-    /// # Errors
-    /// Those of `Prepared::new` and `Prepared::derivatives`.
     pub fn derivatives(&self, answer: &Answer, watch: &Watch) -> Result<Derivatives, Error> {
         // The limit of time is that of the solve.
         let mut settings = self.settings.clone().watched(watch);

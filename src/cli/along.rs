@@ -8,9 +8,6 @@ use crate::output::Along;
 use crate::scene::Answer;
 
 /// Refuses lines that do not fit the input.
-///
-/// # Errors
-/// [`Error::Scene`].
 pub(super) fn check(lines: &[Line], input: &Input) -> Result<(), Error> {
     let Some(first) = lines.first() else { return Ok(()) };
     let Content::Scene(model) = &input.content else {
@@ -32,9 +29,6 @@ pub(super) fn check(lines: &[Line], input: &Input) -> Result<(), Error> {
 }
 
 /// The answer along the lines; warns of a line that meets no body.
-///
-/// # Errors
-/// Those of the recovery of stresses.
 pub(super) fn along(lines: &[Line], answer: &Answer) -> Result<Vec<Along>, Error> {
     let (low, high) = answer.model().mesh().extent();
     let mut all = Vec::new();

@@ -184,7 +184,6 @@ pub(super) fn build(scene: &Scene, path: &Path, limits: &Limits) -> Result<Model
     scene.build_within(limits.most_memory()).map_err(|error| Scene::located(error, path))
 }
 
-/// The title of a scene, or its file if it has none.
 pub(super) fn scene_title(model: &Model, path: &Path) -> String {
     if model.title().is_empty() { path.display().to_string() } else { model.title().to_string() }
 }

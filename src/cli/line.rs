@@ -1,6 +1,5 @@
 //! A line between two points, as an option.
 
-/// A line as it is given.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
     pub text: String,

@@ -24,9 +24,6 @@ pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), Error> {
 }
 
 /// Writes the output of `contents`, which need not be in memory, as [`write_atomically`] does.
-///
-/// # Errors
-/// As [`write_atomically`].
 pub(crate) fn streamed_atomically(
     path: &Path,
     contents: impl Fn(&mut dyn Write) -> io::Result<()>,
@@ -44,9 +41,6 @@ pub(crate) fn streamed_atomically(
 }
 
 /// Makes a folder and its parent folders if they are missing.
-///
-/// # Errors
-/// [`qp::Error::File`] if the system refuses.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Error> {
     let made = std::fs::create_dir_all(folder).map_err(|error| match error.kind() {
         // The system reports that it exists, which is not the fault.

@@ -6,9 +6,6 @@ use signorini_qp as qp;
 use signorini_mechanics::Error;
 
 /// One line, the fields in the order of their type, for a file that this program reads again.
-///
-/// # Errors
-/// [`qp::Error::Numerical`] for a value that JSON cannot hold.
 pub(crate) fn compact_json(value: &impl Serialize) -> Result<String, Error> {
     serde_json::to_string(value).map_err(failed)
 }

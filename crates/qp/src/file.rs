@@ -60,9 +60,6 @@ impl Read for Capped {
 }
 
 /// A file to be read piece by piece, at most `most` bytes.
-///
-/// # Errors
-/// As [`read_capped`].
 pub(crate) fn open_capped(path: &Path, most: u64) -> Result<Capped, Error> {
     Capped::open(path, most).map_err(|source| Error::File { action: "read", path: path.into(), source })
 }

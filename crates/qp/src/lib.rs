@@ -31,7 +31,6 @@
 mod certificate;
 mod cost;
 mod derivative;
-mod directory;
 mod engine;
 mod error;
 mod existence;
@@ -54,7 +53,6 @@ mod watch;
 
 pub use cost::Estimate;
 pub use derivative::{Adjoint, Change, Derivative, Derivatives, Tangent};
-pub use directory::read_problem;
 pub use error::{Error, Failure};
 pub use linear::multigrid::{Multigrid, NearNullSpace};
 pub use linear::{Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest};
@@ -62,16 +60,26 @@ pub use matrix_market::{format_vector, read_vector};
 pub use method::interior_point::InteriorPoint;
 pub use method::penalty::Penalty;
 pub use method::{Ending, Outcome, Start};
-pub use petsc::Layout as PetscLayout;
+pub use petsc::PetscLayout;
 pub use prepared::{Delassus, Path, Prepared};
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Settings};
 pub use solution::{Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution, Why};
 pub use watch::{Activity, Part, Watch};
 
+use std::io;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use certificate::Bounding;
+use cost::{Kept, check_memory};
 use engine::Engine;
+use linear::{Analysis, in_order, threads_of_machine};
 use prepared::between;
+
+/// The reason against a folder without a stiffness.
+const NO_PROBLEM: &str = "the folder has neither K.mtx nor K.petsc; a problem directory needs K.mtx (stiffness), f.mtx (load), \
+                          B.mtx (contact rows) and g.mtx (gaps), or the same four as .petsc; a complementarity problem needs M.mtx and q.mtx; a \
+                          scene is a .json file: give its name";
 
 /// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
 ///
@@ -139,7 +147,17 @@ impl Settings {
     /// are made one by one.
     #[doc(hidden)]
     pub fn each_of_many<T: Send>(&self, count: usize, solved: impl Fn(usize, &Settings) -> T + Sync) -> Vec<T> {
-        run::each(count, self, solved)
+        let of_one = Settings { threads: Some(1), ..self.clone() };
+        let threads = self.threads.unwrap_or_else(threads_of_machine).clamp(1, count.max(1));
+        let next = AtomicUsize::new(0);
+        let of_thread = |()| -> Vec<(usize, T)> {
+            let numbers =
+                std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed)).take_while(|&number| number < count);
+            numbers.map(|number| (number, solved(number, &of_one))).collect()
+        };
+        let mut all: Vec<(usize, T)> = in_order(vec![(); threads], of_thread).into_iter().flatten().collect();
+        all.sort_unstable_by_key(|of| of.0);
+        all.into_iter().map(|of| of.1).collect()
     }
 
     /// The threads that one problem takes if none are named: those of the machine, at most 8.
@@ -184,7 +202,7 @@ impl SymmetricMatrix {
 impl ContactProblem {
     /// Returns `true` if the directory is that of a problem: it has a stiffness in either format.
     pub fn is_directory(directory: &std::path::Path) -> bool {
-        directory::is_problem_directory(directory)
+        stiffness_forms(directory).contains(&true)
     }
 
     /// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; without a file the gaps
@@ -277,6 +295,26 @@ impl ContactProblem {
         Ok(certificate)
     }
 
+    /// The displacement `K^-1 f`, one entry per dof, in length: rows and equality rows are left out. It takes one
+    /// factorisation and one step of refinement, and has no certificate. Of the settings the memory and the
+    /// interruption count.
+    ///
+    /// # Errors
+    /// [`Error::NotConvex`] for a stiffness that is not positive definite, [`Error::TooLarge`] if the factor does not
+    /// fit into the memory, [`Error::Interrupted`], [`Error::Numerical`] if memory is not enough all the same.
+    pub fn linear_displacement(&self, settings: &Settings) -> Result<Vec<f64>, Error> {
+        let (stiffness, load) = (self.stiffness(), self.load());
+        let analysis = Analysis::of(stiffness)?;
+        check_memory(self, Kept::OneFactor { values: analysis.factor_entries() }, settings.memory)?;
+        if settings.watch.is_over() {
+            return Err(Error::Interrupted);
+        }
+        let factor = analysis.factor(stiffness)?;
+        let mut displacement = factor.solve(load);
+        let left: Vec<f64> = load.iter().zip(stiffness.mul(&displacement)).map(|(load, force)| load - force).collect();
+        displacement.iter_mut().zip(factor.solve(&left)).for_each(|(value, step)| *value += step);
+        Ok(displacement)
+    }
     /// Factorises the stiffness once for many sets of held rows. Each call of the returned function is one iteration of
     /// the active-set loop, and gives displacement (one entry per dof, in length) and multiplier (one per row of B,
     /// then one per equality row, in force), which may have either sign; `None` if these rows do not hold the body.
@@ -292,6 +330,33 @@ impl ContactProblem {
             Some([displacement, self.split(multiplier).concat()])
         })
     }
+}
+
+/// Reads the problem of a directory: Matrix Market files, with `K.mtx`, or PETSc's, with `K.petsc`. A directory with
+/// both is refused: they may belong to two problems.
+///
+/// # Errors
+/// [`Error::File`] for a file that is missing and for a directory with both; [`Error::FileSyntax`] and
+/// [`Error::FileBytes`] for one that is malformed; those of [`ContactProblem::new`].
+pub fn read_problem(directory: &std::path::Path) -> Result<ContactProblem, Error> {
+    match stiffness_forms(directory) {
+        [true, true] => {
+            let both = format!("the folder has both {} and {}", matrix_market::STIFFNESS, petsc::STIFFNESS);
+            let source = io::Error::new(io::ErrorKind::InvalidInput, format!("{both}; remove the files of one form"));
+            Err(Error::File { action: "read", path: directory.to_path_buf(), source })
+        }
+        [false, true] => petsc::read_problem(directory),
+        [false, false] if directory.is_dir() => {
+            let source = io::Error::new(io::ErrorKind::NotFound, NO_PROBLEM);
+            Err(Error::File { action: "read", path: directory.to_path_buf(), source })
+        }
+        _ => matrix_market::read_problem(directory),
+    }
+}
+
+/// Flags: `true` if there is a stiffness in Matrix Market format, and in PETSc's.
+fn stiffness_forms(directory: &std::path::Path) -> [bool; 2] {
+    [matrix_market::STIFFNESS, petsc::STIFFNESS].map(|name| directory.join(name).exists())
 }
 
 impl Solution {

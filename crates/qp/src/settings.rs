@@ -61,7 +61,6 @@ impl Method {
     }
 }
 
-/// The methods that work with a factor of the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ByFactor {
     ActiveSet,
@@ -291,10 +290,6 @@ impl Settings {
         Goal { tolerance: self.tolerance.unwrap_or(ANY_FINITE), accuracy: self.accuracy }
     }
 
-    /// Checks the range of every setting.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for the first that is not in its range.
     fn check(&self) -> Result<(), Error> {
         for (name, value) in [("tolerance", self.tolerance), ("accuracy", self.accuracy)] {
             value.map_or(Ok(()), |value| positive(name, value))?;
@@ -331,7 +326,6 @@ impl Method {
         self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)
     }
 
-    /// Checks the range of every option of the method.
     fn check(self) -> Result<(), Error> {
         match self {
             Method::Qp(InteriorPoint { tolerance, .. }) => positive("tolerance of the interior point", tolerance),

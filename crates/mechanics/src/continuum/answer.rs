@@ -52,9 +52,6 @@ impl ContinuumAnswer {
     }
 
     /// The same with those boundaries whose names are kept.
-    ///
-    /// # Errors
-    /// As [`ContinuumAnswer::mesh`].
     pub(crate) fn mesh_with(&self, keeps: impl Fn(&str) -> bool) -> Result<Mesh, Error> {
         // As a part of itself, a boundary has its facets in the order in which they follow each other.
         let boundary = |(name, facets): &(String, Vec<Vec<usize>>)| {

@@ -47,7 +47,6 @@ pub struct Bracket<'a> {
     pub dual: Side,
     /// The places at which the rows of the stress act.
     pub places: Vec<Place>,
-    /// The settings of every solve.
     pub settings: Settings,
     /// How forces are carried to the supports; `None` if these cannot carry every force.
     pub balance: Option<Balance>,
@@ -123,10 +122,6 @@ impl Side {
 
 impl<'a> Bracket<'a> {
     /// Solves both problems on a mesh, and checks their properties. Both start from the given touching nodes.
-    ///
-    /// # Errors
-    /// Those of [`solve`]; [`qp::Error::Interrupted`] if no time is left for a bound; [`qp::Error::Numerical`] if the
-    /// check finds a defect beyond rounding: then there is no guarantee.
     pub fn new(
         problem: &'a ContinuumProblem,
         mesh: &'a SimplexMesh,
@@ -250,7 +245,6 @@ impl<'a> Bracket<'a> {
         }
     }
 
-    /// A stress at a point.
     pub fn stress_of(&self, stress: &[PartStress], cell: usize, k: usize, weights: Weights) -> Tensor {
         let value = stress[cell].at(k, weights);
         match self.problem.is_axisymmetric {
@@ -392,7 +386,6 @@ impl<'a> Bracket<'a> {
         self.work_on_supports() + self.work_on_obstacles() - stored / 2.0
     }
 
-    /// The work of the loads with the displacement.
     pub(super) fn work_of_loads(&self) -> f64 {
         let load = self.displacements.load();
         self.primal.values.iter().zip(&load).map(|(value, load)| value * load).sum()

@@ -36,9 +36,6 @@ struct Defect {
 
 impl Bracket<'_> {
     /// Refuses a bracket without the required properties; returns the largest defect otherwise.
-    ///
-    /// # Errors
-    /// [`qp::Error::Numerical`].
     pub(super) fn check(&self) -> Result<f64, Error> {
         let defects = self.defects();
         match defects.iter().find(|defect| defect.size.is_nan() || defect.size > defect.allowed) {

@@ -15,7 +15,6 @@ use crate::fem::geometry::{COORDINATES, key};
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
-/// Displacements on a mesh.
 #[derive(Debug)]
 pub struct Displacements<'a> {
     problem: &'a ContinuumProblem,
@@ -77,7 +76,6 @@ impl<'a> Displacements<'a> {
         weighted_mean(self.mesh.dimension, place.corner, &self.towards(values, &place.on, place.obstacle))
     }
 
-    /// The largest component of a displacement.
     pub fn largest(&self, values: &[f64]) -> f64 {
         let functions = self.mesh.nodes.len() + self.mesh.edges.len();
         let of_places = values.iter().take(self.mesh.dimension * functions);
@@ -95,9 +93,6 @@ impl<'a> Displacements<'a> {
 
     /// The rows that keep a displacement out of the obstacles, each function and obstacle once: those with a free
     /// unknown, and then those that supports hold.
-    ///
-    /// # Errors
-    /// [`qp::Error::Infeasible`] if a prescribed displacement leads into an obstacle.
     pub fn rows(&self, unknowns: &Unknowns) -> Result<[Vec<Row>; 2], Error> {
         let mut gaps: BTreeMap<(usize, usize, Option<usize>), f64> = BTreeMap::new();
         let dimension = self.mesh.dimension;

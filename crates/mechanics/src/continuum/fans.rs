@@ -87,9 +87,6 @@ impl SimplexMesh {
     /// opposite to each other. Triangles that are large beside their pieces are refined first. The second value says
     /// how much of the two surfaces of each seam is joined, from 0 to 1. Facets inside, at seams, get conditions of
     /// their own.
-    ///
-    /// # Errors
-    /// [`Unjoined`].
     pub fn joined(self, problem: &mut ContinuumProblem) -> Result<(Self, Vec<[f64; 2]>), Unjoined> {
         let has_contacts = problem.obstacles.iter().any(|facing| matches!(facing.surface, Surface::Body { .. }));
         let has_seams = problem.conditions.iter().any(|condition| !condition.seams.is_empty());

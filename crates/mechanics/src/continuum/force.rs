@@ -71,9 +71,6 @@ impl Bracket<'_> {
     /// `None` if obstacles come from several directions, if only some are pressed, if the boundary that touches them is
     /// a rigid face, or if no bound was found. An interval with a half-width of `enough` times the force of
     /// the displacement is not made narrower by another pair.
-    ///
-    /// # Errors
-    /// Those of [`signorini_qp::ContactProblem::new`].
     pub fn force_interval(&self, enough: f64) -> Result<Option<[f64; 2]>, Error> {
         if let Some(pressed) = self.problem.pressing_force() {
             return Ok(Some([pressed; 2]));

@@ -73,18 +73,14 @@ pub struct SimplexMesh {
 pub struct OuterFacet {
     /// Its simplex; the first one of two.
     pub cell: usize,
-    /// Its local number there.
     pub local: usize,
-    /// Its number.
     pub facet: usize,
-    /// The number of its condition.
     pub condition: usize,
 }
 
 /// Two edges that may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opposite {
-    /// The number of the obstacle.
     pub obstacle: usize,
     /// The nodes of the edge of the body whose obstacle it is.
     pub own: [usize; 2],
@@ -270,7 +266,6 @@ impl SimplexMesh {
         &self.sides[cell * (self.dimension + 1)..(cell + 1) * (self.dimension + 1)]
     }
 
-    /// Number of facets.
     pub fn facet_count(&self) -> usize {
         self.facets.len()
     }

@@ -82,12 +82,10 @@ impl PartStress {
         PartStress { of_part: self.of_part, values: self.values.iter().map(|&old| value(old)).collect() }
     }
 
-    /// Number of coefficients on a part.
     pub fn of_part(&self) -> usize {
         self.of_part
     }
 
-    /// The coefficients of all parts.
     pub fn values(&self) -> &[Tensor] {
         &self.values
     }

@@ -16,7 +16,6 @@ pub struct ContinuumProblem {
     pub dimension: usize,
     /// A body of revolution about the y axis, x being the radius.
     pub is_axisymmetric: bool,
-    /// The media.
     pub media: Vec<Medium>,
     /// The number of the medium of each element of the first mesh.
     pub medium_of: Vec<usize>,
@@ -28,7 +27,6 @@ pub struct ContinuumProblem {
     pub conditions: Vec<Condition>,
     /// The parts of the surface that move as rigid plates.
     pub rigid_faces: Vec<RigidFace>,
-    /// The obstacles.
     pub obstacles: Vec<Facing>,
     /// The names of the parts of the surface, each with the number of its body.
     pub boundaries: Vec<(String, usize)>,
@@ -49,9 +47,7 @@ pub struct Medium {
 /// A linear function of the place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Linear {
-    /// Its value at the origin.
     pub at_origin: f64,
-    /// Its gradient.
     pub slope: Point,
 }
 
@@ -105,7 +101,6 @@ impl Foundation {
         [0, 1, 2].map(|axis| self.along[axis] * displacement[axis] + towards * normal[axis])
     }
 
-    /// Returns `true` if there are springs.
     pub fn is_there(&self) -> bool {
         *self != Self::default()
     }
@@ -141,12 +136,10 @@ impl Linear {
         Linear { at_origin, slope: COORDINATES.map(|axis| value(axis) - at_origin) }
     }
 
-    /// Its value at a place.
     pub fn at(&self, place: Point) -> f64 {
         self.at_origin + dot(self.slope, place)
     }
 
-    /// The function times a factor.
     pub fn times(&self, factor: f64) -> Self {
         Linear { at_origin: factor * self.at_origin, slope: self.slope.map(|part| factor * part) }
     }
@@ -159,7 +152,6 @@ impl Linear {
 }
 
 impl Condition {
-    /// Adds a traction.
     pub fn pull_along(&mut self, traction: [Linear; 3]) {
         self.traction = [0, 1, 2].map(|axis| self.traction[axis].plus(traction[axis]));
     }
@@ -206,7 +198,6 @@ pub struct Pressed {
     pub cosine: f64,
 }
 
-/// The distance to an obstacle.
 pub trait Distance: Debug + Send + Sync {
     /// The gap on the straight facet between these corners, two in the plane and three in space; `None` if the obstacle
     /// is out of reach on all of the facet.
@@ -280,7 +271,6 @@ impl ContinuumProblem {
         }
     }
 
-    /// The springs on a facet.
     pub fn springs(&self, outer: &OuterFacet) -> Foundation {
         self.conditions[outer.condition].springs
     }
@@ -359,7 +349,6 @@ impl ContinuumProblem {
         if self.is_axisymmetric { place[0] } else { 1.0 }
     }
 
-    /// Returns `true` for a place on the axis of revolution.
     pub fn is_on_axis(&self, place: Point) -> bool {
         self.is_axisymmetric && place[0] == 0.0
     }
@@ -446,7 +435,6 @@ impl Law<'_> {
         std::array::from_fn(of_entry)
     }
 
-    /// The stress of a strain.
     pub fn stress(&self, strain: Tensor) -> Tensor {
         let &Lame { lambda, mu } = match self.stiffness {
             Stiffness::Isotropic(lame) => lame,

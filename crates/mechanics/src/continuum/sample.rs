@@ -8,7 +8,6 @@ use crate::fem::element::gauss_legendre;
 pub struct Sample {
     /// Its barycentric coordinates.
     pub weights: Weights,
-    /// Its place.
     pub place: Point,
     /// Its volume, or its area.
     pub weight: f64,

@@ -155,7 +155,6 @@ pub fn traction([xx, yy, zz, xy, yz, zx]: Tensor, normal: Point) -> Point {
     [dot([xx, xy, zx], normal), dot([xy, yy, yz], normal), dot([zx, yz, zz], normal)]
 }
 
-/// The product of a stress and a strain.
 pub fn work(stress: Tensor, strain: Tensor) -> f64 {
     let product = |entry: usize| stress[entry] * strain[entry];
     product(0) + product(1) + product(2) + 2.0 * (product(3) + product(4) + product(5))

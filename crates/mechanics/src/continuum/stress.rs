@@ -19,7 +19,6 @@ use crate::fem::geometry::COORDINATES;
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
-/// Stresses on a mesh.
 #[derive(Debug)]
 pub struct Stresses<'a> {
     pub problem: &'a ContinuumProblem,
@@ -33,11 +32,9 @@ pub struct Stresses<'a> {
 /// The place at which a contact row of the stress acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The facet.
     pub on: OuterFacet,
     /// The number of its corner.
     pub corner: usize,
-    /// The obstacle.
     pub obstacle: usize,
 }
 
@@ -46,8 +43,6 @@ pub struct Place {
 type Congruence = ([[u64; 3]; MOST_CORNERS - 1], usize, Option<[u64; 3]>);
 
 impl<'a> Stresses<'a> {
-    /// # Errors
-    /// [`qp::Error::Numerical`] for a flat simplex.
     pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Result<Self, Error> {
         let dimension = mesh.dimension;
         let of_facet = dimension * dimension;
@@ -256,7 +251,6 @@ impl<'a> Stresses<'a> {
         self.corners_by_unknowns(outer).iter().map(|line| [0, 1, 2].map(|axis| along(line, axis))).collect()
     }
 
-    /// The facets on springs.
     pub fn on_springs(&self) -> impl Iterator<Item = OuterFacet> + '_ {
         self.mesh.surface().filter(|outer| self.problem.springs(outer).is_there())
     }

@@ -247,7 +247,6 @@ impl Unknowns {
         unknowns
     }
 
-    /// Adds an unknown.
     fn push(&mut self, offset: f64, terms: impl Iterator<Item = (usize, f64)>) {
         self.offset.push(offset);
         self.terms.extend(terms.filter(|term| term.1 != 0.0).map(|(free, coefficient)| (free as u32, coefficient)));
@@ -264,7 +263,6 @@ impl Unknowns {
         &self.offset
     }
 
-    /// Number of all unknowns.
     pub fn count(&self) -> usize {
         self.offset.len()
     }
@@ -392,9 +390,6 @@ impl Unknowns {
 
     /// The problem of simplices with these unknowns and matrices, under a load on all unknowns, with rows. At each of
     /// the `places` a linear displacement has the values of the unknowns along the axes.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
     pub fn problem(
         &self,
         dimension: usize,

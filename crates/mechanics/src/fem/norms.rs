@@ -148,7 +148,6 @@ impl Halves {
     }
 }
 
-/// The integrands.
 struct Squares<'a, F> {
     body: &'a ElasticBody,
     exact: F,

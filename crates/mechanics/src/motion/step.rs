@@ -55,9 +55,7 @@ pub struct Parameter {
 
 /// A scheme with everything prepared that stays the same from step to step.
 pub(super) trait Advance: fmt::Debug + Send + Sync {
-    /// The first state.
     fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error>;
-    /// The state after one step.
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error>;
     /// The balance of forces that the step from `before` to `after` solved, with the multiplier of `after`, at some
     /// dofs.
@@ -134,7 +132,6 @@ impl Stepping {
         Stepping { prepared: Prepared::new(problem, settings)?, diagonal }.under(settings)
     }
 
-    /// The same matrix with other settings.
     pub fn under(&self, settings: &Settings) -> Result<Self, Error> {
         // A step is completed or not done at all: there is no partial step.
         let mut unhurried = settings.clone().watched(&settings.watch.unhurried());

@@ -255,7 +255,6 @@ impl<'a> Shapes<'a> {
         Ok(Shapes { model, closed, of_nodes, axes, forces: answer.multiplier().to_vec(), gaps })
     }
 
-    /// The mass of the whole bodies.
     fn mass(&self) -> f64 {
         self.model.parts_of_whole() * self.of_nodes.iter().sum::<f64>()
     }

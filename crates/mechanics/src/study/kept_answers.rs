@@ -8,9 +8,6 @@ use signorini_qp::{Settings, Solution, Start};
 /// The points of a sweep at all `values` of the quantity `name`: `solved_at` a value gives the solution, started from
 /// the last one, with what else `point` needs. An answer that is not certified counts as an answer. An interrupted
 /// sweep holds the points before.
-///
-/// # Errors
-/// Those of both functions; [`qp::Error::Interrupted`] if no point was solved.
 pub(super) fn points<T, P>(
     name: &'static str,
     values: &[f64],
@@ -56,7 +53,6 @@ impl KeptAnswers {
         bytes::of_answers(self.count as f64, self.dofs as f64)
     }
 
-    /// The settings of each solve.
     pub fn settings(&self, settings: &Settings) -> Settings {
         match self.allowed {
             Some(allowed) => settings.clone().with_memory((allowed - self.bytes()).max(1.0)),

@@ -115,7 +115,6 @@ impl MotionTradeoff {
     }
 }
 
-/// The result of a run.
 #[derive(Default)]
 struct Run {
     seconds: f64,

@@ -118,7 +118,6 @@ pub struct LargestDisplacement {
     pub value: f64,
     /// Its axis, 0 for x.
     pub axis: usize,
-    /// The node.
     pub node: usize,
     /// The undeformed place of the node, a coordinate for each axis, in length.
     pub place: Vec<f64>,

@@ -202,9 +202,6 @@ fn overlap(answer: &Answer) -> Option<AnswerWarning> {
 }
 
 /// The warnings about an answer on a first mesh that is refined further.
-///
-/// # Errors
-/// [`Error::Refused`] for an obstacle that pulls.
 pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<AnswerWarning>, Error> {
     check_approach(answer.model(), &solution.multiplier)?;
     check_deformation(answer)?;
@@ -214,9 +211,6 @@ pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<Ans
 
 /// Refuses a displacement whose largest component is `largest`, in length, if it is rounding only: no load acts, and no
 /// obstacle reaches into the body.
-///
-/// # Errors
-/// [`Error::Scene`].
 pub(super) fn check_motion(model: &Model, largest: f64) -> Result<(), Error> {
     let is_rounding = largest > 0.0 && largest <= ROUNDING_OF_PLACES * model.mesh().size();
     let is_loaded = model.problem().load().iter().any(|&force| force != 0.0);
@@ -514,9 +508,6 @@ fn of_model(answer: &Answer, warning: &Warning) -> AnswerWarning {
 
 /// Refuses an answer with large strains or rotations to a deck that asks for large displacements, unless small ones are
 /// wanted.
-///
-/// # Errors
-/// [`Error::Refused`] with the code `large-displacements`.
 pub(super) fn check_deformation(answer: &Answer) -> Result<(), Error> {
     for warning in answer.model().warnings().iter().filter(|_| !answer.model().is_linear()) {
         let Warning::Nonlinear { .. } = warning else { continue };
@@ -534,9 +525,6 @@ pub(super) fn check_deformation(answer: &Answer) -> Result<(), Error> {
 
 /// Refuses an answer with obstacles that pull: at a row that carries force the direction into the obstacle points into
 /// the body.
-///
-/// # Errors
-/// [`Error::Refused`] with the code `approach-away`.
 pub(super) fn check_approach(model: &Model, multiplier: &[f64]) -> Result<(), Error> {
     let lean = |row: &ContactRow| dot(row.normal, row.outward);
     let worst = loaded_rows(model, multiplier).into_iter().min_by(|a, b| lean(a).total_cmp(&lean(b)));

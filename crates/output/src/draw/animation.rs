@@ -9,9 +9,6 @@ use signorini_mechanics::Error;
 /// An animated PNG of drawings, each shown for `milliseconds`, in the size of the first one, with `scale` pixels of the
 /// image for one pixel of a drawing. `frame(index)` draws each when it is needed, so that only one is in memory at a
 /// time.
-///
-/// # Errors
-/// [`qp::Error::Numerical`] if the encoder fails; those of [`Drawing::png`] and of `frame`.
 pub fn animate(
     count: usize,
     scale: f64,

@@ -54,14 +54,12 @@ impl Drawing {
         self.polygon(&[[x, y], [x + width, y], [x + width, y + height], [x, y + height]], paint);
     }
 
-    /// A circle.
     pub(crate) fn circle(&mut self, centre: [f64; 2], radius: f64, paint: &Paint) {
         if drawable(centre) && radius.is_finite() && radius > 0.0 {
             self.shapes.push(Shape::Circle { centre, radius, paint: *paint });
         }
     }
 
-    /// A straight line.
     pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], paint: &Paint) {
         self.polyline(&[from, to], paint);
     }

@@ -15,10 +15,6 @@ use signorini_mechanics::Error;
 const MOST_PIXELS: f64 = 1e8;
 
 /// A picture of `sides` pixels on white, with `scale` pixels of the image for one pixel of the picture.
-///
-/// # Errors
-/// [`qp::Error::Setting`] if the scale is not positive or makes an image of more than 1e8 pixels,
-/// [`qp::Error::Numerical`] if there is no memory for it.
 pub(crate) fn painted(sides: [f64; 2], shapes: &[Shape], scale: f64) -> Result<Pixmap, Error> {
     let [width, height] = sides.map(|side| (side * scale).round());
     if !(scale > 0.0 && width >= 1.0 && height >= 1.0 && width * height <= MOST_PIXELS) {
@@ -36,9 +32,6 @@ pub(crate) fn painted(sides: [f64; 2], shapes: &[Shape], scale: f64) -> Result<P
 
 /// Opaque pixels as a PNG file. Measured on the picture of 25,760 dofs: the fast compression takes 3 ms and 0.33 MB,
 /// the balanced compression of the painter 41 ms and 0.26 MB.
-///
-/// # Errors
-/// [`qp::Error::Numerical`] if the encoder fails.
 pub(crate) fn png(pixels: &Pixmap) -> Result<Vec<u8>, Error> {
     let colours: Vec<u8> = pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
     let mut bytes = Vec::new();
@@ -156,7 +149,6 @@ fn path_of(pieces: &[Vec<[i64; 2]>], line: Line) -> Option<Path> {
     path.finish()
 }
 
-/// The outlines of the letters of a text.
 fn outline(text: &Text) -> Option<Path> {
     let mut path = PathBuilder::new();
     let whole = typeface::width(&text.text, text.size, text.weight);

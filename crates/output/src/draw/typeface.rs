@@ -60,12 +60,10 @@ pub(crate) fn about(weight: Weight) -> Option<About> {
     })
 }
 
-/// The file of a face.
 pub(crate) fn file(weight: Weight) -> &'static [u8] {
     FILES[weight as usize]
 }
 
-/// The glyphs of a text.
 pub(crate) fn glyphs(text: &str, weight: Weight) -> Vec<u16> {
     face(weight).map_or_else(Vec::new, |face| letters(face, text).map(|(glyph, _)| glyph.0).collect())
 }

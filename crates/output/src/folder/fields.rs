@@ -5,9 +5,6 @@ use crate::view::field::{FIELDS, Field, Source, Values};
 use signorini_mechanics::Error;
 
 /// The text of the `.vtu` file with all fields.
-///
-/// # Errors
-/// Those of the recovery of stresses.
 pub(crate) fn fields(source: &Source) -> Result<String, Error> {
     let mesh = source.answer.model().mesh();
     let elements: Vec<Vec<usize>> = mesh.elements().map(<[usize]>::to_vec).collect();

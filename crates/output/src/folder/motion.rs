@@ -244,7 +244,6 @@ impl MotionFolder {
         self.folder.join(format!("frames/{number:05}.json"))
     }
 
-    /// The time of a frame, and its answer.
     fn read_frame(&self, model: &Arc<Model>, number: usize) -> Result<(f64, Answer), Error> {
         let path = self.frame_path(number);
         let text = read_text_capped(&path, MOST_OF_TABLE)?;

@@ -18,9 +18,7 @@ const BRICK: [[usize; 4]; 6] = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7,
 
 /// The cells that are drawn, and the nodes at their vertices.
 pub(super) struct Shape {
-    /// The node of each vertex.
     pub nodes: Vec<usize>,
-    /// The place of each vertex.
     pub places: Vec<[f64; 3]>,
     cells: Vec<Cells>,
     /// A vertex of each node; none inside a body in space.
@@ -29,7 +27,6 @@ pub(super) struct Shape {
     solids: Vec<usize>,
 }
 
-/// Cells of one kind.
 struct Cells {
     /// The vertices of each cell, corners first.
     vertices: Vec<usize>,

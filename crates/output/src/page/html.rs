@@ -39,10 +39,6 @@ const SCRIPTS: [&str; 18] = [
 ];
 
 /// Writes the page into `folder`, with pictures for browsers that cannot draw.
-///
-/// # Errors
-/// [`qp::Error::File`](signorini_qp::Error::File); [`qp::Error::Numerical`](signorini_qp::Error::Numerical) if the
-/// picture or the data cannot be encoded.
 pub(super) fn write_page<'a>(
     folder: &Path,
     page: &Page,

@@ -72,7 +72,6 @@ pub(super) struct Page<'a> {
     pub modes: Vec<ModeShown>,
 }
 
-/// The names of units.
 #[derive(Debug, Serialize)]
 pub(super) struct PageUnits {
     length: String,

@@ -22,9 +22,6 @@ pub(super) struct ModeShown {
 }
 
 /// The first modes, as many as a page holds.
-///
-/// # Errors
-/// Those of the recovery of stresses.
 pub(super) fn modes_shown(found: &ModalAnalysis, shape: &Shape, packer: &mut Packer) -> Result<Vec<ModeShown>, Error> {
     let (answer, model) = (&found.answer, found.answer.model());
     let dimension = model.mesh().dimension();

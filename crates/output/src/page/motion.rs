@@ -10,14 +10,11 @@ use super::sweep::MOST_BYTES;
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::Answer;
 
-/// The output of a motion.
 pub(crate) struct MotionFrames<'a> {
     /// Time, contact force, number of closed rows, penetration, kinetic, strain, potential and total energy, step after
     /// step.
     pub history: &'a [[f64; 9]],
-    /// The times of the frames.
     pub times: &'a [f64],
-    /// The answer of a frame.
     pub answer: &'a dyn Fn(usize) -> Result<Answer, Error>,
 }
 
@@ -33,10 +30,6 @@ pub(super) struct MotionShown {
 }
 
 impl MotionShown {
-    /// The motion with its kept frames.
-    ///
-    /// # Errors
-    /// Those of reading frames, and of the recovery of stresses.
     pub fn of(
         frames: &MotionFrames,
         shape: &Shape,

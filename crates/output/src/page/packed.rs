@@ -35,7 +35,6 @@ pub(super) struct Packed {
     form: Form,
     /// Offset of its first byte.
     at: usize,
-    /// Number of values.
     count: usize,
     /// Components of an item; all values of the first component stand before those of the second.
     stride: usize,
@@ -100,7 +99,6 @@ impl Packer {
         Packed { form: Form::Exact, at, count: values.len(), stride, ranges: Vec::new() }
     }
 
-    /// Packs bytes unchanged.
     pub fn bytes(&mut self, values: impl IntoIterator<Item = u8>) -> Packed {
         let at = self.bytes.len();
         self.bytes.extend(values);
@@ -115,9 +113,6 @@ impl Packer {
     }
 
     /// The block, deflated without a header, in base64.
-    ///
-    /// # Errors
-    /// [`qp::Error::Numerical`] if the encoder fails.
     pub fn finished(self) -> Result<String, Error> {
         let failed = |error: std::io::Error| qp::Error::Numerical { step: "packing a page", reason: error.to_string() };
         let mut deflated = DeflateEncoder::new(Vec::new(), Compression::default());

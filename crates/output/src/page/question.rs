@@ -45,7 +45,6 @@ struct Loads {
     inside: usize,
 }
 
-/// A rigid obstacle.
 #[derive(Debug, Serialize)]
 struct ObstacleShown {
     /// The boundary with its candidates.

@@ -8,7 +8,6 @@ use crate::view::pressure::arc_lengths;
 use signorini_mechanics::scene::{Answer, Model};
 use signorini_qp::{ContactSet, ProvenSet};
 
-/// The rows of a model.
 #[derive(Debug, Serialize)]
 pub(super) struct Rows {
     count: usize,

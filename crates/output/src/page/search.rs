@@ -39,9 +39,6 @@ struct Step {
 
 impl Search {
     /// The steps of `history`; for a body in the plane with their displacements, if known.
-    ///
-    /// # Errors
-    /// Those of the recovery of stresses.
     pub fn of(answer: &Answer, history: &[Iteration], shape: &Shape, packer: &mut Packer) -> Result<Self, Error> {
         // In space each step would need a solve of its own, and a picture of the size of the answer.
         let in_plane = answer.model().mesh().dimension() == 2;

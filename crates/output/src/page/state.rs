@@ -31,9 +31,6 @@ pub(super) struct State {
 
 impl State {
     /// The state of an answer at the position `at` of the path, packed.
-    ///
-    /// # Errors
-    /// As [`Answer::stress`].
     pub fn of(answer: &Answer, at: f64, shape: &Shape, packer: &mut Packer) -> Result<Self, Error> {
         let model = answer.model();
         let dimension = model.mesh().dimension();

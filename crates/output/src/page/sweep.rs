@@ -41,10 +41,6 @@ struct Point<'a> {
 }
 
 impl<'a> SweepShown<'a> {
-    /// The sweep with its kept states.
-    ///
-    /// # Errors
-    /// Those of the solves at corners and of the recovery of stresses.
     pub fn of(sweep: &'a Sweep, shape: &Shape, packer: &mut Packer) -> Result<(Self, Vec<State>), Error> {
         let first = &sweep.points[0];
         let model = first.answer.model();

@@ -166,9 +166,6 @@ impl About {
 }
 
 /// The page of a motion; `report` is the object of `report.json`.
-///
-/// # Errors
-/// As [`About::write_answer`], and those of reading frames.
 pub(crate) fn write_motion_page(
     folder: &Path,
     about: &About,

@@ -20,7 +20,6 @@ const NOTHING: f64 = 1e-9;
 pub enum ArrowKind {
     /// An obstacle, or another body.
     Contact,
-    /// A load.
     Load,
     /// A support, a spring or a rigid face.
     Support,

@@ -104,10 +104,6 @@ impl ContactPicture<'_> {
     ///
     /// Values that are not finite are no error: elements without a value are grey, elements with a coordinate that is
     /// not finite are left out.
-    ///
-    /// # Errors
-    /// [`qp::Error::Length`] if an array does not fit the number of nodes or candidates, [`qp::Error::Setting`] if an
-    /// element or a candidate names a node that does not exist.
     pub fn draw(&self) -> Result<Drawing, Error> {
         self.check()?;
         let moved: Vec<[f64; 2]> =

@@ -7,7 +7,6 @@ use crate::plots::legend::Entry;
 const CLOSED: Colour = Colour(0xd5, 0x2b, 0x1e);
 const OPEN: Colour = Colour(0x5a, 0x64, 0x72);
 
-/// A candidate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Candidate {
     Closed,

@@ -66,7 +66,6 @@ impl ObstacleLine<'_> {
     }
 }
 
-/// The key of an obstacle in a legend.
 pub(crate) fn draw_key(drawing: &mut Drawing, [x, y]: [f64; 2]) {
     drawing.rect([x - 14.0, y - 4.0], [28.0, 10.0], &inside_paint());
     drawing.line([x - 14.0, y - 4.0], [x + 14.0, y - 4.0], &edge_paint());

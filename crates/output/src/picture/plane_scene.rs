@@ -157,9 +157,6 @@ impl PlaneScene {
     }
 
     /// The scene by itself, with its own magnification.
-    ///
-    /// # Errors
-    /// As [`ContactPicture::draw`].
     pub(crate) fn draw(&self) -> Result<Drawing, Error> {
         let (fields, outlines) = (self.fields(), self.obstacles(self.magnification));
         self.picture(&fields, &lines(&outlines), self.magnification).draw()
@@ -230,9 +227,6 @@ fn arrows(answer: &Answer) -> Result<Vec<Arrow>, Error> {
 
 /// Draws a series with common colours, a common window and a common magnification: those of its first `leading`
 /// pictures. The ends of the colour bar mark values outside the colours.
-///
-/// # Errors
-/// As [`ContactPicture::draw`] and [`Drawing::write`](crate::Drawing::write).
 pub(crate) fn draw_series(
     folder: &Path,
     series: &[(String, PlaneScene)],

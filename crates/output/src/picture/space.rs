@@ -342,7 +342,6 @@ fn face_entry(name: &str, colour: Colour) -> Entry<'static> {
     Entry { name: name.to_owned(), key, key_width: 30.0 }
 }
 
-/// The key of a transparent obstacle.
 fn draw_obstacle_key(drawing: &mut Drawing, [x, y]: [f64; 2]) {
     let paint = Paint { transparency: TRANSPARENCY, ..Paint::fill(OBSTACLE) }.with_stroke(OBSTACLE_EDGE, 0.6);
     drawing.rect([x - 14.0, y - 6.0], [28.0, 12.0], &paint);

@@ -27,7 +27,6 @@ const BEYOND: f64 = 0.35;
 pub(crate) struct SpaceScene<'a> {
     title: String,
     answer: &'a Answer,
-    /// The field that is drawn.
     field: Painted,
 }
 
@@ -88,9 +87,6 @@ struct Shared {
 
 /// Draws a series of one model in space with common colours, a common magnification and a common part of the contact:
 /// those of its first `leading` pictures.
-///
-/// # Errors
-/// As [`Drawing::write`](crate::Drawing::write).
 pub(crate) fn draw_space_series(
     folder: &Path,
     series: &[(String, SpaceScene)],

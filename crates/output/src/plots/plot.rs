@@ -179,7 +179,6 @@ impl Plot {
         drawing.text([frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] - 12.0], &title, size, Anchor::Middle);
     }
 
-    /// The frame with its strip.
     fn with_strip(&self, frame: &Frame) -> Frame {
         Frame { size: [frame.size[0], frame.size[1] + self.strip()], ..frame.clone() }
     }

@@ -9,7 +9,6 @@ pub(crate) fn number(value: f64) -> String {
     if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") }
 }
 
-/// A certificate in words.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct CertificateWords {
     /// The goal, and the statement that the answer meets it or not.

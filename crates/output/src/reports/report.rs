@@ -10,7 +10,6 @@ use signorini_mechanics::study::{
 use signorini_qp::memory::in_words as memory;
 use signorini_qp::{Certificate, Goal, ProvenSet, Why};
 
-/// A number with its unit.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
     format!("{value:.6e} {}", printable(unit)).trim_end().to_string()
 }
@@ -561,7 +560,6 @@ pub(crate) fn table<'a, T: 'a>(items: impl IntoIterator<Item = &'a T>, columns: 
     std::iter::once(headings).chain(items.into_iter().map(row)).collect()
 }
 
-/// A table as comma-separated values.
 pub(crate) fn comma_separated(table: &[Vec<String>]) -> String {
     table.iter().map(|row| row.join(",") + "\n").collect()
 }

@@ -110,7 +110,6 @@ fn error_over_time(error: &str, series: Vec<Series>, front: Vec<[f64; 2]>) -> Pl
     }
 }
 
-/// A curve for each way.
 fn curves(ways: Vec<(String, Vec<&TradeoffPoint>)>, place: fn(&TradeoffPoint) -> [f64; 2]) -> Vec<Series> {
     ways.into_iter().map(|(name, points)| Series::new(name, points.into_iter().map(place).collect())).collect()
 }

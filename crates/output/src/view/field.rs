@@ -10,21 +10,18 @@ use signorini_mechanics::scene::{Answer, Units};
 /// Flag of a node that is not a candidate; candidates have 0 (open) or 1 (closed).
 const NO_CANDIDATE: f64 = -1.0;
 
-/// A field.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
     /// Its name in files.
     pub name: &'static str,
     /// Components of a value: 1, 3 of a vector, 6 of a symmetric tensor in the order xx, yy, zz, xy, yz, zx.
     pub components: usize,
-    /// Its unit.
     pub unit: fn(&Units) -> String,
     /// How a body is coloured by it; `None` if it is not.
     pub colours: Option<Colours>,
     pub values: fn(&Source) -> Result<Values, Error>,
 }
 
-/// A field that colours a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Colours {
     /// The field in words.
@@ -44,7 +41,6 @@ pub(crate) enum Between {
     OfRoots,
 }
 
-/// The source of all fields.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source<'a> {
     pub answer: &'a Answer,
@@ -75,9 +71,6 @@ pub(crate) struct Painted {
 
 impl Painted {
     /// `field` is a stress.
-    ///
-    /// # Errors
-    /// Those of the recovery of stresses.
     pub fn of(answer: &Answer, field: &Field) -> Result<Self, Error> {
         let principal = answer.stress()?.nodes.iter().flat_map(|of| [of.sigma_1, of.sigma_2, of.sigma_3]);
         let largest = principal.fold(0.0, |largest: f64, stress| largest.max(stress.abs()));

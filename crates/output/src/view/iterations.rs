@@ -11,7 +11,6 @@ use signorini_qp::{Iteration, Method, Penalty, Settings, solve};
 /// Largest number of iterations that are shown.
 const MOST_ITERATIONS: usize = 12;
 
-/// A step that is shown.
 pub(crate) struct Step {
     /// Its place in the history.
     pub index: usize,
@@ -29,9 +28,6 @@ type Found = Option<(Vec<f64>, Vec<f64>)>;
 /// For each contact set of the history of a body in the plane or in space: the displacement with the rows of the set
 /// held at their gaps. For a penalty loop: one displacement for each penalty, with its settled set. A set that does not
 /// hold the body by itself has no displacement and is left out.
-///
-/// # Errors
-/// [`qp::Error::Length`] for the history of another model.
 pub(crate) fn iterations(model: &Arc<Model>, history: &[Iteration]) -> Result<Vec<Step>, Error> {
     if model.mesh().dimension() == 1 || history.is_empty() {
         return Ok(Vec::new());

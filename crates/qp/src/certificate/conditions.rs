@@ -73,9 +73,6 @@ impl ContactProblem {
     }
 
     /// As [`ContactProblem::certify`], with the bound by these means, and with the evidence.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::certify`].
     pub(crate) fn examine(&self, by: &Bounding, displacement: &[f64], multiplier: &[f64]) -> Result<Examined, Error> {
         let multiplier = &*self.of_all_rows(multiplier);
         self.check_answer(displacement, multiplier)?;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::springs::Springs;
 use crate::error::Error;
 use crate::linear::{
     Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, exponent,
@@ -36,10 +35,9 @@ pub(crate) struct EnergyNorm {
     pub(super) cholesky: Cholesky,
     /// D and c, as exponents of two: `K^-1 = c D (c D K D)^-1 D`.
     pub(super) equilibration: Equilibration,
-    /// The contact boundary, if it is known.
     pub(super) boundary: Option<Arc<Boundary>>,
     /// Rows whose compliance the method knows.
-    pub(super) known: Option<Arc<Known>>,
+    pub(super) known: Option<Arc<KnownRows>>,
     /// The springs that made a singular K definite.
     pub(super) springs: Option<Arc<Springs>>,
     /// The dofs without stiffness, in which the matrix has a stiffness of one, if these made K singular.
@@ -52,7 +50,6 @@ pub(crate) struct EnergyNorm {
 /// one, on which no force may act.
 #[derive(Clone, Debug)]
 pub(super) struct Loose {
-    /// The dofs.
     pub dofs: Vec<usize>,
     /// `true` for each row that acts on one of them.
     pub rows: Vec<bool>,
@@ -93,7 +90,7 @@ impl RowsOnBoundary {
 
 /// The rows of a contact matrix, as a method has them.
 #[derive(Debug)]
-pub(super) struct Known {
+pub(super) struct KnownRows {
     contact: SparseMatrix,
     rows: RowsOnBoundary,
 }
@@ -101,9 +98,6 @@ pub(super) struct Known {
 impl EnergyNorm {
     /// The energy norm of `stiffness`, with the boundary of the dofs in the rows `contact`; `None` if the stiffness is
     /// not positive definite to working precision.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
     pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>, Error> {
         if stiffness.diagonal().iter().any(|&value| value <= 0.0) {
             return Ok(None);
@@ -141,7 +135,7 @@ impl EnergyNorm {
         let known = Compliance::of(&self.cholesky, last, scaled).map(|compliance| {
             let (by_row, shift) = (compliance.by_row().clone(), shift.to_vec());
             let rows = RowsOnBoundary { by_row, shift, compliance: Some(Arc::new(compliance)) };
-            Arc::new(Known { contact: contact.clone(), rows })
+            Arc::new(KnownRows { contact: contact.clone(), rows })
         });
         EnergyNorm { known, ..self }
     }
@@ -151,7 +145,7 @@ impl EnergyNorm {
         let rows = self.rows_on_boundary(contact, |_| true).filter(|rows| rows.compliance.is_none());
         let Some(rows) = rows else { return self };
         let compliance = Some(Arc::new(Compliance::on(&self.cholesky, rows.by_row.clone())));
-        let known = Known { contact: contact.clone(), rows: RowsOnBoundary { compliance, ..rows } };
+        let known = KnownRows { contact: contact.clone(), rows: RowsOnBoundary { compliance, ..rows } };
         EnergyNorm { known: Some(Arc::new(known)), ..self }
     }
 
@@ -349,5 +343,54 @@ mod tests {
         let norm = norm(&pair(4.0, 0.5));
         assert!(!norm.is_over());
         assert!(norm.watched(&Watch::default().within(0.0)).is_over());
+    }
+}
+
+/// Springs D on rows C that press, or that are equalities: with them a singular K becomes `K_D = K + B_C' D B_C`.
+#[derive(Clone, Debug)]
+pub(super) struct Springs {
+    /// D of each row, zero on rows without a spring.
+    pub stiffness: Vec<f64>,
+    /// The rows that are equalities: at their gaps they stay there, whatever their force.
+    pub are_equalities: Vec<bool>,
+}
+
+impl Springs {
+    /// `K + B_C' D B_C`; `None` if no row presses.
+    pub fn added_to(
+        &self,
+        stiffness: &SymmetricMatrix,
+        contact: &SparseMatrix,
+    ) -> Result<Option<SymmetricMatrix>, Error> {
+        let closed: Vec<usize> = (0..contact.rows()).filter(|&row| self.stiffness[row] > 0.0).collect();
+        if closed.is_empty() {
+            return Ok(None);
+        }
+        let weights: Vec<f64> = closed.iter().map(|&row| self.stiffness[row]).collect();
+        stiffness.plus_squares(&contact.select_rows(&closed), &weights).map(Some)
+    }
+
+    /// `f + B' lambda - K_D u + B_C' D g_C`: the `residual` with springs of an answer with this `violation`.
+    pub fn residual(&self, contact: &SparseMatrix, residual: &[f64], violation: &[f64]) -> Vec<f64> {
+        let pull: Vec<f64> = (self.stiffness.iter().zip(violation))
+            .map(|(&stiffness, &violation)| if stiffness > 0.0 { -stiffness * violation } else { 0.0 })
+            .collect();
+        residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
+    }
+
+    /// Returns `true` if every row with a spring is `closed`, and its certain force exceeds twice the force that
+    /// `left(row)`, the dual norm of the forces left over on its part, could take off.
+    pub fn hold(&self, closed: &[bool], certain_force: impl Fn(usize) -> f64, left: impl Fn(usize) -> f64) -> bool {
+        let springs = self.stiffness.iter().enumerate().filter(|spring| *spring.1 != 0.0);
+        let presses = |row: usize, stiffness: f64| certain_force(row) > 2.0 * stiffness.sqrt() * left(row);
+        springs
+            .into_iter()
+            .all(|(row, &stiffness)| closed[row] && (self.are_equalities[row] || presses(row, stiffness)))
+    }
+
+    /// The same springs in other units of stiffness, `2^unit`.
+    pub fn in_unit(&self, unit: i32) -> Self {
+        let stiffness = self.stiffness.iter().map(|&value| ldexp(value, -unit)).collect();
+        Springs { stiffness, are_equalities: self.are_equalities.clone() }
     }
 }

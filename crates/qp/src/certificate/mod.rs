@@ -13,7 +13,6 @@ mod pressed;
 mod proof;
 mod reach;
 mod scales;
-mod springs;
 mod units;
 mod verdict;
 

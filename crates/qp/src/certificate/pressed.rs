@@ -30,9 +30,6 @@ struct Travel {
 impl ContactProblem {
     /// As [`ContactProblem::prove`], if dofs without stiffness are travels, and the rest is definite by itself; `None`
     /// otherwise.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::certify`].
     pub(super) fn prove_pressed(&self, answer: WithEvidence) -> Result<Option<ProvenSet>, Error> {
         let (Some(travels), None) = (self.travels(), self.far_units(answer.displacement)) else { return Ok(None) };
         let is_body = |dof: &usize| travels.iter().all(|travel| travel.dof != *dof);

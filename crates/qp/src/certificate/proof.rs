@@ -68,9 +68,6 @@ impl ContactProblem {
 
     /// The same for vectors that fit, with the factor of the certificate that gave the evidence, or with one of its
     /// own.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::certify`].
     pub(crate) fn prove_alone(&self, mut answer: WithEvidence) -> Result<Option<ProvenSet>, Error> {
         let norm = match answer.evidence.as_mut().and_then(|evidence| evidence.norm.take()) {
             Some(norm) => Some(norm),
@@ -217,7 +214,6 @@ impl ContactProblem {
 /// The force that is left over at each dof.
 struct Unbalanced {
     force: Vec<f64>,
-    /// `true` if it is the residual of the answer.
     is_residual: bool,
 }
 
@@ -244,7 +240,6 @@ impl<'a> ComplianceFactor<'a> {
         }
     }
 
-    /// Length of a column.
     fn length(&self) -> usize {
         self.boundary.map_or(self.norm.cholesky.dim(), |boundary| boundary.dofs.len())
     }
@@ -320,7 +315,6 @@ impl<'a> ComplianceFactor<'a> {
         }
     }
 
-    /// Multiplications of the compliance of this number of rows.
     fn work(&self, rows: usize) -> f64 {
         (rows * rows) as f64 * (self.length() + rows) as f64
     }

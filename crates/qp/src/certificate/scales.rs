@@ -7,9 +7,7 @@ use crate::problem::{ContactProblem, Parts};
 pub(super) struct Scales {
     /// The least reach of each row: the distance by which a shift of unit energy norm of a single dof moves it.
     pub reach: Vec<f64>,
-    /// The parts.
     pub of_parts: Vec<OfPart>,
-    /// All parts together.
     pub whole: OfPart,
 }
 
@@ -25,7 +23,6 @@ pub(super) struct Balance {
     pub terms: Vec<f64>,
 }
 
-/// The scales of one part.
 #[derive(Clone, Copy, Default)]
 pub(super) struct OfPart {
     /// `true` if the part has stiffness. The error of a part without stiffness has no energy, and rows alone judge it.

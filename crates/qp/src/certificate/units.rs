@@ -13,18 +13,16 @@ const NOTHING: i32 = -200;
 
 /// Units of stiffness and of length, as exponents of two.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Units {
+pub(super) struct UnitExponents {
     pub stiffness: i32,
     pub length: i32,
 }
 
-impl Units {
-    /// A displacement in these units.
+impl UnitExponents {
     pub fn displacement(&self, displacement: &[f64]) -> Vec<f64> {
         displacement.iter().map(|&value| ldexp(value, -self.length)).collect()
     }
 
-    /// A force in these units.
     pub fn force(&self, force: &[f64]) -> Vec<f64> {
         force.iter().map(|&value| ldexp(value, -self.stiffness - self.length)).collect()
     }
@@ -51,7 +49,7 @@ pub(super) fn ldexp_root(x: f64, stiffness: i32, length: i32) -> f64 {
 
 impl ContactProblem {
     /// The units in which an answer is of order one, if forces or energies would over- or underflow in its own units.
-    pub(super) fn far_units(&self, displacement: &[f64]) -> Option<Units> {
+    pub(super) fn far_units(&self, displacement: &[f64]) -> Option<UnitExponents> {
         let stiffness = exponent(largest(&self.diagonal().values));
         let (moved, load) = (largest(displacement), largest(&self.load));
         let statics = exponent(load) - stiffness;
@@ -63,11 +61,10 @@ impl ContactProblem {
         let is_far = |power: i32| power.abs() > FAR;
         // A force, of the power stiffness + length, is far only if the stiffness or an energy is.
         let far = is_far(stiffness) || is_far(length) || is_far(stiffness + 2 * length);
-        far.then_some(Units { stiffness, length })
+        far.then_some(UnitExponents { stiffness, length })
     }
 
-    /// The same problem in other units.
-    pub(super) fn in_units(&self, units: &Units) -> Result<Self, Error> {
+    pub(super) fn in_units(&self, units: &UnitExponents) -> Result<Self, Error> {
         let lower = self.stiffness.lower();
         let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();
         let stiffness = SymmetricMatrix::from_lower(lower.with_values(values))?;
@@ -82,6 +79,6 @@ mod tests {
     #[test]
     fn a_gap_that_is_1e20_in_other_units_stays_a_gap() {
         let problem = ContactProblem::of_entries(&[(0, 0, 1.0)], &[1.0], &[(0, 0, 1.0)], &[ldexp(1e20, 900)]);
-        assert_eq!(problem.in_units(&Units { stiffness: 0, length: 900 }).unwrap().gap(), [1e20]);
+        assert_eq!(problem.in_units(&UnitExponents { stiffness: 0, length: 900 }).unwrap().gap(), [1e20]);
     }
 }

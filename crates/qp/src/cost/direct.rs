@@ -91,7 +91,7 @@ impl Direct {
     pub fn of(problem: &ContactProblem, smooth: Smooth, body: BodyFactor) -> Self {
         let dofs = problem.dofs() as f64;
         let entries = problem.stiffness().lower().entries() as f64;
-        let boundary = Condensation::contact_dofs(problem.contact()).len();
+        let boundary = problem.contact().columns_with_entries().len();
         let mut starts_near = false;
         let (factor, sets) = if is_everywhere(problem) {
             let near = seconds::hierarchy(dofs, entries) + NEAR_CYCLES * seconds::cycle(dofs, entries) + body.seconds;

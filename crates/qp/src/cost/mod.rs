@@ -164,9 +164,6 @@ impl Kept {
 pub(crate) const FACTORS: f64 = 2.0;
 
 /// Refuses a problem that would take more than these bytes, if there is a limit.
-///
-/// # Errors
-/// [`Error::TooLarge`].
 pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f64>) -> Result<(), Error> {
     let Some(allowed) = most else { return Ok(()) };
     let (dofs, stiffness_entries) = (problem.dofs() as f64, problem.stiffness().entries() as f64);
@@ -203,9 +200,6 @@ pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f6
 }
 
 /// Refuses work with this estimate in seconds if there is no time for it.
-///
-/// # Errors
-/// [`Error::OutOfTime`].
 pub(crate) fn check_time(watch: &Watch, estimate: f64) -> Result<(), Error> {
     match watch.time_left() {
         Some(time) if !watch.allows(estimate) => Err(Error::OutOfTime { needed: watch.needed(estimate), time }),

@@ -47,7 +47,6 @@ const MORE_FILL: f64 = 3.0;
 /// Cells along a side of the lattice; its matrix is factorised to measure the pace.
 const LATTICE: usize = 64;
 
-/// Seconds of a factorisation with this number of multiplications and values.
 pub(crate) fn factor_seconds(multiplications: f64, values: f64) -> f64 {
     MULTIPLICATION * multiplications + VALUE * values * (values / (values + IN_CACHE))
 }

@@ -67,8 +67,6 @@ impl Change {
         Change { load: times(&self.load), distance: times(&self.distance) }
     }
 
-    /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit.
     pub(super) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
         check_vector("change of the load", &self.load, (dofs, "dofs"), f64::is_finite, "finite")?;
         check_vector(
@@ -108,7 +106,6 @@ pub struct Adjoint {
     /// nu, one entry for each row of B, then for each equality row, in the unit of the output over length; zero on open
     /// rows, of either sign elsewhere. The derivative with respect to a gap is `-nu`.
     pub multiplier: Vec<f64>,
-    /// The answer, u and lambda.
     pub(super) answer: [Vec<f64>; 2],
     pub(super) inequalities: usize,
     /// The error of this solution of the linear system. With a factor: the last correction, relative to the largest

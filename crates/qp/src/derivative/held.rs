@@ -12,8 +12,7 @@ const MOST_CORRECTIONS: usize = 8;
 /// A correction below this, relative, is the last: the next one would be about its square.
 const ENOUGH: f64 = 1e-9;
 
-/// A solution of the linear system.
-pub(super) struct Held {
+pub(super) struct HeldSolution {
     pub displacement: Vec<f64>,
     /// One entry for each row of the problem.
     pub multiplier: Vec<f64>,
@@ -24,10 +23,12 @@ pub(super) struct Held {
 impl Derivatives {
     /// `K x - B_C' y = force`, `B_C x = distances` on the rows of `closed`: with a factor, corrected by residuals in
     /// twice the precision. `None` if the rows do not hold the body, or follow from each other.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] and [`Error::Interrupted`].
-    pub(super) fn held(&self, closed: &ContactSet, force: &[f64], distances: &[f64]) -> Result<Option<Held>, Error> {
+    pub(super) fn held(
+        &self,
+        closed: &ContactSet,
+        force: &[f64],
+        distances: &[f64],
+    ) -> Result<Option<HeldSolution>, Error> {
         let watch = &self.settings.watch;
         let is_exact = self.engine.hierarchy().is_none();
         // Open rows have no part in the system; their distances only must fit the pattern of infinite gaps.
@@ -59,7 +60,7 @@ impl Derivatives {
         if !is_exact {
             error = self.bound_of(closed, force, distances, [&x, &y])?;
         }
-        Ok(Some(Held { displacement: x, multiplier: y, error }))
+        Ok(Some(HeldSolution { displacement: x, multiplier: y, error }))
     }
 
     /// The relative bound on the error in the energy norm by the hierarchy.

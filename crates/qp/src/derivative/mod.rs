@@ -43,7 +43,7 @@ use crate::run::solved;
 use crate::settings::{Method, Settings};
 use crate::solution::{ContactSet, Solution};
 use crate::watch::Watch;
-use verdict::{Rows, rows_of};
+use verdict::{RowStates, rows_of};
 
 /// A derivative together with the verdict of the proven rows: whether the exact answer is smooth there.
 #[derive(Clone, Debug, PartialEq)]
@@ -177,15 +177,17 @@ pub struct Derivatives {
     displacement: Vec<f64>,
     /// The multipliers of all rows of the problem.
     multiplier: Vec<f64>,
-    rows: Rows,
+    rows: RowStates,
 }
 
 impl Derivatives {
     /// The rows that are proven, or known exactly, to press; `None` if nothing is known.
     pub fn closed(&self) -> Option<ContactSet> {
         let closed = match &self.rows {
-            Rows::Smooth { closed } | Rows::Kink { closed, .. } | Rows::Undecided { closed, .. } => closed,
-            Rows::Unknown { .. } => return None,
+            RowStates::Smooth { closed } | RowStates::Kink { closed, .. } | RowStates::Undecided { closed, .. } => {
+                closed
+            }
+            RowStates::Unknown { .. } => return None,
         };
         Some(self.problem.of_inequalities(closed))
     }
@@ -193,14 +195,14 @@ impl Derivatives {
     /// The rows that are at a kink, or undecided, from 0; empty if every row is decided, or nothing is known.
     pub fn at_kink(&self) -> &[usize] {
         match &self.rows {
-            Rows::Kink { weak: rows, .. } | Rows::Undecided { undecided: rows, .. } => rows,
-            Rows::Smooth { .. } | Rows::Unknown { .. } => &[],
+            RowStates::Kink { weak: rows, .. } | RowStates::Undecided { undecided: rows, .. } => rows,
+            RowStates::Smooth { .. } | RowStates::Unknown { .. } => &[],
         }
     }
 
     /// The reason, in words, if nothing is known about the rows.
     pub fn why_unknown(&self) -> Option<&str> {
-        if let Rows::Unknown { why } = &self.rows { Some(why) } else { None }
+        if let RowStates::Unknown { why } = &self.rows { Some(why) } else { None }
     }
 
     /// The same under a watch that can stop the solves of its derivatives.
@@ -262,7 +264,7 @@ impl Derivatives {
             }))
         };
         match &self.rows {
-            Rows::Kink { closed, weak } => {
+            RowStates::Kink { closed, weak } => {
                 let side = |sign: f64| self.one_sided(closed, weak, &change.times(sign));
                 match (side(-1.0)?, side(1.0)?) {
                     (Some(left), Some(right)) => Ok(Derivative::OneSided { left: left.times(-1.0), right }),
@@ -279,14 +281,14 @@ impl Derivatives {
         of: impl Fn(&ContactSet) -> Result<Option<T>, Error>,
     ) -> Result<Derivative<T>, Error> {
         match &self.rows {
-            Rows::Smooth { closed } => Ok(match of(closed)? {
+            RowStates::Smooth { closed } => Ok(match of(closed)? {
                 Some(found) => Derivative::Proven(found),
                 None => Derivative::Unknown { why: NOT_HELD.to_string() },
             }),
-            Rows::Kink { closed, weak: rows } | Rows::Undecided { closed, undecided: rows } => {
+            RowStates::Kink { closed, weak: rows } | RowStates::Undecided { closed, undecided: rows } => {
                 self.between(closed, rows, of)
             }
-            Rows::Unknown { why } => Ok(Derivative::Unknown { why: why.clone() }),
+            RowStates::Unknown { why } => Ok(Derivative::Unknown { why: why.clone() }),
         }
     }
 

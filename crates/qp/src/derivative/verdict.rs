@@ -20,7 +20,7 @@ const DUST: f64 = 1e-20;
 /// What is known about the rows of the exact answer. Sets are those of all rows of the problem, one row of each
 /// equality included.
 #[derive(Clone, Debug)]
-pub(super) enum Rows {
+pub(super) enum RowStates {
     /// The rows of `closed` press, and all others have a gap.
     Smooth { closed: ContactSet },
     /// The rows of `closed` press, gap and force of the `weak` ones are exactly zero, and all others have a gap; closed
@@ -33,15 +33,12 @@ pub(super) enum Rows {
 }
 
 /// The rows of the exact answer of `problem`, of which `solution` is the answer in doubles.
-///
-/// # Errors
-/// [`Error::Length`] for an answer that does not fit, and those of the proof.
 pub(super) fn rows_of(
     problem: &ContactProblem,
     engine: &dyn Engine,
     solution: &Solution,
     watch: &Watch,
-) -> Result<Rows, Error> {
+) -> Result<RowStates, Error> {
     let given = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
     let multiplier = problem.of_all_rows(&given).into_owned();
     let displacement = solution.displacement.clone();
@@ -55,13 +52,13 @@ pub(super) fn rows_of(
             true => "contact alone holds the body: no row is proven",
             false => "no bound on the error of the answer is known: no row is proven",
         };
-        return Ok(Rows::Unknown { why: why.to_string() });
+        return Ok(RowStates::Unknown { why: why.to_string() });
     };
     let of_rows = |row: &usize| !open.contains(*row) && !closed.contains(*row);
     let undecided: Vec<usize> = (0..problem.inequalities()).filter(of_rows).collect();
     let closed = problem.with_equality_rows(&closed);
     if undecided.is_empty() {
-        return Ok(Rows::Smooth { closed });
+        return Ok(RowStates::Smooth { closed });
     }
     let start = [displacement, multiplier];
     let sets = [problem.with_equality_rows(&solution.contact_set), closed.clone()];
@@ -72,9 +69,9 @@ pub(super) fn rows_of(
         found.is_some_and(|found| found.independent.iter().all(|&is_independent| is_independent))
     });
     Ok(match exact {
-        Some((closed, weak)) if weak.is_empty() => Rows::Smooth { closed },
-        Some((closed, weak)) => Rows::Kink { closed, weak },
-        None => Rows::Undecided { closed, undecided },
+        Some((closed, weak)) if weak.is_empty() => RowStates::Smooth { closed },
+        Some((closed, weak)) => RowStates::Kink { closed, weak },
+        None => RowStates::Undecided { closed, undecided },
     })
 }
 

@@ -48,7 +48,6 @@ pub(crate) struct Factored {
 #[derive(Clone, Debug)]
 pub(super) struct Reduced {
     pub loading: Arc<Loading>,
-    /// The problem that the method worked on.
     pub problem: ContactProblem,
     pub unit: i32,
     pub outcome: Outcome,
@@ -204,9 +203,8 @@ impl Factored {
         Ok(outcome.map(|outcome| Reduced { loading, problem, unit, outcome, factor_seconds }))
     }
 
-    /// The scaled problem with its means.
     fn scaled_problem<'a>(&'a self, problem: &'a ContactProblem) -> ScaledProblem<'a> {
-        let scaled = ScaledProblem::new(problem, &self.augmented, self.reduction.definiteness());
+        let scaled = ScaledProblem::new(problem, &self.augmented, self.reduction.is_definite());
         scaled.with_compliance(self.reduction.compliance())
     }
 
@@ -272,9 +270,6 @@ impl Factored {
 
     /// A watch that is over as soon as there is no time left for one more factorisation of a loop and for the
     /// certificate.
-    ///
-    /// # Errors
-    /// [`Error::OutOfTime`] if there is no time for the first factorisation.
     fn watch_of_loop(&self, method: ByFactor, watch: &Watch) -> Result<Watch, Error> {
         if watch.time_left().is_none() {
             return Ok(watch.clone());

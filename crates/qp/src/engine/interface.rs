@@ -34,7 +34,6 @@ pub(crate) struct Task<'a> {
 /// What a step found, in terms of the whole problem.
 pub(crate) struct Found {
     pub outcome: Outcome,
-    /// Seconds of its factorisations.
     pub factor_seconds: f64,
 }
 
@@ -83,10 +82,6 @@ pub(crate) trait Engine: Debug + Send + Sync {
     fn tried(&self, method: Option<ByFactor>) -> Tried;
 
     /// Makes a step; `None` if the step has no means here.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`], [`Error::OutOfTime`], [`Error::NotConvex`], and [`Error::NotFinite`] for gaps that do not
-    /// fit.
     fn make(&self, task: &Task) -> Result<Option<Found>, Error>;
 
     /// The means of a certificate, with bounds that end when `watch` says so.
@@ -101,18 +96,12 @@ pub(crate) trait Engine: Debug + Send + Sync {
     }
 
     /// The answer on the contact boundary, if it meets the goal there; `is_bounded` if it needs a bound on its error.
-    ///
-    /// # Errors
-    /// As [`Engine::make`].
     fn on_boundary(self: Arc<Self>, _task: &Task, _is_bounded: bool) -> Result<Option<OnBoundary>, Error> {
         Ok(None)
     }
 
     /// The displacement without a certificate; `None` if the method did not settle on a set, or if an answer of the
     /// method is only valid with a certificate.
-    ///
-    /// # Errors
-    /// As [`Engine::make`].
     fn settled(&self, _task: &Task) -> Result<Option<Vec<f64>>, Error> {
         Ok(None)
     }
@@ -124,18 +113,12 @@ pub(crate) trait Engine: Debug + Send + Sync {
 
     /// The exact way from a task to the gaps `to`; `None` if the task has no answer on the boundary that meets its
     /// goal.
-    ///
-    /// # Errors
-    /// As [`Prepared::path`](crate::Prepared::path).
     fn walk(self: Arc<Self>, _from: &Task, _to: &[f64]) -> Result<Option<Walk>, Error> {
         Err(Error::NotCondensed { step: "the exact path" })
     }
 
     /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row),
     /// pushing or pulling, and all others free; `None` if these rows do not hold the body, or contradict each other.
-    ///
-    /// # Errors
-    /// As [`Engine::make`].
     fn held(
         &self,
         closed: &ContactSet,
@@ -149,7 +132,6 @@ pub(crate) trait Engine: Debug + Send + Sync {
         0
     }
 
-    /// The multigrid hierarchy, if there is one.
     fn hierarchy(&self) -> Option<&Multigrid> {
         None
     }

@@ -6,7 +6,6 @@ mod factored;
 mod interface;
 mod loading;
 mod multigrid;
-mod path;
 mod preparation;
 mod reduction;
 mod refinement;

@@ -41,10 +41,6 @@ pub(crate) struct Hierarchical {
 
 impl Hierarchical {
     /// Builds the hierarchy from the near-null space of `problem`, or from constants if it has none.
-    ///
-    /// # Errors
-    /// Those of [`Multigrid::new`]; before that [`Error::Numerical`] for a dof without stiffness that is no travel,
-    /// [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { watch, threads, .. } = settings;
         if watch.acknowledge() {

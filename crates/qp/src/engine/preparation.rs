@@ -20,9 +20,6 @@ pub(super) const LOST_PIVOT: f64 = 1e-10;
 
 impl Factored {
     /// Scales, condenses and factorises `problem`.
-    ///
-    /// # Errors
-    /// As [`Prepared::new`](crate::Prepared::new).
     pub fn new(problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<Self, Error> {
         let Settings { threads, watch, .. } = settings;
         let clock = Instant::now();
@@ -91,9 +88,6 @@ impl Factored {
 
 /// The factor of a stiffness with an analysed pattern, `None` if it is not definite to working precision, and its
 /// smallest pivot, zero without a factor. It may serve to condense the problem.
-///
-/// # Errors
-/// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
 fn definite(
     problem: &ContactProblem,
     scaling: &Scaling,
@@ -139,9 +133,6 @@ fn condensed(
 }
 
 /// The matrices that the methods factorise, analysed; an `analysis` of the stiffness is reused for them.
-///
-/// # Errors
-/// As [`AugmentedMatrix::new`].
 fn augmented(
     condensation: Option<&Condensation>,
     scaling: &Scaling,
@@ -161,9 +152,6 @@ fn augmented(
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` if it is not safely definite.
-///
-/// # Errors
-/// [`Error::OutOfTime`] before the factorisation, [`Error::Numerical`].
 fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
     let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
     let augmented = augmented.with_threads(settings.threads.unwrap_or(1));

@@ -2,7 +2,6 @@
 
 use crate::certificate::EnergyNorm;
 use crate::linear::{Analysis, Compliance};
-use crate::method::Definiteness;
 use crate::transform::{Condensation, RowSelection, Scaling};
 
 /// Rows selected, data scaled, the stiffness factorised, and condensed if that pays; independent of load and gaps.
@@ -16,7 +15,6 @@ pub(super) struct Reduction {
     pub condensation: Option<Condensation>,
 }
 
-/// The energy norm of the stiffness.
 #[derive(Clone, Debug)]
 pub(super) enum Norm {
     /// The stiffness is not definite by itself.
@@ -27,17 +25,8 @@ pub(super) enum Norm {
 }
 
 impl Reduction {
-    /// The definiteness of the stiffness by itself.
-    pub fn definiteness(&self) -> Definiteness {
-        match self.norm {
-            Norm::Missing => Definiteness::Semidefinite,
-            Norm::Kept(_) | Norm::Again(_) => Definiteness::Definite,
-        }
-    }
-
-    /// Returns `true` if the stiffness is definite by itself.
     pub fn is_definite(&self) -> bool {
-        self.definiteness() == Definiteness::Definite
+        !matches!(self.norm, Norm::Missing)
     }
 
     /// The compliance of the rows, if the energy norm has one: balances by it then cost less than by factors of the

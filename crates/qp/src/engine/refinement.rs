@@ -19,13 +19,13 @@ use super::loading::Loading;
 use crate::error::Error;
 use crate::method::{Ending, Outcome};
 use crate::plan::Step;
-use crate::solution::{ContactSet, Solution};
+use crate::solution::Solution;
 
 impl Factored {
     /// The step d: the answer to the contact problem for the residual of an `answer` (u, lambda), started from its
     /// contact set, together with the whole multiplier.
-    fn step_from(&self, task: &Task, answer: &Answer) -> Result<Option<Reduced>, Error> {
-        let Answer { displacement, multiplier, contact_set } = *answer;
+    fn step_from(&self, task: &Task, answer: &Solution) -> Result<Option<Reduced>, Error> {
+        let Solution { displacement, multiplier, contact_set, .. } = answer;
         // The contact force is balanced on its own dofs; only the imbalance is swept.
         let imbalance = task.problem.accurate_residual(displacement, multiplier);
         let contact = task.problem.contact().mul_transposed(multiplier);
@@ -47,24 +47,14 @@ impl Factored {
     /// enough.
     pub(super) fn refined_answer(&self, task: &Task, best: &Solution) -> Option<Found> {
         task.settings.watch.step("refinement", 0);
-        let Solution { displacement, multiplier, contact_set, .. } = best;
-        let Ok(Some(step)) = self.step_from(task, &Answer { displacement, multiplier, contact_set }) else {
-            return None;
-        };
+        let Ok(Some(step)) = self.step_from(task, best) else { return None };
         let moved = self.expand(&step.loading, step.unit, &step.outcome.displacement);
         let outcome = Outcome {
-            displacement: displacement.iter().zip(&moved).map(|(u, d)| u + d).collect(),
+            displacement: best.displacement.iter().zip(&moved).map(|(u, d)| u + d).collect(),
             multiplier: self.expand_multiplier(&step.outcome.multiplier, step.unit),
             contact_set: self.expand_set(&step.outcome.contact_set),
             ..Outcome::at_rest(task.problem, Ending::Settled)
         };
         Some(Found { outcome, factor_seconds: step.factor_seconds })
     }
-}
-
-/// An answer to be refined.
-struct Answer<'a> {
-    displacement: &'a [f64],
-    multiplier: &'a [f64],
-    contact_set: &'a ContactSet,
 }

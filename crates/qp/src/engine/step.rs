@@ -10,10 +10,8 @@ use crate::plan::{PATIENCE, Step};
 use crate::settings::ByFactor;
 use crate::solution::ContactSet;
 
-/// A step on a scaled problem.
 pub(super) struct ScaledStep<'a> {
     pub scaled: &'a ScaledProblem<'a>,
-    /// The set that it starts from, if one is known.
     pub start: Option<ContactSet>,
     pub method: ByFactor,
     /// The relative accuracy that is good enough.
@@ -25,9 +23,6 @@ pub(super) struct ScaledStep<'a> {
 
 impl ScaledStep<'_> {
     /// The outcome of `step`; `None` if the step has no means here.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory, and if a solver refuses its input.
     pub fn outcome(self, step: Step) -> Result<Option<Outcome>, Error> {
         match step {
             Step::Method => self.by_method().map(Some),
@@ -43,7 +38,6 @@ impl ScaledStep<'_> {
         }
     }
 
-    /// The outcome of the method.
     fn by_method(self) -> Result<Outcome, Error> {
         let ScaledStep { scaled, start, method, accuracy, most_iterations, bound } = self;
         let Some(cold) = scaled.start()? else { return Ok(Outcome::at_rest(scaled.problem, Ending::Unheld)) };
@@ -66,7 +60,7 @@ impl ScaledStep<'_> {
                 Barrier { scaled, tolerance }.solve(Start::default())
             }
             ByFactor::Penalty(ladder) => {
-                let goal = accuracy.map(|accuracy| penalty::Goal { accuracy, bound });
+                let goal = accuracy.map(|accuracy| penalty::AccuracyGoal { accuracy, bound });
                 let climb = PenaltyLoop { scaled, ladder, goal, most_iterations };
                 climb.solve(start.unwrap_or(cold).into())
             }

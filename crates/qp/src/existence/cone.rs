@@ -57,7 +57,7 @@ impl Cone<'_> {
         let mut start = twice(&self.nearest_in_doubles(c)?);
         let rows = || self.rows.iter().copied().filter(|row| !row.is_zero());
         let closing = |row: &Row, point: &[Twice]| product(&row.values, point).rounded() / row.terms;
-        let mut face = Face::default();
+        let mut face = ConeFace::default();
         if let Some(fixed) = self.fixed {
             face.hold(fixed, self.rounding);
         }
@@ -119,12 +119,11 @@ impl Cone<'_> {
 
 /// The coordinates at which some rows are zero: the orthogonal complement of their orthogonal directions.
 #[derive(Default)]
-pub(super) struct Face {
+pub(super) struct ConeFace {
     directions: Vec<Vec<Twice>>,
 }
 
-impl Face {
-    /// The part of a vector in the face.
+impl ConeFace {
     fn along(&self, vector: &[Twice]) -> Vec<Twice> {
         let mut rest = vector.to_vec();
         for direction in (0..TURNS).flat_map(|_| &self.directions) {

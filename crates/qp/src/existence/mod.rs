@@ -16,7 +16,7 @@
 mod cone;
 mod rigid;
 
-use cone::{Cone, Face, Row, Solve};
+use cone::{Cone, ConeFace, Row, Solve};
 use rigid::{is_rigid, place_of_largest};
 
 use super::cost::{Kept, check_memory, check_time, seconds};
@@ -54,9 +54,6 @@ const SETTLED_TO: f64 = 1e-11;
 const BENDS: f64 = 1e3;
 
 /// The analysis of the stiffness, if memory and time allow its factorisation.
-///
-/// # Errors
-/// [`Error::TooLarge`], [`Error::OutOfTime`], and those of the analysis.
 fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, Error> {
     check_memory(problem, Kept::Nothing, settings.memory)?;
     check_time(&settings.watch, seconds::ordering(problem))?;
@@ -99,9 +96,6 @@ fn nearest_to_rest(
 }
 
 /// The problem in the units of `scaling`.
-///
-/// # Errors
-/// [`Error::NotFinite`] if its numbers leave the range of doubles.
 fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem, Error> {
     let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
     ContactProblem::computed(scaling.stiffness().clone(), load, scaling.contact().clone(), gap)
@@ -125,10 +119,6 @@ pub(super) struct Existence {
 
 impl Existence {
     /// The null space of the stiffness of `problem`; `None` if the range of doubles does not allow it.
-    ///
-    /// # Errors
-    /// [`Error::NotConvex`] with a direction of negative energy; [`Error::TooLarge`], [`Error::OutOfTime`],
-    /// [`Error::Numerical`].
     pub fn of(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<Option<Self>, Error> {
         let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
         let Ok(scaled) = scaled(problem, &scaling) else { return Ok(None) };
@@ -179,9 +169,6 @@ impl Existence {
     }
 
     /// Checks that the load drives no mode without energy that no row stops.
-    ///
-    /// # Errors
-    /// [`Error::Unbounded`], or [`Error::Infeasible`] if the rows cannot be met together.
     pub fn check_bounded(&self, problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
         let Some(mode) = self.escape() else { return Ok(()) };
         nearest_to_rest(&self.scaling, problem, settings, self.solve)?;
@@ -201,9 +188,6 @@ impl Existence {
 
     /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and
     /// without a mode that the load drives, has an answer.
-    ///
-    /// # Errors
-    /// [`Error::UnderHeld`] with such a mode.
     pub fn check_unique(&self, problem: &ContactProblem, solution: &Solution, tolerance: f64) -> Result<(), Error> {
         let certificate = &solution.certificate;
         let drift = if certificate.penetration <= tolerance { self.drift() } else { None };
@@ -275,7 +259,7 @@ impl Existence {
     fn is_carried_by(&self, forces: &[f64]) -> bool {
         let (mut left, mut terms) = (self.against_load.values.clone(), Vec::new());
         terms.extend(left.iter().map(|value| value.rounded().abs()));
-        let mut face = Face::default();
+        let mut face = ConeFace::default();
         for (row, of_row) in self.rows.iter().filter(|(row, _)| forces[*row] != 0.0) {
             face.hold(of_row, self.rounding.vanishes);
             for ((left, terms), &value) in left.iter_mut().zip(&mut terms).zip(&of_row.values) {

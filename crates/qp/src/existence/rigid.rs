@@ -39,7 +39,6 @@ fn across(directions: &[Vec<f64>], mut vector: Vec<f64>) -> Vec<f64> {
     vector
 }
 
-/// The place of the largest entry.
 pub(super) fn place_of_largest(values: &[f64]) -> usize {
     let by_size = |a: &(usize, &f64), b: &(usize, &f64)| a.1.abs().total_cmp(&b.1.abs());
     values.iter().enumerate().max_by(by_size).map_or(0, |entry| entry.0)

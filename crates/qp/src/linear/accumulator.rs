@@ -12,17 +12,17 @@ use pulp::{Arch, Simd, WithSimd};
 /// T. Ogita, S. M. Rump, S. Oishi, 2005, "Accurate sum and dot product", SIAM J. Sci. Comput. 26.
 #[derive(Clone, Debug)]
 pub struct Accumulator {
-    sums: Vec<Sum>,
+    sums: Vec<CompensatedSum>,
 }
 
 /// A sum and its accumulated rounding error.
 #[derive(Clone, Copy, Debug)]
-struct Sum {
+struct CompensatedSum {
     value: f64,
     rest: f64,
 }
 
-impl Sum {
+impl CompensatedSum {
     #[inline(always)]
     fn add_product(&mut self, a: f64, b: f64) {
         let product = a * b;
@@ -35,21 +35,21 @@ impl Sum {
 }
 
 /// The product of a symmetric matrix with x, added to `sums`, and that of their magnitudes, added to `terms`.
-struct Product<'a, C> {
+struct SymmetricProduct<'a, C> {
     /// The entries `(row, value)` of a column of the lower triangle.
     column: C,
     x: &'a [f64],
-    sums: &'a mut [Sum],
+    sums: &'a mut [CompensatedSum],
     terms: &'a mut [f64],
 }
 
-impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Product<'_, C> {
+impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for SymmetricProduct<'_, C> {
     type Output = ();
 
     // A plain closure would be a call to code that is not compiled for the processor.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Product { column, x, sums, terms } = self;
+        let SymmetricProduct { column, x, sums, terms } = self;
         // One length for all: an index is then checked once.
         let (sums, terms) = (&mut sums[..x.len()], &mut terms[..x.len()]);
         for (index, &at_column) in x.iter().enumerate() {
@@ -68,20 +68,20 @@ impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Product<'
 }
 
 /// The product of a matrix with x, or of the transposed matrix, added to `sums`.
-struct Columns<'a, C> {
+struct ColumnProduct<'a, C> {
     /// The entries `(row, value)` of a column.
     column: C,
     x: &'a [f64],
-    sums: &'a mut [Sum],
+    sums: &'a mut [CompensatedSum],
     is_transposed: bool,
 }
 
-impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Columns<'_, C> {
+impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for ColumnProduct<'_, C> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Columns { column, x, sums, is_transposed } = self;
+        let ColumnProduct { column, x, sums, is_transposed } = self;
         if is_transposed {
             for (index, own) in sums.iter_mut().enumerate() {
                 for (row, value) in column(index) {
@@ -103,7 +103,7 @@ impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Columns<'
 impl Accumulator {
     /// Sums that start from `values`.
     pub fn new(values: &[f64]) -> Self {
-        Accumulator { sums: values.iter().map(|&value| Sum { value, rest: 0.0 }).collect() }
+        Accumulator { sums: values.iter().map(|&value| CompensatedSum { value, rest: 0.0 }).collect() }
     }
 
     /// Adds `a * b` to sum `index`.
@@ -120,18 +120,18 @@ impl Accumulator {
         x: &[f64],
     ) -> Vec<f64> {
         let mut terms = vec![0.0; x.len()];
-        Arch::new().dispatch(Product { column, x, sums: &mut self.sums, terms: &mut terms });
+        Arch::new().dispatch(SymmetricProduct { column, x, sums: &mut self.sums, terms: &mut terms });
         terms
     }
 
     /// Adds `A x` to as many sums as A has rows; `column` gives the entries `(row, value)` of its columns.
     pub fn add_columns<I: Iterator<Item = (usize, f64)>>(&mut self, column: impl Fn(usize) -> I, x: &[f64]) {
-        Arch::new().dispatch(Columns { column, x, sums: &mut self.sums, is_transposed: false });
+        Arch::new().dispatch(ColumnProduct { column, x, sums: &mut self.sums, is_transposed: false });
     }
 
     /// Adds `A' x` to as many sums as A has columns, without the terms of entries of x that are zero.
     pub fn add_transposed<I: Iterator<Item = (usize, f64)>>(&mut self, column: impl Fn(usize) -> I, x: &[f64]) {
-        Arch::new().dispatch(Columns { column, x, sums: &mut self.sums, is_transposed: true });
+        Arch::new().dispatch(ColumnProduct { column, x, sums: &mut self.sums, is_transposed: true });
     }
 
     /// The sums, each rounded once; not finite if a term overflows.

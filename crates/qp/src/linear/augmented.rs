@@ -32,7 +32,7 @@ impl Squares {
         if (0..by_row.columns()).map(of_row).sum::<usize>() > matrix.entries() {
             return Squares::Rows(by_row);
         }
-        let mut search = Search::of(matrix);
+        let mut search = EntrySearch::of(matrix);
         let (mut row_starts, mut products) = (vec![0], Vec::new());
         for row in 0..by_row.columns() {
             products.extend(by_row.square(row).map(|(second, first, product)| {
@@ -80,32 +80,22 @@ impl Squares {
     }
 }
 
-/// The number of entries of a lower triangle.
 fn triangle(columns: usize) -> usize {
     columns * (columns + 1) / 2
 }
 
 impl AugmentedMatrix {
     /// Joins the patterns of K (n x n) and B (m x n) and analyses them once.
-    ///
-    /// # Errors
-    /// As [`Analysis::of`].
     pub fn new(stiffness: &SymmetricMatrix, rows: &SparseMatrix) -> Result<Self, FactorError> {
         Self::analysed(stiffness, rows, Analysis::of)
     }
 
     /// As [`AugmentedMatrix::new`], with the columns of `last` eliminated last.
-    ///
-    /// # Errors
-    /// As [`Analysis::with_last`].
     pub fn with_last(stiffness: &SymmetricMatrix, rows: &SparseMatrix, last: &[usize]) -> Result<Self, FactorError> {
         Self::analysed(stiffness, rows, |joined| Analysis::with_last(joined, last))
     }
 
     /// As [`AugmentedMatrix::new`], with an available `analysis` of K, if K has a place for every entry.
-    ///
-    /// # Errors
-    /// As [`Analysis::of`].
     pub fn with_analysis(
         stiffness: &SymmetricMatrix,
         rows: &SparseMatrix,
@@ -130,7 +120,6 @@ impl AugmentedMatrix {
         Ok(Self { stiffness, squares, analysis })
     }
 
-    /// The same matrices, factorised with this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
     }
@@ -153,9 +142,6 @@ impl AugmentedMatrix {
     }
 
     /// Factorises a matrix that [`AugmentedMatrix::matrix`] returned, and frees it.
-    ///
-    /// # Errors
-    /// As [`Analysis::factor`].
     pub fn factor(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
         self.analysis.factor_last(matrix)
     }
@@ -185,9 +171,6 @@ impl Augmented {
     }
 
     /// The augmented matrix, analysed when it is first asked for.
-    ///
-    /// # Errors
-    /// As [`AugmentedMatrix::new`].
     pub fn matrix(&self) -> Result<&AugmentedMatrix, FactorError> {
         let Augmented { stiffness, rows, analysis, threads, .. } = self;
         let made = || {
@@ -259,16 +242,16 @@ fn missing_places(lower: &SparseMatrix, rows: &SparseMatrix, by_row: &SparseMatr
 }
 
 /// A search for entries of a matrix, which are mostly asked for in their order: down a column, one after the other.
-struct Search<'a> {
+struct EntrySearch<'a> {
     matrix: &'a SparseMatrix,
     /// The entry that was asked for last, and the place after it in its column.
     last: Option<(usize, usize)>,
     next: usize,
 }
 
-impl<'a> Search<'a> {
+impl<'a> EntrySearch<'a> {
     fn of(matrix: &'a SparseMatrix) -> Self {
-        Search { matrix, last: None, next: 0 }
+        EntrySearch { matrix, last: None, next: 0 }
     }
 
     /// The place of an entry within its column, or the place that it would have.
@@ -297,7 +280,7 @@ mod tests {
             .flat_map(|(column, rows)| rows.iter().map(move |&row| (row, column, 1.0)))
             .collect();
         let matrix = SparseMatrix::from_triplets(9, 3, &entries).unwrap();
-        let mut search = Search::of(&matrix);
+        let mut search = EntrySearch::of(&matrix);
         // Down each column, then every entry after every other.
         let all: Vec<_> = (0..3).flat_map(|column| (0..9).map(move |row| (column, row))).collect();
         let pairs = all.iter().flat_map(|&first| all.iter().flat_map(move |&second| [first, second]));

@@ -28,18 +28,11 @@ pub struct SymmetricLines {
 
 impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
     /// The lower triangle.
-    ///
-    /// # Errors
-    /// [`Error::Length`], [`Error::Pattern`] and [`Error::IndexOutOfRange`] for arrays that are no sorted columns,
-    /// [`Error::NotFinite`], [`Error::NotSymmetric`].
     pub fn lower(self) -> Result<SparseMatrix, Error> {
         self.walked(Taken::Lower)?.lower()
     }
 
     /// The transposed upper triangle; `None` if a negligible entry is on one side of the diagonal only.
-    ///
-    /// # Errors
-    /// As [`Columns::lower`].
     pub fn upper(self) -> Result<Option<SparseMatrix>, Error> {
         let mut upper = self.walked(Taken::Upper)?;
         upper.all_matched()?;
@@ -65,9 +58,6 @@ fn with_room<T>(entries: usize) -> Result<Vec<T>, Error> {
 
 impl SymmetricLines {
     /// Before the first of `dim` rows with this number of entries in all.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if memory does not suffice.
     pub fn of_rows(dim: usize, entries: usize) -> Result<Self, Error> {
         Self::new(dim, entries, Taken::Upper)
     }
@@ -82,9 +72,6 @@ impl SymmetricLines {
     }
 
     /// The lower triangle; a negligible entry may be in one triangle only.
-    ///
-    /// # Errors
-    /// [`Error::NotSymmetric`] for an entry of the upper triangle without a mirror image.
     pub fn lower(mut self) -> Result<SparseMatrix, Error> {
         self.all_matched()?;
         Ok(self.into_matrix())
@@ -96,10 +83,6 @@ impl SymmetricLines {
 
     /// Takes the next row or column: indices from 0, increasing, and values. Keeps what lies on and below the diagonal
     /// of a column, and compares what lies above.
-    ///
-    /// # Errors
-    /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`]; [`Error::NotSymmetric`] for an entry that
-    /// differs from its mirror image in a row or column before.
     pub fn take<R: Copy + TryInto<usize>>(&mut self, rows: &[R], values: &[f64]) -> Result<(), Error> {
         let column = self.cursor.len();
         let (start, mut above, mut least) = (self.rows.len(), 0, 0);

@@ -27,7 +27,6 @@ pub struct Analysis {
     threads: usize,
 }
 
-/// The structure of a factor.
 #[derive(Clone, Debug)]
 enum Structure {
     /// Block columns.
@@ -58,24 +57,17 @@ pub struct Cholesky {
 #[derive(Clone, Debug)]
 enum Values {
     InColumns(Arc<Vec<f64>>),
-    /// A whole triangle.
     Dense(LowerTriangle),
 }
 
 impl Analysis {
     /// Orders and analyses the pattern of `matrix`.
-    ///
-    /// # Errors
-    /// [`FactorError::Failed`] if memory or the index range does not suffice.
     pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
         Self::with_last(matrix, &[])
     }
 
     /// As [`Analysis::of`], with the columns of `last` eliminated last, in the order given: the trailing block of the
     /// factor is then that of their Schur complement.
-    ///
-    /// # Errors
-    /// As [`Analysis::of`].
     pub fn with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
         if !Self::is_dense_for(matrix) {
             return Self::sparse_with_last(matrix, last);
@@ -94,9 +86,6 @@ impl Analysis {
     }
 
     /// As [`Analysis::with_last`], for a factor in block columns.
-    ///
-    /// # Errors
-    /// As [`Analysis::of`].
     pub fn sparse_with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
         let lower = matrix.lower();
         let order = call(|| ordering::order(lower, last))?;
@@ -116,7 +105,6 @@ impl Analysis {
         Ok(Analysis { structure: Structure::Sparse(Arc::new(symbolic)), trailing: last.len(), threads: 1 })
     }
 
-    /// The same analysis, for factorisations with this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         Analysis { threads, ..self }
     }
@@ -151,18 +139,12 @@ impl Analysis {
     }
 
     /// Factorises `matrix`, which must have the analysed pattern.
-    ///
-    /// # Errors
-    /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
         self.factor_last(matrix.clone())
     }
 
     /// As [`Analysis::factor`], for a matrix that is no longer needed: its values are freed before those of the factor
     /// are made.
-    ///
-    /// # Errors
-    /// As [`Analysis::factor`].
     pub fn factor_last(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
         if let Structure::Dense(order) = &self.structure {
             return self.factorised_densely(order, matrix.lower());
@@ -173,9 +155,6 @@ impl Analysis {
     }
 
     /// Factorises the equilibrated `c D A D` of `matrix`, which is not built for a factor in block columns.
-    ///
-    /// # Errors
-    /// As [`Analysis::factor`].
     pub fn factor_equilibrated(
         &self,
         matrix: &SymmetricMatrix,

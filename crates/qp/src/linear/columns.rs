@@ -20,9 +20,6 @@ pub(super) enum Taken {
 
 impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
     /// Calls `take(column, rows, values)` for each column, from the first on.
-    ///
-    /// # Errors
-    /// [`Error::Length`] and [`Error::Pattern`] for arrays that do not fit each other, and those of `take`.
     pub fn each(self, mut take: impl FnMut(usize, &[R], &[f64]) -> Result<(), Error>) -> Result<(), Error> {
         let (columns, entries) = (self.starts.len().saturating_sub(1), self.values.len());
         if self.rows.len() != entries {
@@ -55,9 +52,6 @@ impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
 impl Taken {
     /// Checks that the indices of a line increase and lie inside a matrix of this shape, and that its values are
     /// finite.
-    ///
-    /// # Errors
-    /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`].
     pub fn check<I: Copy + TryInto<usize>>(
         self,
         (rows, columns): (usize, usize),

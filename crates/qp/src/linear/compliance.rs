@@ -44,7 +44,7 @@ struct Halves {
 }
 
 /// Some of the rows, held.
-pub struct Held<'a> {
+pub struct HeldRows<'a> {
     compliance: &'a Compliance,
     rows: Vec<usize>,
     /// The factor of their products.
@@ -78,7 +78,6 @@ impl Compliance {
         Compliance { cholesky, block, by_row, halves: OnceLock::new() }
     }
 
-    /// Memory of the values, in bytes.
     pub fn bytes(&self) -> f64 {
         let [size, count] = [self.by_row.rows(), self.by_row.columns()].map(|count| count as f64);
         (self.cholesky.entries() as f64 + size * count + count * count) * size_of::<f64>() as f64
@@ -118,7 +117,7 @@ impl Compliance {
     }
 
     /// These rows, increasing, held; `None` if some follow from others to a good part of the digits.
-    pub fn held(&self, rows: Vec<usize>) -> Option<Held<'_>> {
+    pub fn held(&self, rows: Vec<usize>) -> Option<HeldRows<'_>> {
         let count = rows.len();
         let mut products = vec![0.0; count * count];
         let all = self.by_row.columns();
@@ -130,11 +129,11 @@ impl Compliance {
         let triangle = dense_factor::factorise(count, products, 1).ok()?;
         let is_kept =
             |(place, &row): (usize, &usize)| triangle.diagonal(place).powi(2) > DEPENDENT * self.product(row, row);
-        rows.iter().enumerate().all(is_kept).then_some(Held { compliance: self, rows, triangle })
+        rows.iter().enumerate().all(is_kept).then_some(HeldRows { compliance: self, rows, triangle })
     }
 }
 
-impl Held<'_> {
+impl HeldRows<'_> {
     /// The displacement, length n, and the force on each row, zero on rows that are not held, that take up the force
     /// with this [sweep](Compliance::swept), and put the held rows at their `distances`.
     pub fn solve(&self, mut swept: Vec<f64>, distances: &[f64]) -> (Vec<f64>, Vec<f64>) {

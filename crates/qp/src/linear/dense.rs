@@ -58,9 +58,6 @@ pub fn take_out(vector: &mut [f64], direction: &[f64]) -> f64 {
 }
 
 /// Checks that a vector has an entry for each of those that it belongs to, and that its values are allowed.
-///
-/// # Errors
-/// [`Error::Length`], [`Error::NotFinite`].
 pub fn check_vector(
     name: &'static str,
     values: &[f64],
@@ -96,7 +93,6 @@ impl LowerTriangle {
         &self.values
     }
 
-    /// An entry of the diagonal.
     pub fn diagonal(&self, place: usize) -> f64 {
         self.values[place * self.size + place]
     }
@@ -224,7 +220,6 @@ pub struct UpperTriangle {
 }
 
 impl UpperTriangle {
-    /// Number of columns.
     pub fn size(&self) -> usize {
         self.columns.len()
     }

@@ -20,9 +20,6 @@ const SMALL: usize = 32;
 
 /// Factorises the symmetric matrix with this lower triangle (n x n, column by column; the entries above are not read)
 /// on this number of threads.
-///
-/// # Errors
-/// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for lack of memory.
 pub(super) fn factorise(size: usize, mut values: Vec<f64>, threads: usize) -> Result<LowerTriangle, FactorError> {
     if size <= SMALL {
         Arch::new().dispatch(ColumnByColumn { size, values: &mut values })?;

@@ -11,7 +11,6 @@ const PRIME: u64 = (1 << BITS) - 1;
 
 const BITS: i32 = 61;
 
-/// The dependence of the rows in question.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dependence {
     /// A basis: rows that do not follow from those before them.

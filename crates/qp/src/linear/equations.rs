@@ -62,7 +62,6 @@ pub struct Sums {
     of_places: Vec<Option<Sum>>,
     /// The places with a sum, in the order of their first terms.
     places: Vec<usize>,
-    /// Number of terms so far.
     terms: usize,
 }
 
@@ -131,23 +130,23 @@ impl SparseMatrix {
         let of_row = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0);
         let mut order: Vec<usize> = (0..self.rows()).collect();
         order.sort_by_key(|&row| of_row(row).count());
-        let (mut found, mut following) = (Found::default(), Vec::new());
+        let (mut found, mut following) = (Pivots::default(), Vec::new());
         for row in order {
             if found.sums.terms > most_terms {
                 break;
             }
             let entries: Sparse = of_row(row).map(|(dof, a)| (dof, a.into())).collect();
             match found.reduced(&entries, values.get(row).copied().unwrap_or(0.0).into(), (row, accuracy)) {
-                Reduced::Row(pivot) => {
+                Remainder::Row(pivot) => {
                     if let Some(dof) = pivot.best(PIVOT, |dof| self.column(dof).count()) {
                         found.solve_for(dof, pivot);
                     }
                 }
-                Reduced::Follows { weights, is_exact } => {
+                Remainder::Follows { weights, is_exact } => {
                     let weights = weights.into_iter().map(|(row, weight)| (row, weight.rounded())).collect();
                     following.push(Following { row, weights, is_exact });
                 }
-                Reduced::Contradicts(_) | Reduced::Unclear => {}
+                Remainder::Contradicts(_) | Remainder::Unclear => {}
             }
         }
         following
@@ -162,7 +161,7 @@ impl SparseMatrix {
 }
 
 /// What is left of an equality after the pivots so far.
-pub enum Reduced {
+pub enum Remainder {
     /// `sum of others + constant = 0`, not yet solved for a dof.
     Row(Pivot),
     /// Nothing is left, exactly or except for rounding: with these weights the sum of the equalities is zero.
@@ -175,7 +174,7 @@ pub enum Reduced {
 
 /// The pivots so far. None depends on another.
 #[derive(Default)]
-pub struct Found {
+pub struct Pivots {
     pub pivots: Vec<Pivot>,
     by_dof: HashMap<usize, usize>,
     /// The pivots that depend on a dof that stays.
@@ -183,11 +182,11 @@ pub struct Found {
     sums: Sums,
 }
 
-impl Found {
+impl Pivots {
     /// The equality `entries u = right` of a number with the pivots put in; it follows from them if less than this
     /// share of it is left.
-    pub fn reduced(&mut self, entries: &Sparse, right: Twice, (number, follows): (usize, f64)) -> Reduced {
-        let Found { pivots, by_dof, sums, .. } = self;
+    pub fn reduced(&mut self, entries: &Sparse, right: Twice, (number, follows): (usize, f64)) -> Remainder {
+        let Pivots { pivots, by_dof, sums, .. } = self;
         let in_pivots: Vec<(&Pivot, Twice)> =
             entries.iter().filter_map(|&(dof, b)| Some((&pivots[*by_dof.get(&dof)?], b))).collect();
         let mut constant = Sum::default();
@@ -212,17 +211,19 @@ impl Found {
         // The entries are rounded, and so is the right-hand side.
         let is_rounding = left.rounded().abs() <= follows * size;
         match (others.is_empty(), left == Twice::ZERO) {
-            (true, true) => Reduced::Follows { weights, is_exact: true },
-            (true, false) if is_rounding => Reduced::Follows { weights, is_exact: false },
+            (true, true) => Remainder::Follows { weights, is_exact: true },
+            (true, false) if is_rounding => Remainder::Follows { weights, is_exact: false },
             (true, false) => {
                 let sign = if left.rounded() > 0.0 { 1.0 } else { -1.0 };
-                Reduced::Contradicts(
+                Remainder::Contradicts(
                     weights.into_iter().map(|(number, weight)| (number, weight * sign.into())).collect(),
                 )
             }
-            _ if largest(&others) > follows * terms => Reduced::Row(Pivot { dof: 0, constant: left, others, weights }),
-            _ if is_rounding => Reduced::Follows { weights, is_exact: false },
-            _ => Reduced::Unclear,
+            _ if largest(&others) > follows * terms => {
+                Remainder::Row(Pivot { dof: 0, constant: left, others, weights })
+            }
+            _ if is_rounding => Remainder::Follows { weights, is_exact: false },
+            _ => Remainder::Unclear,
         }
     }
 
@@ -235,7 +236,7 @@ impl Found {
         let pivot =
             Pivot { dof, constant: -(constant / own), others: divided(others, -own), weights: divided(weights, own) };
         let number = self.pivots.len();
-        let Found { pivots, depending, sums, .. } = self;
+        let Pivots { pivots, depending, sums, .. } = self;
         for before in depending.remove(&dof).unwrap_or_default() {
             let earlier = &mut pivots[before];
             let Some(share) = taken_out(&mut earlier.others, dof) else { continue };

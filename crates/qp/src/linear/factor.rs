@@ -30,9 +30,6 @@ impl From<FactorError> for Error {
 }
 
 /// The factor of a matrix that may not be positive definite; `None` if it is not.
-///
-/// # Errors
-/// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
 pub fn if_definite<T>(factor: Result<T, FactorError>) -> Result<Option<T>, Error> {
     match factor {
         Err(FactorError::NotPositiveDefinite) => Ok(None),
@@ -51,12 +48,10 @@ pub fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, Facto
     guarded(work).map_err(FactorError::Failed)?
 }
 
-/// Memory for a call of faer.
 pub(super) fn memory(request: StackReq) -> Result<MemBuffer, FactorError> {
     MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
 }
 
-/// The values of a factor with its structure.
 pub(super) type Factor<'a> = supernodal::SupernodalLltRef<'a, usize, f64>;
 
 /// The lower triangle of a matrix in compressed columns, in the order of elimination; the rows of a column are in any
@@ -67,10 +62,6 @@ pub(crate) struct Permuted {
     pub values: Vec<f64>,
 }
 
-/// Factorises a matrix.
-///
-/// # Errors
-/// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for lack of memory.
 pub(super) fn factorise(
     supernodes: &supernodal::SymbolicSupernodalCholesky<usize>,
     permuted: &Permuted,

@@ -7,7 +7,6 @@ mod cholesky;
 mod columns;
 mod compliance;
 mod conjugate_gradients;
-mod definite;
 mod dense;
 mod dense_factor;
 mod dependence;
@@ -50,9 +49,10 @@ pub use exact_sum::ExactSum;
 pub use factor::{FactorError, call, if_definite};
 pub use forest::Forest;
 pub use multigrid::Width;
-pub use null_space::{NullSpace, generic};
+pub use null_space::NullSpace;
 pub use ordering::Fill;
 pub use orthogonal::{inverse_lengths, inverse_lengths_by_products};
+pub use power_iteration::generic;
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use spare::Spare;
 pub use symmetric::SymmetricMatrix;
@@ -100,7 +100,6 @@ struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern with the rows of all entries.
     fn of(column_starts: Vec<usize>, mut rows: Vec<u32>) -> Self {
         let (mut row_starts, mut kept) = (Vec::with_capacity(column_starts.len() - 1), 0);
         for column in column_starts.windows(2) {
@@ -231,7 +230,6 @@ impl SparseMatrix {
         Self::from_parts(rows, starts, row_indices, values).finite()
     }
 
-    /// The matrix if all values are finite.
     fn finite(self) -> Result<Self, Error> {
         if self.values.iter().all(|value| value.is_finite()) {
             return Ok(self);
@@ -249,7 +247,6 @@ impl SparseMatrix {
         SparseMatrix { rows, pattern: Arc::new(Pattern::of(column_starts, row_indices)), values: Arc::new(values) }
     }
 
-    /// The matrix with other values in the same pattern.
     pub(crate) fn with_values(&self, values: Vec<f64>) -> Self {
         SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
     }
@@ -320,12 +317,10 @@ impl SparseMatrix {
         }
     }
 
-    /// Rows of the entries of one column.
     fn column_rows(&self, column: usize) -> &[u32] {
         self.column_slices(column).0
     }
 
-    /// Rows and values of one column.
     #[inline(always)]
     fn column_slices(&self, column: usize) -> (&[u32], &[f64]) {
         let Pattern { column_starts, row_starts, rows } = &*self.pattern;
@@ -393,7 +388,7 @@ impl SparseMatrix {
     /// The product A x, of which `entry` makes the entries of A.
     fn product(&self, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut y = vec![0.0; self.rows];
-        Arch::new().dispatch(Product { matrix: self, x, y: &mut y, entry });
+        Arch::new().dispatch(AddedProduct { matrix: self, x, y: &mut y, entry });
         y
     }
 
@@ -471,20 +466,20 @@ impl SparseMatrix {
 }
 
 /// The product A x, added to y, of which `entry` makes the entries of A.
-struct Product<'a, E> {
+struct AddedProduct<'a, E> {
     matrix: &'a SparseMatrix,
     x: &'a [f64],
     y: &'a mut [f64],
     entry: E,
 }
 
-impl<E: Fn(f64) -> f64> WithSimd for Product<'_, E> {
+impl<E: Fn(f64) -> f64> WithSimd for AddedProduct<'_, E> {
     type Output = ();
 
     // A plain closure would be a call to code that is not compiled for the processor.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Product { matrix, x, y, entry } = self;
+        let AddedProduct { matrix, x, y, entry } = self;
         for (column, &at_column) in x.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
             matrix.with_rows(column, y, |y, value| *y += entry(value) * at_column);
         }
@@ -492,9 +487,6 @@ impl<E: Fn(f64) -> f64> WithSimd for Product<'_, E> {
 }
 
 /// The rows of a matrix are numbered by 32 bits.
-///
-/// # Errors
-/// [`Error::Pattern`] for more rows.
 fn check_rows(rows: usize) -> Result<(), Error> {
     match u32::try_from(rows) {
         Ok(_) => Ok(()),

@@ -1,9 +1,10 @@
-//! The null vectors of a positive semidefinite matrix.
+//! The null vectors of a positive semidefinite matrix, and what distinguishes a positive definite matrix from a
+//! singular one that passed its Cholesky factorisation by rounding.
 
-use super::definite::NULL_ROUNDING;
+use super::power_iteration::{generic, power_iteration};
 use super::{
-    Analysis, AugmentedMatrix, Cholesky, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot, largest, norm,
-    take_out,
+    Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot,
+    largest, norm, take_out,
 };
 use crate::watch::Watch;
 
@@ -30,7 +31,21 @@ const EXACT: f64 = 1e-26;
 /// corrections.
 const NO_ENTRY: f64 = 1e-24;
 
-/// A basis of the null space of a matrix.
+/// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is
+/// computed.
+const SAFE_PIVOT: f64 = 1e-9;
+
+/// `norm(A x)` of a null vector x is rounding: up to this many units in the last place of the terms that cancel.
+const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
+const SOFTEST_STEPS: usize = 5;
+
+/// On a diagonal of order one, a negative eigenvalue above this, or above this for each column, is rounding of the
+/// entries and of the factor.
+const LEAST_NEGATIVE: f64 = 1e-12;
+const NEGATIVE_BY_COLUMN: f64 = 8.0 * f64::EPSILON;
+
 #[derive(Clone, Debug, Default)]
 pub struct NullSpace {
     /// Linearly independent vectors of length about one.
@@ -53,7 +68,6 @@ impl NullSpace {
     /// coefficients and right-hand sides*, Numer. Math. 6 (1964) 405-409.
     pub const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
 
-    /// Returns `true` if A vanishes exactly on all vectors.
     pub fn is_exact(&self) -> bool {
         self.shares.iter().all(|&share| share == 0.0)
     }
@@ -73,15 +87,52 @@ impl NullSpace {
     }
 }
 
+impl Cholesky {
+    /// Returns `true` if the pivots of this factor alone show that the matrix, with a diagonal of order one, is
+    /// definite.
+    pub fn is_safely_definite(&self) -> bool {
+        self.smallest_pivot() > SAFE_PIVOT
+    }
+
+    /// Returns `true` if `matrix`, with a diagonal of order one and with this factor, is definite beyond rounding.
+    pub fn is_definite(&self, matrix: &SymmetricMatrix) -> bool {
+        if self.is_safely_definite() {
+            return true;
+        }
+        let softest = self.softest_vector();
+        largest(&matrix.mul(&softest)) > NULL_ROUNDING * largest(&matrix.mul_abs(&softest))
+    }
+
+    /// The vector with the least energy, largest entry one, by inverse iteration.
+    pub fn softest_vector(&self) -> Vec<f64> {
+        power_iteration(self.dim(), 0.5, SOFTEST_STEPS, |x| {
+            *x = self.solve(x);
+            true
+        })
+    }
+}
+
 impl SymmetricMatrix {
+    /// Returns `true` if the matrix is positive semidefinite, to rounding: its equilibrated form plus a small multiple
+    /// of the unit matrix has a factor.
+    pub(crate) fn is_semidefinite(&self) -> Result<bool, FactorError> {
+        let diagonal = self.diagonal();
+        let has_none = |dof: usize| diagonal[dof] == 0.0;
+        let is_free = |row: usize, column: usize| row != column && (has_none(row) || has_none(column));
+        if diagonal.iter().any(|&value| value < 0.0)
+            || self.lower().triplets().any(|(row, column, value)| value != 0.0 && is_free(row, column))
+        {
+            return Ok(false);
+        }
+        let shift = LEAST_NEGATIVE.max(NEGATIVE_BY_COLUMN * self.dim() as f64);
+        Ok(Equilibration::of(self).apply(self).shifted_factor(shift)?.is_some())
+    }
+
     /// A basis of the null space of a positive semidefinite matrix with a diagonal of order one or zero; `None` if it
     /// has more than 256 vectors.
     ///
     /// Inverse iteration with A + 1e-10 I, each vector orthogonal to those before, ends at the first vector with
     /// energy; `shifts` are those of this matrix.
-    ///
-    /// # Errors
-    /// [`FactorError::NotPositiveDefinite`] if an eigenvalue is clearly negative, and those of the factorisation.
     pub(crate) fn null_space(&self, shifts: &AugmentedMatrix) -> Result<Option<NullSpace>, FactorError> {
         let factor = shifts.shifted(SHIFT)?.ok_or(FactorError::NotPositiveDefinite)?;
         let (mut found, components): (Vec<Vec<f64>>, _) = (Vec::new(), self.components());
@@ -213,9 +264,6 @@ impl SymmetricMatrix {
 
     /// A direction of negative energy, if there is one beyond rounding: largest entry one. `None` also if the `watch`
     /// is over.
-    ///
-    /// # Errors
-    /// Those of the factorisation.
     pub(crate) fn negative_direction(
         &self,
         shifts: &AugmentedMatrix,
@@ -242,9 +290,6 @@ impl SymmetricMatrix {
     }
 
     /// The factor of `A + shift I`; `None` if that is not positive definite.
-    ///
-    /// # Errors
-    /// Those of the factorisation, except for [`FactorError::NotPositiveDefinite`].
     pub(super) fn shifted_factor(&self, shift: f64) -> Result<Option<Cholesky>, FactorError> {
         self.shifts(Analysis::of(self)?)?.shifted(shift)
     }
@@ -276,12 +321,6 @@ pub fn without_noise(mut vector: Vec<Twice>) -> Vec<Twice> {
     vector
 }
 
-/// A vector without symmetry, different for each number, the same in every run.
-pub fn generic(length: usize, number: usize) -> Vec<f64> {
-    let (golden, silver) = (0.618_033_988_749_895, 0.414_213_562_373_095);
-    (0..length).map(|i| (i as f64 * golden + (number + 1) as f64 * silver).fract() - 0.5).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -295,5 +334,20 @@ mod tests {
         let found = direction(&Watch::default()).unwrap();
         assert!((found[0] + found[1]).abs() < 1e-12 && found[0] != 0.0, "{found:?}");
         assert_eq!(direction(&Watch::default().within(0.0)), None);
+    }
+
+    fn is_semidefinite(diagonal: [f64; 2], coupling: f64) -> bool {
+        let entries = [(0, 0, diagonal[0]), (1, 0, coupling), (1, 1, diagonal[1])];
+        let lower = SparseMatrix::from_triplets(2, 2, &entries).unwrap();
+        SymmetricMatrix::from_lower(lower).unwrap().is_semidefinite().unwrap()
+    }
+
+    #[test]
+    fn a_negative_eigenvalue_is_told_from_none() {
+        assert!(is_semidefinite([1e-20, 1e20], 1.0));
+        assert!(is_semidefinite([0.0, 1.0], 0.0));
+        assert!(!is_semidefinite([1e-20, 1e20], 1.0 + 1e-9));
+        assert!(!is_semidefinite([0.0, 1.0], 1e-100));
+        assert!(!is_semidefinite([-1e-100, 1.0], 0.0));
     }
 }

@@ -28,9 +28,6 @@ impl TryFrom<SparseColMatRef<'_, usize, f64>> for SparseMatrix {
     type Error = Error;
 
     /// The same matrix; rows in any order, entries at the same place are added.
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`] for a value that is not finite.
     fn try_from(matrix: SparseColMatRef<'_, usize, f64>) -> Result<Self, Error> {
         let of_column = |column| {
             let entries = matrix.symbolic().row_idx_of_col(column).zip(matrix.val_of_col(column));

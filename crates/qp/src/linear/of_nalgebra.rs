@@ -28,9 +28,6 @@ impl TryFrom<&CscMatrix<f64>> for SparseMatrix {
     type Error = Error;
 
     /// The same matrix, places of zeros included.
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`] for a value that is not finite.
     fn try_from(matrix: &CscMatrix<f64>) -> Result<Self, Error> {
         let (starts, rows, values) = matrix.csc_data();
         SparseMatrix::from_csc(matrix.nrows(), starts.to_vec(), rows.to_vec(), values.to_vec())

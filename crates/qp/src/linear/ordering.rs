@@ -32,9 +32,6 @@ pub struct Fill {
 
 impl Fill {
     /// The fill of the factor of `matrix`, found without a factorisation.
-    ///
-    /// # Errors
-    /// [`FactorError::Failed`] if memory or the index range does not suffice.
     pub fn by_minimum_degree(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
         call(|| {
             let quotient = Quotient::of(matrix.lower());
@@ -48,16 +45,13 @@ impl Fill {
 ///
 /// Columns with the same neighbours (the dofs of a node) are ordered as one, which is faster and gives less fill. The
 /// order is that of minimum degree, or of nested dissection if that is worth its time and needs fewer multiplications.
-///
-/// # Errors
-/// [`FactorError::Failed`] if memory or the index range does not suffice.
 pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, FactorError> {
     let mut quotient = Quotient::of(lower);
     let (by_degree, fill) = minimum_degree(&quotient)?;
     quotient.remove(last);
-    let mut elimination = Elimination::of(&quotient, by_degree)?;
+    let mut elimination = SymbolicElimination::of(&quotient, by_degree)?;
     if fill.is_dissected {
-        let dissected = Elimination::of(&quotient, nested_dissection(&quotient)?)?;
+        let dissected = SymbolicElimination::of(&quotient, nested_dissection(&quotient)?)?;
         if dissected.multiplications < elimination.multiplications {
             elimination = dissected;
         }
@@ -99,7 +93,7 @@ fn nested_dissection(quotient: &Quotient) -> Result<Vec<u32>, FactorError> {
 }
 
 /// The elimination of the groups of a quotient graph in some order; groups without columns are left out.
-struct Elimination {
+struct SymbolicElimination {
     /// The groups in postorder of the elimination tree: each after all of its descendants, and these next to each
     /// other.
     postorder: Vec<u32>,
@@ -107,7 +101,7 @@ struct Elimination {
     multiplications: f64,
 }
 
-impl Elimination {
+impl SymbolicElimination {
     fn of(quotient: &Quotient, mut order: Vec<u32>) -> Result<Self, FactorError> {
         order.retain(|&group| !quotient.members(group).is_empty());
         let count = order.len();
@@ -132,13 +126,13 @@ impl Elimination {
         };
         let multiplications = order.iter().zip(&entries).map(work).sum();
         let postorder = post.into_iter().map(|position| order[position as usize]).collect();
-        Ok(Elimination { postorder, multiplications })
+        Ok(SymbolicElimination { postorder, multiplications })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Elimination, Fill, Quotient, minimum_degree};
+    use super::{Fill, Quotient, SymbolicElimination, minimum_degree};
     use crate::linear::{Analysis, SparseMatrix, SymmetricMatrix};
 
     /// A lattice with this number of nodes along each side, each of three columns that have the same neighbours.
@@ -164,7 +158,7 @@ mod tests {
             let matrix = lattice(sides);
             let (fill, quotient) = (Fill::by_minimum_degree(&matrix).unwrap(), Quotient::of(matrix.lower()));
             let (order, _) = minimum_degree(&quotient).unwrap();
-            let eliminated = Elimination::of(&quotient, order).unwrap().multiplications;
+            let eliminated = SymbolicElimination::of(&quotient, order).unwrap().multiplications;
             let ratio = fill.multiplications / eliminated;
             assert!((0.9..=1.1).contains(&ratio), "{sides:?}: {ratio}");
             // Supernodes add zeros to the factor; for a chain they are as many as its values.

@@ -2,13 +2,13 @@
 
 use super::SparseMatrix;
 use super::grouped::grouped;
+use super::power_iteration::scramble;
 
 /// No group has this number.
 const NONE: u32 = u32::MAX;
 
 /// Groups of columns with the same neighbours, and the pairs of groups that meet.
 pub(super) struct Quotient {
-    /// Group of each column.
     of_column: Vec<u32>,
     /// Members of a group follow each other.
     member_starts: Vec<usize>,
@@ -20,7 +20,6 @@ pub(super) struct Quotient {
 }
 
 impl Quotient {
-    /// The quotient graph of a matrix given by its lower triangle.
     pub fn of(lower: &SparseMatrix) -> Self {
         let (of_column, count) = groups(lower);
         let (member_starts, columns) = grouped(count, &of_column);
@@ -65,7 +64,6 @@ impl Quotient {
         (self.starts, self.all_neighbours) = (starts, neighbours);
     }
 
-    /// Number of groups.
     pub fn count(&self) -> usize {
         self.member_starts.len() - 1
     }
@@ -80,12 +78,10 @@ impl Quotient {
         self.columns.len() as f64 / self.count().max(1) as f64
     }
 
-    /// The columns of a group.
     pub fn members(&self, group: u32) -> &[usize] {
         &self.columns[self.member_starts[group as usize]..self.member_starts[group as usize + 1]]
     }
 
-    /// The groups that meet a group.
     pub fn neighbours(&self, group: u32) -> &[u32] {
         &self.all_neighbours[self.starts[group as usize] as usize..self.starts[group as usize + 1] as usize]
     }
@@ -110,12 +106,12 @@ impl Quotient {
 fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
     let dim = lower.columns();
     // A sum of scrambled indices represents the set of neighbours; a collision costs fill, not correctness.
-    let mut signature: Vec<u64> = (0..dim).map(scramble).collect();
+    let mut signature: Vec<u64> = (0..dim).map(|column| scramble(column as u64)).collect();
     for column in 0..dim {
-        let own = scramble(column);
+        let own = scramble(column as u64);
         let mut sum = signature[column];
         for (row, _) in lower.column(column).filter(|entry| entry.0 != column) {
-            sum = sum.wrapping_add(scramble(row));
+            sum = sum.wrapping_add(scramble(row as u64));
             signature[row] = signature[row].wrapping_add(own);
         }
         signature[column] = sum;
@@ -149,11 +145,4 @@ fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
         };
     }
     (of_column, count as usize)
-}
-
-fn scramble(index: usize) -> u64 {
-    let mut z = (index as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }

@@ -27,7 +27,6 @@ pub trait Real:
     /// The nearest value.
     fn of(value: f64) -> Self;
 
-    /// The same value in double precision.
     fn double(self) -> f64 {
         self.into()
     }

@@ -1,7 +1,9 @@
 //! Long work vectors that are kept for the next use. Up to some length an allocator keeps freed memory itself; beyond
 //! it the system clears every page at each use, and that takes longer than the work on it.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
+
+use crate::watch::locked;
 
 /// Bytes of a vector that is kept: the largest that the allocator of glibc keeps itself (`DEFAULT_MMAP_THRESHOLD_MAX`).
 const LEAST_BYTES: usize = 32 << 20;
@@ -15,14 +17,13 @@ pub struct Spare<T> {
 impl<T: Copy + Default> Spare<T> {
     /// A vector of this length, with any values.
     pub fn take(&self, length: usize) -> Vec<T> {
-        let mut vectors = self.vectors();
+        let mut vectors = locked(&self.vectors);
         match vectors.iter().position(|vector| vector.len() == length) {
             Some(place) => vectors.swap_remove(place),
             None => vec![T::default(); length],
         }
     }
 
-    /// A vector of zeros.
     pub fn zeros(&self, length: usize) -> Vec<T> {
         let mut vector = self.take(length);
         vector.fill(T::default());
@@ -39,12 +40,8 @@ impl<T: Copy + Default> Spare<T> {
     /// Keeps a long vector for the next use of its length.
     pub fn give(&self, vector: Vec<T>) {
         if size_of_val(&vector[..]) > LEAST_BYTES {
-            self.vectors().push(vector);
+            locked(&self.vectors).push(vector);
         }
-    }
-
-    fn vectors(&self) -> MutexGuard<'_, Vec<Vec<T>>> {
-        self.vectors.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::columns::Columns;
 use super::dense::wide_product;
-use super::threads::in_order;
+use super::threads::{SharedRows, in_order};
 use super::{Spare, SparseMatrix};
 use crate::error::Error;
 
@@ -273,17 +273,11 @@ impl SymmetricMatrix {
 
     /// The same; the product is one of these work vectors.
     pub(crate) fn mul_with(&self, threads: usize, x: &[f64], spare: &Spare<f64>) -> Vec<f64> {
-        let starts = self.lower.column_starts();
-        let entries = self.lower.entries();
-        let parts = (entries / PART).clamp(1, MOST_PARTS);
-        if parts == 1 {
+        let columns = SharedRows { starts: self.lower.column_starts(), threads: MOST_PARTS }.runs_of(PART);
+        if columns.len() == 1 {
             return self.mul(x);
         }
-        let mut bounds: Vec<usize> =
-            (0..parts).map(|part| starts.partition_point(|&start| start < entries / parts * part)).collect();
-        bounds.push(self.dim());
-        let columns: Vec<Range<usize>> = bounds.windows(2).map(|pair| pair[0]..pair[1]).collect();
-        let runs = columns.chunks(parts.div_ceil(threads.clamp(1, parts))).collect();
+        let runs = columns.chunks(columns.len().div_ceil(threads.clamp(1, columns.len()))).collect();
         let of_run = |run: &[Range<usize>]| -> Vec<Vec<f64>> {
             run.iter().map(|columns| self.product(columns.clone(), x, |value| value)).collect()
         };

@@ -13,7 +13,6 @@ pub struct Twice {
 }
 
 impl Twice {
-    /// Zero.
     pub const ZERO: Twice = Twice { head: 0.0, tail: 0.0 };
 
     /// The nearest double.
@@ -21,7 +20,6 @@ impl Twice {
         self.head
     }
 
-    /// The magnitude.
     pub fn abs(self) -> Self {
         if self.head < 0.0 { -self } else { self }
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::parse::{Content, Quotes, Values, parse};
+use super::parse::{AllowedValues, Content, Quotes, parse};
 use super::write_columns;
 use super::{format_vector, write_entries};
 use crate::error::Error;
@@ -30,19 +30,19 @@ const MOST_EMPTY: usize = 1_000_000;
 /// [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let file = directory.join(STIFFNESS);
-    let stiffness = read(&file, Values::Finite)?;
+    let stiffness = read(&file, AllowedValues::Finite)?;
     check_filled(&file, &stiffness, stiffness.rows.max(stiffness.columns))?;
     let (is_symmetric, stiffness) = (stiffness.symmetric, matrix(stiffness)?);
     let stiffness =
         if is_symmetric { SymmetricMatrix::from_lower(stiffness) } else { SymmetricMatrix::from_full(&stiffness) }?;
     let load = read_vector(&directory.join("f.mtx"))?;
     let file = directory.join("B.mtx");
-    let contact = read(&file, Values::Finite)?;
+    let contact = read(&file, AllowedValues::Finite)?;
     // A body has many dofs without a contact row: B must have as many columns as the stiffness.
     let empty = if contact.columns == load.len() { contact.rows } else { contact.rows.max(contact.columns) };
     check_filled(&file, &contact, empty)?;
     let contact = matrix(contact)?;
-    let gap = vector(&directory.join("g.mtx"), Values::FiniteOrInfinite)?;
+    let gap = vector(&directory.join("g.mtx"), AllowedValues::FiniteOrInfinite)?;
     let problem = with_equalities(directory, ContactProblem::new(stiffness, load, contact, gap)?)?;
     match near_null(directory, problem.dofs())? {
         Some(near_null) => problem.with_near_null(near_null),
@@ -60,17 +60,13 @@ fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactP
         (false, true) => return missing(rows, "there is e.mtx: every value needs a row of E"),
         (true, true) => {}
     }
-    let content = read(&rows, Values::Finite)?;
+    let content = read(&rows, AllowedValues::Finite)?;
     let fits = content.columns == problem.dofs();
     check_filled(&rows, &content, if fits { content.rows } else { content.rows.max(content.columns) })?;
     problem.with_equalities(&matrix(content)?, read_vector(&values)?)
 }
 
 /// Reads the gaps in `g1.mtx` and the load in `f1.mtx` of a directory, as [`ContactProblem::read_other_end`] describes.
-///
-/// # Errors
-/// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps
-/// that are infinite in other rows.
 pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem, Error> {
     let [gap_file, load_file] = ["g1.mtx", "f1.mtx"].map(|name| directory.join(name));
     if !gap_file.exists() && !load_file.exists() {
@@ -78,7 +74,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
             "it is missing, and so is f1.mtx: a sweep needs the gaps or the load of the other end".to_string();
         return Err(fault(gap_file, message));
     }
-    let end = |file: &Path, values: Values, own: &[f64], of: &str| {
+    let end = |file: &Path, values: AllowedValues, own: &[f64], of: &str| {
         if !file.exists() {
             return Ok(own.to_vec());
         }
@@ -88,8 +84,8 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
         }
         Err(fault(file.to_path_buf(), format!("it has length {}, but there are {} {of}", end.len(), own.len())))
     };
-    let gap = end(&gap_file, Values::FiniteOrInfinite, problem.inequalities_given().1, "contact rows")?;
-    let load = end(&load_file, Values::Finite, problem.load(), "dofs")?;
+    let gap = end(&gap_file, AllowedValues::FiniteOrInfinite, problem.inequalities_given().1, "contact rows")?;
+    let load = end(&load_file, AllowedValues::Finite, problem.load(), "dofs")?;
     let last = problem.with(load, gap)?;
     let mut rows = problem.gap().iter().zip(last.gap()).enumerate();
     match rows.find(|(_, (first, last))| first.is_finite() != last.is_finite()) {
@@ -109,7 +105,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
 fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
     let file = directory.join("near_null.mtx");
     if file.exists() {
-        let content = read(&file, Values::Finite)?;
+        let content = read(&file, AllowedValues::Finite)?;
         if content.rows != dofs || content.columns == 0 {
             let found = format!("it is {} x {}", content.rows, content.columns);
             return Err(fault(
@@ -124,7 +120,7 @@ fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Err
     if !file.exists() {
         return Ok(None);
     }
-    let content = read(&file, Values::Finite)?;
+    let content = read(&file, AllowedValues::Finite)?;
     let (nodes, dimension) = (content.rows, content.columns);
     if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
         let message = format!(
@@ -176,23 +172,17 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
 /// # Errors
 /// [`Error::File`] and [`Error::FileSyntax`].
 pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
-    vector(file, Values::Finite)
+    vector(file, AllowedValues::Finite)
 }
 
 /// A vector, in the unit of its file, that may have the entries `-inf` and `inf`.
-///
-/// # Errors
-/// As [`read_vector`].
 pub fn read_bounds(file: &Path) -> Result<Vec<f64>, Error> {
-    vector(file, Values::Bounds)
+    vector(file, AllowedValues::Bounds)
 }
 
 /// All entries of a file; if it is symmetric, it holds the lower triangle only.
-///
-/// # Errors
-/// As [`read_vector`].
 pub fn read_matrix(file: &Path) -> Result<SparseMatrix, Error> {
-    let mut content = read(file, Values::Finite)?;
+    let mut content = read(file, AllowedValues::Finite)?;
     check_filled(file, &content, content.rows.max(content.columns))?;
     if content.symmetric {
         let below = content.entries.iter().filter(|(row, column, _)| row != column);
@@ -202,7 +192,7 @@ pub fn read_matrix(file: &Path) -> Result<SparseMatrix, Error> {
     matrix(content)
 }
 
-fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
+fn vector(file: &Path, values: AllowedValues) -> Result<Vec<f64>, Error> {
     let content = read(file, values)?;
     if content.columns != 1 && content.rows != 1 {
         let message = format!("a vector has one column, but this is {} x {}", content.rows, content.columns);
@@ -229,7 +219,7 @@ pub fn solution_files(solution: &Solution) -> Vec<(&'static str, String)> {
     vectors.into_iter().filter(is_there).map(|(name, values)| (name, format_vector(values))).collect()
 }
 
-fn read(file: &Path, values: Values) -> Result<Content, Error> {
+fn read(file: &Path, values: AllowedValues) -> Result<Content, Error> {
     parse(file, open_capped(file, MOST_OF_MATRIX)?, values, quotes(file))
 }
 

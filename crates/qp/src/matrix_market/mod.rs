@@ -9,7 +9,6 @@
 //! R. F. Boisvert, R. Pozo, K. A. Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
 
 mod directory;
-mod lines;
 mod parse;
 
 pub use directory::{

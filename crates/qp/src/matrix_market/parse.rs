@@ -1,10 +1,16 @@
 //! Reading the text of a Matrix Market file, line by line; every error names its line.
 
-use std::path::Path;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
 
-use super::lines::Lines;
 use crate::error::Error;
 use crate::file::Capped;
+
+/// Bytes of a text that are read at a time.
+const PIECE: usize = 1 << 20;
+
+/// Bytes of a line beyond this number are skipped: no valid line is as long.
+const LONGEST: usize = 1 << 16;
 
 /// More rows or columns than this are refused before anything is allocated.
 const LARGEST_DIMENSION: usize = 100_000_000;
@@ -12,7 +18,6 @@ const LARGEST_DIMENSION: usize = 100_000_000;
 /// The content of a file: shape, entries (indices from 0), and whether only one triangle is stored.
 #[derive(Debug)]
 pub(super) struct Content {
-    /// The line with the sizes.
     pub line: usize,
     pub rows: usize,
     pub columns: usize,
@@ -31,7 +36,7 @@ const LONGEST_EXCERPT: usize = 80;
 
 /// The values that a file may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Values {
+pub(super) enum AllowedValues {
     Finite,
     /// Gaps: `inf` is a row without obstacle.
     FiniteOrInfinite,
@@ -48,9 +53,9 @@ pub(super) enum Quotes {
 }
 
 /// Parses an open file; errors name its path.
-pub(super) fn parse(file: &Path, text: Capped, values: Values, quotes: Quotes) -> Result<Content, Error> {
-    let source = Source { file, length: text.length, values, quotes };
-    let mut lines = Lines::of(file, text);
+pub(super) fn parse(file: &Path, text: Capped, values: AllowedValues, quotes: Quotes) -> Result<Content, Error> {
+    let source = TextSource { file, length: text.length, values, quotes };
+    let mut lines = TextLines::of(file, text);
     let header = match lines.next()? {
         Some((_, first)) => source.header(first)?,
         None => return Err(source.fault(1, "the file is empty")),
@@ -68,11 +73,11 @@ pub(super) fn parse(file: &Path, text: Capped, values: Values, quotes: Quotes) -
 }
 
 /// A file and its permitted content.
-struct Source<'a> {
+struct TextSource<'a> {
     file: &'a Path,
     /// Bytes of the file, if known.
     length: u64,
-    values: Values,
+    values: AllowedValues,
     quotes: Quotes,
 }
 
@@ -82,7 +87,7 @@ struct Header {
     symmetric: bool,
 }
 
-impl Source<'_> {
+impl TextSource<'_> {
     fn fault(&self, line: usize, message: impl Into<String>) -> Error {
         Error::FileSyntax { file: self.file.to_path_buf(), line, message: message.into() }
     }
@@ -137,7 +142,7 @@ impl Source<'_> {
     }
 
     /// One value a line, column by column.
-    fn array(&self, mut content: Content, lines: &mut Lines) -> Result<Content, Error> {
+    fn array(&self, mut content: Content, lines: &mut TextLines) -> Result<Content, Error> {
         let Content { rows, columns, symmetric, .. } = content;
         self.make_room(&mut content, rows.saturating_mul(columns));
         let mut places =
@@ -161,7 +166,7 @@ impl Source<'_> {
     }
 
     /// One entry a line: row, column, value.
-    fn coordinates(&self, mut content: Content, announced: usize, lines: &mut Lines) -> Result<Content, Error> {
+    fn coordinates(&self, mut content: Content, announced: usize, lines: &mut TextLines) -> Result<Content, Error> {
         self.make_room(&mut content, announced);
         while let Some((line, words)) = lines.next_data()? {
             let entry = self.entry(&content, words).map_err(|message| self.fault(line, message))?;
@@ -212,15 +217,17 @@ impl Source<'_> {
     }
 }
 
-impl Values {
+impl AllowedValues {
     fn check(self, value: f64) -> Result<(), String> {
         match self {
             _ if value.is_finite() => Ok(()),
-            Values::FiniteOrInfinite if value == f64::INFINITY => Ok(()),
-            Values::Bounds if !value.is_nan() => Ok(()),
-            Values::Bounds => Err(format!("the value is {value}; it must be a number, or -inf or inf without a bound")),
-            Values::Finite => Err(format!("the value is {value}; it must be finite")),
-            Values::FiniteOrInfinite => {
+            AllowedValues::FiniteOrInfinite if value == f64::INFINITY => Ok(()),
+            AllowedValues::Bounds if !value.is_nan() => Ok(()),
+            AllowedValues::Bounds => {
+                Err(format!("the value is {value}; it must be a number, or -inf or inf without a bound"))
+            }
+            AllowedValues::Finite => Err(format!("the value is {value}; it must be finite")),
+            AllowedValues::FiniteOrInfinite => {
                 Err(format!("the value is {value}; it must be finite, or inf for a row without obstacle"))
             }
         }
@@ -237,5 +244,63 @@ impl Quotes {
             (Quotes::Allowed, Some((end, _))) => format!("`{}...`", &words[..end]),
             (Quotes::Allowed, None) => format!("`{words}`"),
         }
+    }
+}
+
+/// The lines of a file, one at a time.
+struct TextLines {
+    file: PathBuf,
+    reader: BufReader<Capped>,
+    number: usize,
+    bytes: Vec<u8>,
+    text: String,
+}
+
+impl TextLines {
+    /// Before the first line.
+    fn of(file: &Path, text: Capped) -> Self {
+        let reader = BufReader::with_capacity(PIECE, text);
+        TextLines { file: file.to_path_buf(), reader, number: 0, bytes: Vec::new(), text: String::new() }
+    }
+
+    fn number(&self) -> usize {
+        self.number
+    }
+
+    /// The next line, with its number from 1 and without blanks at its ends.
+    fn next(&mut self) -> Result<Option<(usize, &str)>, Error> {
+        let there = self.advance().map_err(|source| Error::File { action: "read", path: self.file.clone(), source })?;
+        Ok(there.then(|| (self.number, self.text.trim())))
+    }
+
+    /// The next line that is neither blank nor a comment.
+    fn next_data(&mut self) -> Result<Option<(usize, &str)>, Error> {
+        loop {
+            match self.next()? {
+                None => return Ok(None),
+                Some((_, line)) if line.is_empty() || line.starts_with('%') => {}
+                Some(_) => return Ok(Some((self.number, self.text.trim()))),
+            }
+        }
+    }
+
+    /// Reads a line; `false` at the end of the file.
+    fn advance(&mut self) -> io::Result<bool> {
+        self.bytes.clear();
+        self.reader.by_ref().take(LONGEST as u64).read_until(b'\n', &mut self.bytes)?;
+        if self.bytes.is_empty() {
+            return Ok(false);
+        }
+        if self.bytes.len() == LONGEST && !self.bytes.ends_with(b"\n") {
+            self.reader.skip_until(b'\n')?;
+        }
+        self.number += 1;
+        // Comments of older collections hold names in other encodings; the numbers are always ASCII.
+        let text = String::from_utf8_lossy(&self.bytes);
+        // Some editors put a byte order mark in front.
+        let mark = if self.number == 1 { "\u{feff}" } else { "" };
+        self.text.clear();
+        self.text.push_str(text.strip_prefix(mark).unwrap_or(&text));
+        Ok(true)
     }
 }

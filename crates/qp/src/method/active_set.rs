@@ -42,7 +42,6 @@ const PATIENCE: usize = 3;
 /// The active-set loop on a scaled problem.
 #[derive(Clone, Copy)]
 pub struct ActiveSet<'a> {
-    /// The scaled problem that the loop solves.
     pub scaled: &'a ScaledProblem<'a>,
     /// Largest number of sets, each with a factorisation.
     pub most_iterations: usize,
@@ -50,9 +49,6 @@ pub struct ActiveSet<'a> {
 
 impl Solver for ActiveSet<'_> {
     /// Runs the loop from the contact set of `start`.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let scaled = self.scaled;
         let rows = scaled.problem.rows();
@@ -101,9 +97,6 @@ impl Solver for ActiveSet<'_> {
 
 /// The factor of an earlier set for the steps of a loop, if K is definite, every row bounds one dof, and a factor is
 /// expensive.
-///
-/// # Errors
-/// [`Error::Numerical`] for lack of memory.
 fn earlier_factor<'a>(scaled: &ScaledProblem<'a>) -> Result<Option<EarlierFactor<'a>>, Error> {
     if !scaled.is_definite() || scaled.compliance.is_some() {
         return Ok(None);
@@ -115,9 +108,6 @@ fn earlier_factor<'a>(scaled: &ScaledProblem<'a>) -> Result<Option<EarlierFactor
 /// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the
 /// factor of an `earlier` set if that takes few steps, or by the compliance of the rows if they do not follow from each
 /// other, otherwise by its own. The ending of the loop if there is none.
-///
-/// # Errors
-/// As [`ScaledProblem::hold_with_more`].
 fn balance(
     scaled: &ScaledProblem,
     earlier: &mut Option<EarlierFactor>,
@@ -143,9 +133,6 @@ fn balance(
 
 /// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if
 /// they do not hold the body, or contradict each other.
-///
-/// # Errors
-/// [`Error::Numerical`] for lack of memory.
 pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
     let by_compliance = |compliance| by_compliance(scaled, compliance, closed, |_| true);
     let balance = match scaled.compliance.and_then(by_compliance) {
@@ -229,7 +216,6 @@ fn wrong_rows(
     })
 }
 
-/// The sum of the magnitudes.
 fn sum_of(values: &[f64]) -> f64 {
     values.iter().map(|value| value.abs()).sum()
 }

@@ -91,7 +91,7 @@ impl<'a> EarlierFactor<'a> {
         let (load, parts) = (problem.load(), problem.parts());
         let mut u: Vec<f64> = held.iter().zip(near).map(|(held, &near)| held.unwrap_or(near)).collect();
         let enough = ENOUGH * dot(&u, &problem.stiffness().mul(&u));
-        let mut task = Task { factor, problem, held: &held, enough, steps_left: self.most_steps };
+        let mut task = SetBalance { factor, problem, held: &held, enough, steps_left: self.most_steps };
         let mut last = f64::INFINITY;
         let force = loop {
             let elastic = problem.stiffness().mul(&u);
@@ -120,7 +120,7 @@ impl<'a> EarlierFactor<'a> {
 }
 
 /// A set and the data of its balance.
-struct Task<'a> {
+struct SetBalance<'a> {
     factor: &'a (Cholesky, Vec<bool>),
     problem: &'a ContactProblem,
     held: &'a [Option<f64>],
@@ -129,7 +129,7 @@ struct Task<'a> {
     steps_left: usize,
 }
 
-impl Task<'_> {
+impl SetBalance<'_> {
     fn on_free(&self, mut force: Vec<f64>) -> Vec<f64> {
         force.iter_mut().zip(self.held).filter(|entry| entry.1.is_some()).for_each(|(force, _)| *force = 0.0);
         force

@@ -78,7 +78,6 @@ pub fn by_compliance(
     balance.consistent.then_some(balance)
 }
 
-/// The way to correct a balance.
 struct Correcting<C, N> {
     /// The weight of the distances in the force that is left.
     weight: f64,

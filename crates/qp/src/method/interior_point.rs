@@ -22,7 +22,6 @@ const UNIT_EXPONENT: i32 = 6;
 /// A displacement below 2 to minus this power is only the tolerance.
 const NOTHING_EXPONENT: i32 = 60;
 
-/// Largest number of corrections of the unit.
 const UNIT_CORRECTIONS: usize = 4;
 
 /// Number of steps after which more do not help: on ill-conditioned data the residuals stall while the barrier
@@ -73,9 +72,6 @@ impl Solver for Barrier<'_> {
     ///
     /// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the
     /// outcome is then unsettled, and at rest if there is no answer in it.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if the solver refuses its input.
     fn solve(&self, _: Start) -> Result<Outcome, Error> {
         let (problem, watch) = (self.scaled.problem, self.scaled.watch());
         if problem.rows() == 0 {

@@ -16,5 +16,5 @@ mod start;
 mod support;
 
 pub(crate) use scaled::SIGN_TOLERANCE;
-pub use scaled::{Definiteness, Ending, Outcome, ScaledProblem, Solver};
+pub use scaled::{Ending, Outcome, ScaledProblem, Solver};
 pub use start::Start;

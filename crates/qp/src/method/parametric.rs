@@ -28,7 +28,7 @@ const CHANGES_PER_ROW: usize = 50;
 
 /// The compliance of the contact rows, with the violation of the free body as a function of t.
 #[derive(Clone, Debug)]
-pub struct Compliance {
+pub struct ParametricLcp {
     /// G, column by column.
     matrix: Vec<f64>,
     constant: Vec<f64>,
@@ -66,10 +66,10 @@ impl Piece {
     }
 }
 
-impl Compliance {
+impl ParametricLcp {
     /// From the symmetric matrix G (m x m, column by column) and b(t) = `constant` + t `slope`.
     pub fn new(matrix: Vec<f64>, constant: Vec<f64>, slope: Vec<f64>) -> Self {
-        Compliance { matrix, constant, slope }
+        ParametricLcp { matrix, constant, slope }
     }
 
     /// The violation of every row for a unit multiplier of one row.
@@ -121,10 +121,6 @@ impl Compliance {
     }
 
     /// Walks from t = 0 to t = 1, from the set that holds at the beginning.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if the closed rows are dependent beyond repair, or if the walk does not end;
-    /// [`Error::Interrupted`].
     pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>), Error> {
         let (mut pieces, mut events) = (Vec::new(), Vec::new());
         let mut closed = ContactSet::open(self.rows());
@@ -139,7 +135,7 @@ impl Compliance {
             let line = self.respond(&closed)?;
             let force =
                 closed.iter().map(|row| line.constant[row].abs().max(line.slope[row].abs())).fold(0.0, f64::max);
-            let scales = Scales { length: SIGN_TOLERANCE * length, force: SIGN_TOLERANCE * force };
+            let scales = RoundingScales { length: SIGN_TOLERANCE * length, force: SIGN_TOLERANCE * force };
             let next = (0..self.rows())
                 .filter_map(|row| line.change(row, &scales).map(|t| (t.max(now), row)))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
@@ -171,7 +167,7 @@ impl Compliance {
 
     /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found from
     /// `next` by block pivoting on these rows, and by single pivots if that does not help.
-    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: &Scales) -> Result<ContactSet, Error> {
+    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: &RoundingScales) -> Result<ContactSet, Error> {
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {
             let line = self.respond(&next)?;
@@ -189,7 +185,7 @@ impl Compliance {
 }
 
 /// Slopes and values below these are rounding.
-struct Scales {
+struct RoundingScales {
     length: f64,
     force: f64,
 }
@@ -207,16 +203,16 @@ impl Linear {
         self.constant[row] + t * self.slope[row]
     }
 
-    fn rounding(&self, row: usize, scales: &Scales) -> f64 {
+    fn rounding(&self, row: usize, scales: &RoundingScales) -> f64 {
         if self.closed.contains(row) { scales.force } else { scales.length }
     }
 
     /// The t at which the row changes sides, if it moves in that direction.
-    fn change(&self, row: usize, scales: &Scales) -> Option<f64> {
+    fn change(&self, row: usize, scales: &RoundingScales) -> Option<f64> {
         (self.slope[row] > self.rounding(row, scales)).then(|| -self.constant[row] / self.slope[row])
     }
 
-    fn is_weak(&self, row: usize, t: f64, scales: &Scales) -> bool {
+    fn is_weak(&self, row: usize, t: f64, scales: &RoundingScales) -> bool {
         self.at(row, t).abs() <= self.rounding(row, scales)
     }
 }

@@ -56,7 +56,7 @@ impl Default for Penalty {
 
 /// An accuracy, with the bound that must meet it.
 #[derive(Clone, Copy)]
-pub struct Goal<'a> {
+pub struct AccuracyGoal<'a> {
     /// Relative error in the energy norm.
     pub accuracy: f64,
     /// The bound of an answer (displacement, multiplier).
@@ -68,10 +68,9 @@ pub struct Goal<'a> {
 pub struct PenaltyLoop<'a> {
     /// The scaled problem with penalties on its rows.
     pub scaled: &'a ScaledProblem<'a>,
-    /// The ladder.
     pub ladder: Penalty,
     /// The relative energy error at which the ladder ends, if any.
-    pub goal: Option<Goal<'a>>,
+    pub goal: Option<AccuracyGoal<'a>>,
     /// Largest number of factorisations on all rungs together.
     pub most_iterations: usize,
 }
@@ -87,18 +86,15 @@ const FINAL_SOLVES: usize = 2;
 
 impl Solver for PenaltyLoop<'_> {
     /// Climbs the ladder from the contact set of `start`.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let PenaltyLoop { scaled, ladder, .. } = self;
         let mut climb = Climb::new(scaled.problem, start);
         let mut penalty = ladder.first;
-        let mut rung_before: Option<Rung> = None;
+        let mut rung_before: Option<PenaltyRung> = None;
         let mut last_bound = f64::INFINITY;
         let answer = loop {
             self.settle(&mut climb, penalty)?;
-            let rung = Rung::new(&climb.state, climb.closed.clone(), penalty);
+            let rung = PenaltyRung::new(&climb.state, climb.closed.clone(), penalty);
             let answer = match self.ladder.extrapolate && climb.is_settled() {
                 true => self.extrapolated(&rung, rung_before.as_ref())?,
                 false => rung.clone(),
@@ -123,7 +119,7 @@ impl Solver for PenaltyLoop<'_> {
             (true, false) => "",
             (true, true) => "-extrapolated",
         };
-        let Rung { displacement, multiplier, .. } = answer;
+        let PenaltyRung { displacement, multiplier, .. } = answer;
         let Climb { closed: contact_set, history, ending, .. } = climb;
         Ok(Outcome { displacement, multiplier, contact_set, iterations: history.len(), history, ending, variant })
     }
@@ -149,7 +145,7 @@ impl PenaltyLoop<'_> {
                 }
             };
             climb.history.push(Iteration { contact_set: climb.closed.clone(), penalty });
-            let springs = Springs { factor: &cholesky, closed: &climb.closed, penalty };
+            let springs = PenaltySprings { factor: &cholesky, closed: &climb.closed, penalty };
             climb.state.advance(scaled.problem, &springs);
             let next = ContactSet::from_fn(scaled.problem.rows(), |row| climb.state.violation[row] > 0.0);
             climb.ending = Ending::of(next == climb.closed);
@@ -162,7 +158,7 @@ impl PenaltyLoop<'_> {
     }
 
     /// The answer of a rung, extrapolated from the one `before`, or from one below it if their sets differ.
-    fn extrapolated(&self, rung: &Rung, before: Option<&Rung>) -> Result<Rung, Error> {
+    fn extrapolated(&self, rung: &PenaltyRung, before: Option<&PenaltyRung>) -> Result<PenaltyRung, Error> {
         Ok(match before {
             Some(before) if before.closed == rung.closed => rung.extrapolated(before),
             _ => rung_below(self.scaled, rung)?.map_or_else(|| rung.clone(), |below| rung.extrapolated(&below)),
@@ -197,33 +193,32 @@ impl Climb {
     }
 }
 
-/// The answer of one penalty.
 #[derive(Clone)]
-struct Rung {
+struct PenaltyRung {
     penalty: f64,
     closed: ContactSet,
     displacement: Vec<f64>,
     multiplier: Vec<f64>,
 }
 
-impl Rung {
+impl PenaltyRung {
     fn new(state: &State, closed: ContactSet, penalty: f64) -> Self {
         let force = |(row, violation): (usize, &f64)| {
             if closed.contains(row) { -penalty * violation.max(0.0) } else { 0.0 }
         };
         let multiplier = state.violation.iter().enumerate().map(force).collect();
-        Rung { penalty, displacement: state.displacement.clone(), multiplier, closed }
+        PenaltyRung { penalty, displacement: state.displacement.clone(), multiplier, closed }
     }
 
     /// Richardson's extrapolation to an infinite penalty: to the first order, the error of either answer is
     /// proportional to one over its penalty.
-    fn extrapolated(&self, before: &Rung) -> Rung {
+    fn extrapolated(&self, before: &PenaltyRung) -> PenaltyRung {
         let share = before.penalty / (self.penalty - before.penalty);
         let beyond = |now: &[f64], before: &[f64]| -> Vec<f64> {
             now.iter().zip(before).map(|(now, before)| now + share * (now - before)).collect()
         };
         let multiplier = beyond(&self.multiplier, &before.multiplier);
-        Rung {
+        PenaltyRung {
             displacement: beyond(&self.displacement, &before.displacement),
             multiplier: multiplier.into_iter().map(|value| value.min(0.0)).collect(),
             ..self.clone()
@@ -232,17 +227,17 @@ impl Rung {
 }
 
 /// The answer with the same set and a tenth of the penalty; `None` if that set no longer holds the body.
-fn rung_below(scaled: &ScaledProblem, rung: &Rung) -> Result<Option<Rung>, Error> {
+fn rung_below(scaled: &ScaledProblem, rung: &PenaltyRung) -> Result<Option<PenaltyRung>, Error> {
     let penalty = rung.penalty / RUNG;
     let mut state = State { displacement: rung.displacement.clone(), violation: Vec::new() };
     let Some(cholesky) = scaled.hold(&rung.closed, penalty)? else { return Ok(None) };
-    let springs = Springs { factor: &cholesky, closed: &rung.closed, penalty };
+    let springs = PenaltySprings { factor: &cholesky, closed: &rung.closed, penalty };
     (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled.problem, &springs));
-    Ok(Some(Rung::new(&state, rung.closed.clone(), penalty)))
+    Ok(Some(PenaltyRung::new(&state, rung.closed.clone(), penalty)))
 }
 
 /// Closed rows as springs of one penalty eps.
-struct Springs<'a> {
+struct PenaltySprings<'a> {
     /// K + eps B_C'B_C.
     factor: &'a Cholesky,
     closed: &'a ContactSet,
@@ -257,7 +252,7 @@ struct State {
 
 impl State {
     /// Solves (K + eps B_C'B_C) v = (f - K u) + eps B_C'(g - B u) and moves u to u + v.
-    fn advance(&mut self, problem: &ContactProblem, springs: &Springs) {
+    fn advance(&mut self, problem: &ContactProblem, springs: &PenaltySprings) {
         let distance: Vec<f64> = problem.violation(&self.displacement).iter().map(|violation| -violation).collect();
         let pull: Vec<f64> = distance
             .iter()

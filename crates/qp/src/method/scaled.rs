@@ -17,19 +17,7 @@ pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
 /// A method, together with the problem that it works on.
 pub trait Solver {
     /// The result of the method from `start`.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory, and those of the method.
     fn solve(&self, start: Start) -> Result<Outcome, Error>;
-}
-
-/// The definiteness of a stiffness by itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Definiteness {
-    /// It is positive definite.
-    Definite,
-    /// It may have modes without energy.
-    Semidefinite,
 }
 
 /// A scaled problem with its pattern analysed: the input of every method.
@@ -37,7 +25,8 @@ pub enum Definiteness {
 pub struct ScaledProblem<'a> {
     /// The data, dimensionless and of order one.
     pub problem: &'a ContactProblem,
-    definiteness: Definiteness,
+    /// `true` if the stiffness is definite by itself: it has no modes without energy.
+    is_definite: bool,
     augmented: &'a Augmented,
     /// The compliance of the rows, by which a method balances forces; `None` if factors of the augmented matrix cost
     /// less.
@@ -49,9 +38,9 @@ pub struct ScaledProblem<'a> {
 
 impl<'a> ScaledProblem<'a> {
     /// The problem with its K + B'B.
-    pub fn new(problem: &'a ContactProblem, augmented: &'a Augmented, definiteness: Definiteness) -> Self {
+    pub fn new(problem: &'a ContactProblem, augmented: &'a Augmented, is_definite: bool) -> Self {
         let (swept_load, factor_seconds, watch) = (OnceCell::new(), Cell::new(0.0), Watch::default());
-        ScaledProblem { problem, definiteness, augmented, compliance: None, swept_load, factor_seconds, watch }
+        ScaledProblem { problem, is_definite, augmented, compliance: None, swept_load, factor_seconds, watch }
     }
 
     /// The same problem, balanced by the compliance of its rows.
@@ -69,9 +58,8 @@ impl<'a> ScaledProblem<'a> {
         self.swept_load.get_or_init(|| compliance.swept(self.problem.load())).clone()
     }
 
-    /// Returns `true` if K is positive definite by itself.
     pub fn is_definite(&self) -> bool {
-        self.definiteness == Definiteness::Definite
+        self.is_definite
     }
 
     /// The watch that the loops check, and to which they report their iterations.
@@ -85,25 +73,16 @@ impl<'a> ScaledProblem<'a> {
     }
 
     /// The analysed pattern of K + B'B.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub(super) fn augmented(&self) -> Result<&AugmentedMatrix, Error> {
         Ok(self.augmented.matrix()?)
     }
 
     /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub(super) fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> Result<SymmetricMatrix, Error> {
         Ok(self.augmented()?.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift))
     }
 
     /// The factor of such a matrix; `None` if it is not positive definite.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub(super) fn factor(&self, matrix: SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
         let clock = Instant::now();
         let factor = if_definite(self.augmented()?.factor(matrix));

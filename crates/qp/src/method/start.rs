@@ -28,7 +28,6 @@ use crate::solution::{ContactSet, Solution};
 pub struct Start {
     /// A displacement near the answer, one entry per dof.
     pub(crate) displacement: Option<Vec<f64>>,
-    /// A contact set near that of the answer.
     pub(crate) contact_set: Option<ContactSet>,
 }
 
@@ -55,9 +54,6 @@ impl Start {
     }
 
     /// Refuses a start that does not fit a problem with this number of dofs and rows, or is not finite.
-    ///
-    /// # Errors
-    /// [`Error::Length`], [`Error::NotFinite`].
     pub(crate) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
         let lengths = [
             ("the displacement to start from", self.displacement.as_ref().map(Vec::len), dofs, "dofs"),

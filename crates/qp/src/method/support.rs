@@ -37,9 +37,6 @@ impl ScaledProblem<'_> {
     /// The start of a loop: C = 0 if K is definite; otherwise all rows are replaced by springs, which hold the body,
     /// and those in compression are closed. `None` if not even all rows together hold the body, or if K is not positive
     /// semidefinite to the largest of the shifts.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub fn start(&self) -> Result<Option<ContactSet>, Error> {
         let (rows, nothing_closed) = (self.problem.rows(), ContactSet::open(self.problem.rows()));
         if self.is_definite() {
@@ -56,9 +53,6 @@ impl ScaledProblem<'_> {
     }
 
     /// The factor of K + weight B_C'B_C; `None` if the rows of C do not hold the body.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Option<Cholesky>, Error> {
         let matrix = self.matrix(closed, weight, 0.0)?;
         // If K is definite by itself, this is not checked again.
@@ -69,9 +63,6 @@ impl ScaledProblem<'_> {
 
     /// The same, once those rows have joined C that stop its free modes from `displacement`. The ending of a loop if
     /// there is no factor: no row stops a mode, the energy is negative along some direction, or time is over.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub fn hold_with_more(
         &self,
         closed: &mut ContactSet,

@@ -17,12 +17,12 @@ type Entries = Vec<(usize, f64)>;
 pub(super) struct Bonded {
     /// The transpose of Z: its column i is the row of Z of unknown i.
     lift: SparseMatrix,
-    pivots: Vec<Pivot>,
+    pivots: Vec<BondedUnknown>,
 }
 
 /// An unknown that a combination of rows determines.
 #[derive(Clone, Debug)]
-struct Pivot {
+struct BondedUnknown {
     unknown: usize,
     /// The combination of rows, by their indices in B: one at the unknown, zero at the unknowns of other pivots.
     entries: Entries,
@@ -32,12 +32,9 @@ struct Pivot {
 impl Bonded {
     /// The space in which the rows of B (m x n) with the indices `closed` vanish. The unknowns of `first` are
     /// eliminated where they can be; otherwise that with the largest entry of a row.
-    ///
-    /// # Errors
-    /// [`Error::IndexOutOfRange`] for a row beyond the last.
     pub fn of(rows: &SparseMatrix, closed: &[usize], first: &[usize]) -> Result<Self, Error> {
         let by_row = rows.transposed();
-        let mut pivots: Vec<Pivot> = Vec::with_capacity(closed.len());
+        let mut pivots: Vec<BondedUnknown> = Vec::with_capacity(closed.len());
         // The pivot that determines an unknown, and the pivots that may have an entry there.
         let (mut pivot_of, mut holders) = (HashMap::new(), HashMap::<usize, Vec<usize>>::new());
         for &row in closed {
@@ -50,7 +47,7 @@ impl Bonded {
             let (mut entries, mut made_of) = (given.clone(), vec![(row, 1.0)]);
             for (unknown, value) in given {
                 if let Some(&known) = pivot_of.get(&unknown) {
-                    let Pivot { entries: other, made_of: of_other, .. }: &Pivot = &pivots[known];
+                    let BondedUnknown { entries: other, made_of: of_other, .. }: &BondedUnknown = &pivots[known];
                     entries = plus(&entries, -value, other);
                     made_of = plus(&made_of, -value, of_other);
                     entries.retain(|entry| entry.0 != unknown);
@@ -76,7 +73,7 @@ impl Bonded {
             let others = entries.iter().filter(|entry| entry.0 != unknown);
             others.for_each(|entry| holders.entry(entry.0).or_default().push(number));
             pivot_of.insert(unknown, number);
-            pivots.push(Pivot { unknown, entries, made_of });
+            pivots.push(BondedUnknown { unknown, entries, made_of });
         }
         // The place of each unknown that is left.
         let (mut place, mut kept) = (vec![0; rows.columns()], 0);
@@ -108,9 +105,6 @@ impl Bonded {
     }
 
     /// The matrix `Z'A Z` of a matrix A (n x n).
-    ///
-    /// # Errors
-    /// [`Error::Length`] for a matrix of another size, [`Error::NotFinite`] if its entries overflow.
     pub fn reduced<'a>(&self, matrix: &'a SymmetricMatrix) -> Result<Cow<'a, SymmetricMatrix>, Error> {
         match self.is_free() && matrix.dim() == self.lift.columns() {
             true => Ok(Cow::Borrowed(matrix)),
@@ -127,7 +121,7 @@ impl Bonded {
     /// which must be such a sum. Rows that are not closed, or follow from others, have zero.
     pub fn multiplier(&self, rows: usize, force: &[f64]) -> Vec<f64> {
         let mut multiplier = vec![0.0; rows];
-        for Pivot { unknown, made_of, .. } in &self.pivots {
+        for BondedUnknown { unknown, made_of, .. } in &self.pivots {
             for &(row, share) in made_of.iter().filter(|entry| entry.0 < rows) {
                 multiplier[row] += share * force[*unknown];
             }

@@ -112,7 +112,7 @@ impl ContactProblem {
         let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
         let bonded = Bonded::of(self.contact(), &rows, first)?;
         let reduced = [bonded.reduced(self.stiffness())?, bonded.reduced(mass)?];
-        let Found { values, vectors, residuals, is_complete } =
+        let LowestPairs { values, vectors, residuals, is_complete } =
             lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
         let vectors: Vec<Vec<f64>> = vectors.iter().map(|reduced| bonded.lifted(reduced)).collect();
         let multiplier = |(x, value): (&Vec<f64>, &f64)| {
@@ -134,7 +134,7 @@ fn lowest(
     count: usize,
     threads: usize,
     watch: &Watch,
-) -> Result<Found, Error> {
+) -> Result<LowestPairs, Error> {
     // A diagonal of order one of the stiffness, by powers of two. Both matrices change alike: the eigenvalues stay.
     let scale = Equilibration::of(&stiffness.combined(1.0, 0.0, mass)?);
     let scaled = [stiffness, mass].map(|matrix| scale.apply(matrix));
@@ -157,7 +157,7 @@ fn lowest(
         vector.iter_mut().for_each(|value| *value *= largest.signum());
         vector
     };
-    Ok(Found { vectors: found.vectors.into_iter().map(unscaled).collect(), ..found })
+    Ok(LowestPairs { vectors: found.vectors.into_iter().map(unscaled).collect(), ..found })
 }
 
 /// Both matrices with one pattern, analysed once.
@@ -224,8 +224,7 @@ fn with_mass(pairs: &Pairs, count: usize) -> usize {
     pairs.values.iter().take(count).take_while(|value| **value > least).count()
 }
 
-/// The lowest pairs of a pencil.
-struct Found {
+struct LowestPairs {
     values: Vec<f64>,
     vectors: Vec<Vec<f64>>,
     residuals: Vec<f64>,
@@ -252,7 +251,7 @@ impl Shifted<'_> {
     }
 
     /// The lowest pairs, with the space extended until they have converged.
-    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<Found, Error> {
+    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<LowestPairs, Error> {
         let Pencil { ordered, watch, .. } = self.pencil;
         let count = count.min(ordered.dim());
         let most = 24 * count + MOST_COLUMNS;
@@ -290,7 +289,7 @@ impl Shifted<'_> {
         };
         pairs.values.truncate(with_mass(&pairs, count));
         let vectors = space.vectors(&pairs, pairs.values.len());
-        let mut found = Found { values: Vec::new(), vectors: Vec::new(), residuals: Vec::new(), is_complete };
+        let mut found = LowestPairs { values: Vec::new(), vectors: Vec::new(), residuals: Vec::new(), is_complete };
         let mut all = self.pairs(&vectors);
         all.sort_by(|one, other| one.0.total_cmp(&other.0));
         for (value, residual, vector) in all {
@@ -346,7 +345,6 @@ impl Shifted<'_> {
         Some((widest.2, widest.1))
     }
 
-    /// The product of the operator with columns.
     fn apply(&self, columns: &[f64]) -> Vec<f64> {
         let Pencil { ordered, .. } = self.pencil;
         let swept = |columns: &[f64]| {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::matrix::{Row, Rows, dense_columns};
+use super::matrix::{MatrixRow, RowReader, dense_columns};
 use super::source::{INTEGER, REAL, indices, vector};
 use super::{BLOCK_SIZE, CONTACT, COORDINATES, EQUALITIES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS, VALUES};
 use crate::error::Error;
@@ -26,7 +26,7 @@ const SUPPORTED: u32 = u32::MAX;
 /// [`Error::File`] and [`Error::FileBytes`] for a file that is missing or malformed, [`Error::FileSyntax`] for
 /// `K.petsc.info`, and those of [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
-    let stiffness = Rows::open(&directory.join(STIFFNESS))?;
+    let stiffness = RowReader::open(&directory.join(STIFFNESS))?;
     let (size, columns) = stiffness.shape;
     if columns != size {
         let message = format!("the stiffness is {size} x {columns}; it must have as many columns as rows");
@@ -34,7 +34,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     }
     let places = Places::of(indices(&directory.join(FREE), size)?, size);
     let load = places.load(&directory.join(LOAD))?;
-    let contact = places.rows(Rows::open(&directory.join(CONTACT))?)?;
+    let contact = places.rows(RowReader::open(&directory.join(CONTACT))?)?;
     let gap = gap(&directory.join(GAP), (CONTACT, contact.rows()))?;
     let near_null = places.near_null(directory)?;
     let problem = ContactProblem::new(places.stiffness(stiffness)?, load, contact, gap)?;
@@ -93,7 +93,7 @@ impl Places {
     }
 
     /// Leaves out the columns of supported components, which must be zero.
-    fn leave_out(&self, rows: &Rows, row: &mut Row) -> Result<(), Error> {
+    fn leave_out(&self, rows: &RowReader, row: &mut MatrixRow) -> Result<(), Error> {
         let mut kept = 0;
         for entry in 0..row.columns.len() {
             let (column, value) = (row.columns[entry], row.values[entry]);
@@ -111,13 +111,13 @@ impl Places {
         Ok(())
     }
 
-    fn rows(&self, mut rows: Rows) -> Result<SparseMatrix, Error> {
+    fn rows(&self, mut rows: RowReader) -> Result<SparseMatrix, Error> {
         if rows.shape.1 != self.dof.len() {
             let found = format!("it has {} columns, but {STIFFNESS} has {} rows", rows.shape.1, self.dof.len());
             return Err(rows.wrong_shape(found));
         }
         let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-        let mut row = Row::default();
+        let mut row = MatrixRow::default();
         while rows.read(&mut row)? {
             self.leave_out(&rows, &mut row)?;
             columns.extend(row.columns.iter().map(|&column| column as usize));
@@ -133,13 +133,13 @@ impl Places {
         if !rows.exists() && !values.exists() {
             return Ok(problem);
         }
-        let rows = self.rows(Rows::open(&rows)?)?;
+        let rows = self.rows(RowReader::open(&rows)?)?;
         problem.with_equalities(&rows, gap(&values, (EQUALITIES, rows.rows()))?)
     }
 
-    fn stiffness(&self, mut rows: Rows) -> Result<SymmetricMatrix, Error> {
+    fn stiffness(&self, mut rows: RowReader) -> Result<SymmetricMatrix, Error> {
         let mut matrix = SymmetricLines::of_rows(self.free.len(), rows.entries)?;
-        let mut row = Row::default();
+        let mut row = MatrixRow::default();
         while rows.read(&mut row)? {
             let own = rows.row();
             if self.dof[own] == SUPPORTED {
@@ -158,7 +158,7 @@ impl Places {
     }
 
     /// Two triangles that differ, at their places in the file.
-    fn located(&self, error: Error, rows: &Rows) -> Error {
+    fn located(&self, error: Error, rows: &RowReader) -> Error {
         let Error::NotSymmetric { row, column, value, mirrored } = error else { return error };
         let [row, column] = [row, column].map(|dof| self.free[dof]);
         let entries = format!("entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is {mirrored:e}");

@@ -21,10 +21,9 @@ fn read_header(path: &Path) -> Result<(Source, [usize; 2], i32), Error> {
 }
 
 /// A sparse matrix that is read row by row.
-pub(super) struct Rows {
+pub(super) struct RowReader {
     /// Rows and columns.
     pub shape: (usize, usize),
-    /// Number of entries.
     pub entries: usize,
     lengths: Vec<u32>,
     columns: Source,
@@ -37,16 +36,13 @@ pub(super) struct Rows {
 
 /// A row: columns from 0, increasing, and values.
 #[derive(Default)]
-pub(super) struct Row {
+pub(super) struct MatrixRow {
     pub columns: Vec<u32>,
     pub values: Vec<f64>,
 }
 
-impl Rows {
+impl RowReader {
     /// Opens a sparse matrix, and reads the lengths of its rows.
-    ///
-    /// # Errors
-    /// [`Error::File`], [`Error::FileBytes`].
     pub fn open(path: &Path) -> Result<Self, Error> {
         let (mut source, [rows, columns], announced) = read_header(path)?;
         if announced == DENSE {
@@ -82,15 +78,11 @@ impl Rows {
         source.ends_at(after_columns + REAL * entries, holds)?;
         let values = Source::from_byte(path, after_columns)?;
         let (shape, entries) = ((rows, columns), entries as usize);
-        Ok(Rows { shape, entries, lengths, columns: source, values, next: 0, byte: after_columns })
+        Ok(RowReader { shape, entries, lengths, columns: source, values, next: 0, byte: after_columns })
     }
 
     /// Reads the next row; `false` behind the last.
-    ///
-    /// # Errors
-    /// [`Error::File`]; [`Error::FileBytes`] for columns that do not increase or lie outside, and for values that are
-    /// not finite.
-    pub fn read(&mut self, into: &mut Row) -> Result<bool, Error> {
+    pub fn read(&mut self, into: &mut MatrixRow) -> Result<bool, Error> {
         let Some(&length) = self.lengths.get(self.next) else { return Ok(false) };
         let row = self.next;
         into.columns.clear();
@@ -125,16 +117,12 @@ impl Rows {
         self.values.fault(self.byte + REAL * place as u64, message)
     }
 
-    /// The error of a wrong shape.
     pub fn wrong_shape(&self, message: impl Into<String>) -> Error {
         self.values.fault(INTEGER, message)
     }
 }
 
 /// The columns of a matrix of `rows` rows that is stored with all its entries.
-///
-/// # Errors
-/// [`Error::File`]; [`Error::FileBytes`] for another shape or form, and for values that are not finite.
 pub(super) fn dense_columns(path: &Path, rows: usize) -> Result<Vec<Vec<f64>>, Error> {
     let (mut source, [found, count], announced) = read_header(path)?;
     if found != rows || count == 0 {

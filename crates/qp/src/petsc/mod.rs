@@ -18,14 +18,12 @@
 //! PETSc Users Manual, `MatLoad()` and `VecLoad()`: the binary formats (petsc.org).
 
 mod directory;
-mod layout;
 mod matrix;
 mod source;
 mod write;
 
 pub use directory::read_problem;
-pub use layout::Layout;
-pub use write::streamed_files;
+pub use write::{PetscLayout, streamed_files};
 
 /// The file that makes a directory one of PETSc's files.
 pub const STIFFNESS: &str = "K.petsc";

@@ -26,9 +26,6 @@ pub(super) struct Source {
 
 impl Source {
     /// Opens a file that holds one object of this class, and reads the class.
-    ///
-    /// # Errors
-    /// [`Error::File`] for a file that cannot be read, [`Error::FileBytes`] for one of another class.
     pub fn open(path: &Path, class: Class) -> Result<Self, Error> {
         let mut source = Self::from_byte(path, 0)?;
         let number = class.number;
@@ -58,9 +55,6 @@ impl Source {
     }
 
     /// A file from some byte on, which may be read elsewhere too.
-    ///
-    /// # Errors
-    /// [`Error::File`].
     pub fn from_byte(path: &Path, byte: u64) -> Result<Self, Error> {
         let (mut file, length) = open_regular(path)?;
         let sought = if byte == 0 { Ok(0) } else { file.seek(SeekFrom::Start(byte)) };
@@ -69,28 +63,19 @@ impl Source {
         Ok(Source { path: path.to_path_buf(), reader, byte, length })
     }
 
-    /// The byte that is read next.
     pub fn byte(&self) -> u64 {
         self.byte
     }
 
-    /// The error at a byte of the file.
     pub fn fault(&self, byte: u64, message: impl Into<String>) -> Error {
         Error::FileBytes { file: self.path.clone(), byte: byte as usize, message: message.into() }
     }
 
-    /// The next integer.
-    ///
-    /// # Errors
-    /// [`Error::File`]; [`Error::FileBytes`] at the end of the file.
     pub fn integer(&mut self) -> Result<i32, Error> {
         self.bytes().map(i32::from_be_bytes)
     }
 
     /// The next integer, which is a number of `what`.
-    ///
-    /// # Errors
-    /// As [`Source::integer`]; [`Error::FileBytes`] for a negative one.
     pub fn count(&mut self, what: &str) -> Result<usize, Error> {
         let (byte, count) = (self.byte, self.integer()?);
         let negative = |_| self.fault(byte, format!("the number of {what} is {count}; it must not be negative"));
@@ -98,9 +83,6 @@ impl Source {
     }
 
     /// The next real, which must be allowed; `message` says what is wrong with another one.
-    ///
-    /// # Errors
-    /// As [`Source::integer`]; [`Error::FileBytes`] for a value that is not allowed.
     pub fn real(&mut self, is_allowed: fn(f64) -> bool, message: impl FnOnce(f64) -> String) -> Result<f64, Error> {
         let (byte, value) = (self.byte, self.bytes().map(f64::from_be_bytes)?);
         if is_allowed(value) { Ok(value) } else { Err(self.fault(byte, message(value))) }
@@ -117,9 +99,6 @@ impl Source {
     }
 
     /// Refuses a file that does not end with the byte before `end`, the end of the object that `holds` names.
-    ///
-    /// # Errors
-    /// [`Error::FileBytes`].
     pub fn ends_at(&self, end: u64, holds: impl FnOnce() -> String) -> Result<(), Error> {
         if self.length == end {
             return Ok(());
@@ -132,9 +111,6 @@ impl Source {
 }
 
 /// Reads a vector with values that satisfy `is_allowed`; `allowed` says the same in words.
-///
-/// # Errors
-/// [`Error::File`], [`Error::FileBytes`].
 pub(super) fn vector(path: &Path, is_allowed: fn(f64) -> bool, allowed: &str) -> Result<Vec<f64>, Error> {
     let mut source = Source::open(path, VECTOR)?;
     let length = source.count("values")?;
@@ -148,9 +124,6 @@ pub(super) fn vector(path: &Path, is_allowed: fn(f64) -> bool, allowed: &str) ->
 }
 
 /// Reads a set of indices that increase and lie below `most`.
-///
-/// # Errors
-/// [`Error::File`], [`Error::FileBytes`].
 pub(super) fn indices(path: &Path, most: usize) -> Result<Vec<u32>, Error> {
     let mut source = Source::open(path, INDICES)?;
     let length = source.count("indices")?;

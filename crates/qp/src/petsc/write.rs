@@ -3,16 +3,62 @@
 use std::io::{self, Write};
 
 use super::{
-    BLOCK_SIZE, CONTACT, COORDINATES, Class, DENSE, EQUALITIES, FREE, GAP, INDICES, INFO, LOAD, Layout, MATRIX,
-    NEAR_NULL, STIFFNESS, TOO_MANY, VALUES, VECTOR,
+    BLOCK_SIZE, CONTACT, COORDINATES, Class, DENSE, EQUALITIES, FREE, GAP, INDICES, INFO, LOAD, MATRIX, NEAR_NULL,
+    STIFFNESS, TOO_MANY, VALUES, VECTOR,
 };
 use crate::file::Streamed;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
 
-/// The files of a problem with this layout of dofs.
-pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a Layout) -> Vec<Streamed<'a>> {
+/// The nodes that have a free dof, in their order, with a place for each of their components.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PetscLayout {
+    /// Components of a node.
+    pub size: usize,
+    /// The place `size * node + component` of each free dof, increasing.
+    pub place: Vec<u32>,
+    /// Coordinates of the nodes in length, `size` each.
+    pub coordinates: Vec<f64>,
+}
+
+impl PetscLayout {
+    /// The layout of free dofs, `size * node + component` each and increasing, of these nodes, in length.
+    pub fn of(size: usize, free: &[usize], nodes: &[[f64; 3]]) -> Self {
+        let (mut place, mut coordinates) = (Vec::with_capacity(free.len()), Vec::new());
+        let mut last = None;
+        for &dof in free {
+            let node = dof / size;
+            if last != Some(node) {
+                coordinates.extend_from_slice(&nodes[node][..size]);
+                last = Some(node);
+            }
+            place.push((coordinates.len() - size + dof % size) as u32);
+        }
+        PetscLayout { size, place, coordinates }
+    }
+
+    /// Number of places.
+    pub fn places(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// Calls `visit` for each place, with the number of its free dof or `None`.
+    ///
+    /// # Errors
+    /// The first of `visit`.
+    pub fn each_place<E>(&self, mut visit: impl FnMut(usize, Option<usize>) -> Result<(), E>) -> Result<(), E> {
+        let mut dof = 0;
+        for place in 0..self.places() {
+            let is_free = self.place.get(dof).is_some_and(|&free| free as usize == place);
+            visit(place, is_free.then_some(dof))?;
+            dof += usize::from(is_free);
+        }
+        Ok(())
+    }
+}
+
+pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a PetscLayout) -> Vec<Streamed<'a>> {
     let (stiffness, place) = (problem.stiffness(), &layout.place);
     let (contact, gap) = problem.inequalities_given();
     let contact = contact.transposed();
@@ -39,7 +85,6 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a Layout) -> Ve
     files
 }
 
-/// The class and the sizes of an object.
 fn write_header(out: &mut dyn Write, class: Class, sizes: &[usize]) -> io::Result<()> {
     out.write_all(&class.number.to_be_bytes())?;
     sizes.iter().try_for_each(|&size| out.write_all(&integer(size)?.to_be_bytes()))
@@ -65,13 +110,13 @@ fn write_vector(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
 }
 
 /// The load, with 0 at supported components.
-fn write_load(out: &mut dyn Write, load: &[f64], layout: &Layout) -> io::Result<()> {
+fn write_load(out: &mut dyn Write, load: &[f64], layout: &PetscLayout) -> io::Result<()> {
     write_header(out, VECTOR, &[layout.places()])?;
     layout.each_place(|_, dof| out.write_all(&dof.map_or(0.0, |dof| load[dof]).to_be_bytes()))
 }
 
 /// The vectors as columns, with 0 at supported components.
-fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &Layout) -> io::Result<()> {
+fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &PetscLayout) -> io::Result<()> {
     write_header(out, MATRIX, &[layout.places(), modes.count()])?;
     out.write_all(&DENSE.to_be_bytes())?;
     layout.each_place(|_, dof| {
@@ -81,7 +126,7 @@ fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &Layout) -> i
 }
 
 /// Contact or equality rows, each a column of `rows`.
-fn write_rows_of(out: &mut dyn Write, rows: &SparseMatrix, layout: &Layout) -> io::Result<()> {
+fn write_rows_of(out: &mut dyn Write, rows: &SparseMatrix, layout: &PetscLayout) -> io::Result<()> {
     write_header(out, MATRIX, &[rows.columns(), layout.places(), rows.entries()])?;
     for column in rows.column_starts().windows(2) {
         out.write_all(&integer(column[1] - column[0])?.to_be_bytes())?;
@@ -91,7 +136,7 @@ fn write_rows_of(out: &mut dyn Write, rows: &SparseMatrix, layout: &Layout) -> i
 }
 
 /// The stiffness; a supported component has the mean size of the diagonal as its diagonal entry, and no other entry.
-fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &Layout) -> io::Result<()> {
+fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &PetscLayout) -> io::Result<()> {
     let lengths = stiffness.row_lengths();
     let supported = layout.places() - stiffness.dim();
     let entries = lengths.iter().map(|&length| u64::from(length)).sum::<u64>() + supported as u64;
@@ -113,7 +158,7 @@ fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &La
 fn write_rows<const COUNT: usize>(
     out: &mut dyn Write,
     stiffness: &SymmetricMatrix,
-    layout: &Layout,
+    layout: &PetscLayout,
     own: impl Fn(usize) -> [u8; COUNT],
     bytes: impl Fn(u32, f64) -> [u8; COUNT],
 ) -> io::Result<()> {

@@ -8,12 +8,9 @@ use crate::settings::{ByFactor, Method};
 /// Iterations of the active-set loop after which its start counts as poor.
 pub(crate) const PATIENCE: usize = 16;
 
-/// The means of an attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Means {
-    /// The problem alone.
     Problem,
-    /// A factor of the stiffness.
     Factor(WithFactor),
     /// A multigrid hierarchy of the stiffness, for MPRGP.
     Multigrid,
@@ -63,13 +60,11 @@ pub(crate) enum Step {
     Pieces,
     /// The problem without its equalities is solved by a ladder of its own.
     Elimination,
-    /// The method of the attempt.
     Method,
     /// The active set, from the set that the interior point reaches.
     InteriorPoint,
     /// The active set, from the set that a penalty ladder reaches.
     Continuation,
-    /// The dual active-set method.
     Dual,
     /// The best answer, refined by the answer for its residual.
     Refinement,
@@ -209,7 +204,6 @@ pub(crate) struct Tried {
     pub lost_pivot: Option<f64>,
     /// `true` if the stiffness is known to be singular to rounding.
     pub is_singular: bool,
-    /// Multiplications of the factor.
     pub multiplications: f64,
     /// Estimated seconds of a set of closed rows, if each has a factor of its own; zero if not.
     pub set_seconds: f64,

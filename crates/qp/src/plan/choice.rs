@@ -44,9 +44,6 @@ impl Estimate {
 
     /// The path to take within `most_bytes`. If a factor is not clearly too large, only its analysis decides whether it
     /// fits.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if neither fits.
     pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
         let ratio = self.direct_seconds / self.multigrid_seconds;
         let fits = self.direct_bytes <= most_bytes;
@@ -122,9 +119,6 @@ impl Estimate {
     }
 
     /// The reason for multigrid if a solve with a factor takes `factor` bytes, which is too much.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if multigrid takes too much as well.
     pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
         let multigrid = self.multigrid_bytes;
         if multigrid > most_bytes {
@@ -140,9 +134,6 @@ impl Estimate {
 /// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from
 /// multigrid. A factor gives a proven bound; it is taken if it fits into the memory and is estimated to take at most
 /// this number of seconds.
-///
-/// # Errors
-/// [`Error::NoRoom`] if neither fits into the memory.
 pub(crate) fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, settings: &Settings) -> Result<bool, Error> {
     let (estimate, memory) = (Estimate::of(problem), settings.memory.unwrap_or(f64::INFINITY));
     if estimate.direct_bytes > memory {

@@ -9,7 +9,6 @@ use crate::solution::{Certificate, Goal, Seconds, Solution};
 /// What came of a step.
 #[derive(Debug)]
 pub enum Ended {
-    /// An answer.
     Answered(Answered),
     /// Nothing: the step has no means here, or does not find an answer.
     Empty,
@@ -37,13 +36,10 @@ impl Ended {
 /// An answer of a step, beside those before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answered {
-    /// `true` if the method settled.
     pub is_settled: bool,
     /// `true` if the method met a free motion, or a negative energy.
     pub is_unheld: bool,
-    /// Iterations of the method.
     pub iterations: usize,
-    /// `true` if it is the best so far.
     pub is_best: bool,
     /// `true` if it misses by no more than half of what the best before missed by.
     pub gains: bool,
@@ -103,11 +99,9 @@ impl Record {
 #[derive(Debug)]
 pub struct Best {
     pub solution: Solution,
-    /// The attempt that it belongs to.
     pub attempt: usize,
     /// The method of that attempt, if its data were prepared.
     pub tried: Option<Tried>,
-    /// How its method ended.
     pub ending: Ending,
     pub evidence: Option<Evidence>,
 }
@@ -123,7 +117,6 @@ impl Best {
 #[derive(Debug)]
 pub struct History {
     pub goal: Goal,
-    /// The first attempt.
     pub first: usize,
     pub records: Vec<Record>,
     pub best: Option<Best>,
@@ -162,7 +155,6 @@ impl History {
         answered
     }
 
-    /// The last answer of a method.
     pub fn last_answer(&self) -> Option<&Answered> {
         let answers = self.records.iter().rev().filter_map(|record| match &record.ended {
             Ended::Answered(answered) if !record.improves() => Some(answered),

@@ -9,7 +9,6 @@ use super::attempt::{
 };
 use super::choice::Choice;
 use super::nearly_linear;
-use super::pieces::pieces_of;
 use crate::cost::{Estimate, starts_near};
 use crate::error::Error;
 use crate::linear::Analysis;
@@ -23,6 +22,10 @@ const MARGIN: f64 = 0.1;
 
 /// If an accuracy is given, MPRGP first ends at this share of the accuracy: forces are less accurate than the energy.
 const FIRST: f64 = 0.1;
+
+/// A piece has at least this number of unknowns, if all parts together have twice as many: smaller parts are solved
+/// faster together.
+const PIECE: usize = 2000;
 
 /// What the caller of a ladder knows and keeps.
 #[derive(Clone, Copy, Debug)]
@@ -50,9 +53,6 @@ pub(crate) struct Ladder {
 
 impl Ladder {
     /// The ladder for `problem`.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] if neither a factor nor multigrid fits into the memory, [`Error::NearlyLinear`].
     pub fn of(problem: &ContactProblem, known: Known, settings: &Settings) -> Result<Self, Error> {
         let mut ladder = Ladder {
             attempts: Vec::with_capacity(8),
@@ -207,4 +207,54 @@ fn limits(settings: &Settings) -> Limits {
 /// Returns `true` if the direct path starts from a few cycles of multigrid.
 fn starts_by_multigrid(problem: &ContactProblem, settings: &Settings) -> bool {
     matches!(settings.method, Method::Auto | Method::ActiveSet) && starts_near(problem)
+}
+
+/// The pieces to solve separately; `None` if the problem is solved as one.
+fn pieces_of(problem: &ContactProblem, settings: &Settings) -> Option<Pieces> {
+    let is_free = matches!(settings.method, Method::Auto | Method::ActiveSet);
+    let parts = problem.parts();
+    if !is_free || parts.count() == 1 || problem.dofs() < 2 * PIECE || !parts.are_apart(problem.stiffness()) {
+        return None;
+    }
+    let (mut of_part, mut count, mut dofs) = (Vec::with_capacity(parts.count()), 0, 0);
+    let mut left = problem.dofs();
+    for of_this in parts.sums(|_| 1.0) {
+        of_part.push(count);
+        (dofs, left) = (dofs + of_this as usize, left - of_this as usize);
+        if dofs >= PIECE && left >= PIECE {
+            (count, dofs) = (count + 1, 0);
+        }
+    }
+    let of_dof = parts.of_dofs().iter().map(|&part| of_part[part]).collect();
+    (count > 0).then(|| Pieces::of(problem, of_dof, count + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Chains of springs, of these lengths.
+    fn chains(lengths: &[usize]) -> ContactProblem {
+        let mut entries = Vec::new();
+        let mut first = 0;
+        for length in lengths {
+            entries.extend((first..first + length).map(|dof| (dof, dof, 2.0)));
+            entries.extend((first + 1..first + length).map(|dof| (dof, dof - 1, -1.0)));
+            first += length;
+        }
+        ContactProblem::of_entries(&entries, &vec![1.0; first], &[(0, 0, 1.0)], &[1.0])
+    }
+
+    #[test]
+    fn small_parts_make_a_piece_together_and_no_part_is_cut() {
+        let count = |lengths: &[usize], method| {
+            let pieces = pieces_of(&chains(lengths), &Settings::with_method(method));
+            pieces.map_or(1, |pieces| pieces.count())
+        };
+        assert_eq!(count(&[PIECE, PIECE, 1], Method::Auto), 2, "the last is too small for itself");
+        assert_eq!(count(&[10 * PIECE], Method::Auto), 1);
+        assert_eq!(count(&[3 * PIECE, 10], Method::Auto), 1);
+        assert_eq!(count(&[10; 1000], Method::ActiveSet), 10_000 / PIECE);
+        assert_eq!(count(&[PIECE, PIECE], Method::Mprgp), 1, "a hierarchy keeps parts apart by itself");
+    }
 }

@@ -42,7 +42,7 @@ impl Layout {
             }
             let (last, dense) = match arrangement {
                 Arrangement::Condensed => {
-                    let last = Condensation::contact_dofs(scaling.contact());
+                    let last = scaling.contact().columns_with_entries();
                     let dense = Kept::dense(last.len());
                     (last, dense)
                 }
@@ -141,7 +141,7 @@ fn check_room_to_order(problem: &ContactProblem, with: &WithFactor, settings: &S
         Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
             let factor_entries = Estimate::of(problem).factor_entries;
             let factor = bytes::of_factor(factor_entries);
-            let contact_dofs = Condensation::contact_dofs(problem.contact()).len() as f64;
+            let contact_dofs = problem.contact().columns_with_entries().len() as f64;
             let factors = match with.arrangements.contains(&Arrangement::Condensed) {
                 // Instead of large dense matrices one factor after the other is made.
                 true => (factor + bytes::of_dense(contact_dofs)).min(bytes::of_next_factor(factor_entries)),

@@ -22,7 +22,6 @@ mod ladder;
 mod layout;
 mod nearly_linear;
 mod next;
-mod pieces;
 mod rules;
 mod words;
 

@@ -17,9 +17,6 @@ const MOST_UNKNOWNS: usize = 20_000;
 const NO_PIVOT: f64 = 1e-10;
 
 /// Refuses a nearly linear program: each of its motions without energy would have to be stopped by a row of its own.
-///
-/// # Errors
-/// [`Error::NearlyLinear`] with the number of directions that have stiffness.
 pub(super) fn check(problem: &ContactProblem) -> Result<(), Error> {
     // An equality takes a direction away.
     let unknowns = problem.dofs().saturating_sub(problem.equalities().len());

@@ -96,7 +96,6 @@ impl Ladder {
         goes_on.then_some(Limits { tolerance, most_cycles, ..last.limits })
     }
 
-    /// Returns `true` if an attempt is due after what was found.
     fn is_due(&self, attempt: &Attempt, history: &History, watch: &Watch) -> bool {
         let certified = history.is_certified();
         let last = history.records.last().map(|record| &record.ended);

@@ -21,7 +21,6 @@ pub(crate) struct Size {
     /// `true` if the stiffness is condensed onto the contact dofs.
     pub is_condensed: bool,
     pub multiplications: f64,
-    /// Contact rows of the problem.
     pub rows: usize,
     /// `true` if most sets of rows that may be closed are dependent: the loop of the active set wanders among them.
     pub is_crowded: bool,

@@ -167,9 +167,6 @@ impl Attempt {
 
 impl Ladder {
     /// The ladder in words, with the layout of the first factor; only the pattern of the stiffness is analysed.
-    ///
-    /// # Errors
-    /// Those of the scaling, for numbers beyond the range of doubles.
     pub fn in_words(&self, problem: &ContactProblem, settings: &Settings) -> Result<String, Error> {
         let words = self.to_string();
         let Some((first, with)) = self.factors().next() else { return Ok(words) };

@@ -50,9 +50,6 @@ impl BoundarySolution {
     }
 
     /// The whole answer, with the certificate of the problem itself.
-    ///
-    /// # Errors
-    /// [`Error::NotCertified`] and [`Error::Infeasible`], as [`solve`](crate::solve()).
     pub fn solution(self) -> Result<Solution, Error> {
         match self.inside {
             Inside::Whole(solution) => Ok(*solution),
@@ -64,7 +61,6 @@ impl BoundarySolution {
 }
 
 impl From<Solution> for BoundarySolution {
-    /// The boundary of an answer that was not condensed.
     fn from(solution: Solution) -> Self {
         BoundarySolution {
             multiplier: solution.multiplier.clone(),

@@ -227,10 +227,6 @@ impl Prepared {
     }
 
     /// The problem at these gaps, under the current load.
-    ///
-    /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit, [`Error::Infeasible`] for rows
-    /// that contradict each other at sight.
     fn problem_at(&self, gap: &[f64]) -> Result<ContactProblem, Error> {
         self.start.of_all_rows(&self.problem).check(self.problem.dofs(), self.problem.rows())?;
         let problem = self.problem.with_gap(gap.to_vec())?;
@@ -239,9 +235,6 @@ impl Prepared {
     }
 
     /// What the prepared data answer to the method alone, from a start at these gaps; `None` without prepared data.
-    ///
-    /// # Errors
-    /// Those of the gaps and the start, and of the answer; [`Error::Setting`].
     pub(super) fn ask<T>(
         &self,
         gap: &[f64],

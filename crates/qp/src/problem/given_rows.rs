@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::ContactProblem;
-use super::empty_rows::largest_finite;
+use super::opposed::largest_finite;
 use crate::error::Error;
 use crate::linear::equations::{FOLLOWS, Following};
 use crate::linear::{SparseMatrix, check_vector};
@@ -52,9 +52,6 @@ impl ContactProblem {
     }
 
     /// The same with all rows, whether they follow from each other or not.
-    ///
-    /// # Errors
-    /// As [`with_equalities`](Self::with_equalities).
     pub(crate) fn with_all_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
         if rows.columns() != self.dofs() {
             let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));

@@ -1,7 +1,5 @@
 //! The contact problem as a convex QP, checked once.
 
-mod diagonal;
-mod empty_rows;
 mod given_rows;
 mod opposed;
 mod parts;
@@ -12,8 +10,8 @@ pub(crate) use parts::Parts;
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use diagonal::Diagonal;
-use opposed::OpposedRows;
+use opposed::{OpposedRows, settle, without_entries};
+use parts::Diagonal;
 
 use crate::error::Error;
 use crate::linear::equations::Following;
@@ -115,14 +113,11 @@ impl ContactProblem {
         gap: Vec<f64>,
     ) -> Result<Self, Error> {
         let mut problem = Self::computed(stiffness, load, contact, with_infinite(gap))?;
-        problem.rounded = empty_rows::settle(&problem.without_entries, &mut problem.gap);
+        problem.rounded = settle(&problem.without_entries, &mut problem.gap);
         Ok(problem)
     }
 
     /// The same for numbers that come from another problem: every finite gap is a length, and none is rounding.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
     pub(crate) fn computed(
         stiffness: SymmetricMatrix,
         load: Vec<f64>,
@@ -139,28 +134,24 @@ impl ContactProblem {
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
-        let without_entries: Arc<[usize]> = empty_rows::without_entries(&contact).into();
-        let (diagonal, parts, free_motions) = (FoundOnce::default(), FoundOnce::default(), FoundOnce::default());
-        let (opposed, equalities, two_sided) = (FoundOnce::default(), FoundOnce::default(), Vec::new());
-        let semidefinite = FoundOnce::default();
-        let near_null = None;
+        let without_entries: Arc<[usize]> = without_entries(&contact).into();
         Ok(ContactProblem {
             stiffness,
             load,
             contact,
             gap,
-            near_null,
-            diagonal,
-            semidefinite,
-            parts,
-            free_motions,
-            opposed,
-            equalities,
+            near_null: None,
+            diagonal: FoundOnce::default(),
+            semidefinite: FoundOnce::default(),
+            parts: FoundOnce::default(),
+            free_motions: FoundOnce::default(),
+            opposed: FoundOnce::default(),
+            equalities: FoundOnce::default(),
             equality_rows: 0,
             following: Arc::new([]),
             without_entries,
             rounded: Vec::new(),
-            two_sided,
+            two_sided: Vec::new(),
         })
     }
 
@@ -238,27 +229,17 @@ impl ContactProblem {
         check_load(&load, self.dofs())?;
         let gap = self.gaps_of_all_rows(gap);
         check_gap(&gap, self.rows())?;
-        let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
         let mut gap = with_infinite(gap);
-        let rounded = empty_rows::settle(&self.without_entries, &mut gap);
-        let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
-        let (parts, free_motions) = match same_rows {
-            true => (self.parts.clone(), self.free_motions.clone()),
-            false => (FoundOnce::default(), FoundOnce::default()),
-        };
-        let equalities = if gap == self.gap { self.equalities.clone() } else { FoundOnce::default() };
-        Ok(ContactProblem {
-            stiffness,
-            load,
-            contact,
-            gap,
-            near_null,
-            parts,
-            free_motions,
-            equalities,
-            rounded,
-            ..self.clone()
-        })
+        let rounded = settle(&self.without_entries, &mut gap);
+        let mut problem = ContactProblem { load, gap, rounded, ..self.clone() };
+        let same_rows = problem.gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
+        if !same_rows {
+            (problem.parts, problem.free_motions) = (FoundOnce::default(), FoundOnce::default());
+        }
+        if problem.gap != self.gap {
+            problem.equalities = FoundOnce::default();
+        }
+        Ok(problem)
     }
 
     /// The diagonal of K, computed at its first use.
@@ -267,9 +248,6 @@ impl ContactProblem {
     }
 
     /// Returns `true` if K is positive semidefinite, to rounding. One factorisation, at the first use.
-    ///
-    /// # Errors
-    /// Those of the factorisation, for example for lack of memory.
     pub(crate) fn is_semidefinite(&self) -> Result<bool, Error> {
         if let Some(&found) = self.semidefinite.get() {
             return Ok(found);
@@ -331,12 +309,8 @@ impl ContactProblem {
     }
 
     /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping
-    /// gaps.
     pub(crate) fn check_rows(&self) -> Result<(), Error> {
-        match self.opposed_rows().check(&self.gap) {
+        match self.opposed_rows().check(&self.without_entries, &self.gap) {
             Err(Error::Infeasible { rows, weights, .. }) if self.equality_rows > 0 => {
                 Err(self.infeasible(&rows, &weights))
             }
@@ -396,17 +370,11 @@ impl ContactProblem {
 }
 
 /// Checks that `load` has the right length and allowed values.
-///
-/// # Errors
-/// [`Error::Length`], [`Error::NotFinite`].
 pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
     check_vector("load vector", load, (dofs, "dofs"), f64::is_finite, "finite")
 }
 
 /// Checks that `gap` has the right length and allowed values.
-///
-/// # Errors
-/// [`Error::Length`], [`Error::NotFinite`] for a gap that is NaN or minus infinity.
 pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
     let allowed = "finite, or +inf for a row without obstacle";
     check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)

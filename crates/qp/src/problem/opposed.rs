@@ -1,9 +1,13 @@
-//! Rows that contradict each other at sight: a row that nothing moves, and two rows that oppose each other.
+//! Rows that contradict each other at sight: a row without entries, whose gap is met or not, whatever moves, and two
+//! rows that oppose each other.
 
 use std::collections::HashMap;
 
 use crate::error::Error;
 use crate::linear::{Accumulator, SparseMatrix, exponent, ldexp};
+
+/// The gap of a row without entries is rounding if it is below this share of the largest.
+const OF_LARGEST: f64 = 16.0 * f64::EPSILON;
 
 /// Two opposed gaps meet if they overlap by less than this times their size: the rows are an equality.
 const MEETING: f64 = 4.0 * f64::EPSILON;
@@ -26,8 +30,6 @@ pub(crate) struct Equality {
 /// The rows of a contact matrix that may contradict each other at some gaps.
 #[derive(Clone, Debug)]
 pub(super) struct OpposedRows {
-    /// The rows without an entry.
-    unmoved: Vec<usize>,
     /// The directions with rows on both sides.
     directions: Vec<Sides>,
     /// The transposed rows, if there are such directions.
@@ -43,7 +45,6 @@ impl OpposedRows {
             let (count, first, ..) = ends[row];
             ends[row] = (count + 1, if count == 0 { value } else { first }, dof, value);
         }
-        let unmoved = (0..contact.rows()).filter(|&row| ends[row].0 == 0).collect();
         // Only rows that are alike in this may be opposed: number of entries, the last of them, and its quotient.
         let likeness = |row: &usize| {
             let (count, first, last, value) = ends[*row];
@@ -58,7 +59,7 @@ impl OpposedRows {
             .copied()
             .collect();
         if alike.is_empty() {
-            return OpposedRows { unmoved, directions: Vec::new(), by_row: None };
+            return OpposedRows { directions: Vec::new(), by_row: None };
         }
         let by_row = contact.transposed();
         let mut directions: HashMap<Direction, Sides> = HashMap::new();
@@ -72,16 +73,12 @@ impl OpposedRows {
         let is_opposed = |sides: &Sides| sides.iter().all(|side| !side.is_empty());
         let directions: Vec<Sides> = directions.into_values().filter(is_opposed).collect();
         let by_row = (!directions.is_empty()).then_some(by_row);
-        OpposedRows { unmoved, directions, by_row }
+        OpposedRows { directions, by_row }
     }
 
-    /// Checks that no rows contradict each other at sight under `gap` (length m).
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping
-    /// gaps.
-    pub fn check(&self, gap: &[f64]) -> Result<(), Error> {
-        if let Some(&row) = self.unmoved.iter().find(|&&row| gap[row] < 0.0) {
+    /// Checks that no rows, of which these are without entries, contradict each other at sight under `gap` (length m).
+    pub fn check(&self, without_entries: &[usize], gap: &[f64]) -> Result<(), Error> {
+        if let Some(&row) = without_entries.iter().find(|&&row| gap[row] < 0.0) {
             let reason =
                 format!("contact row {row} has no free dof, but its gap is {:e}: it must not be negative", gap[row]);
             return Err(Error::Infeasible { reason, rows: vec![row], weights: vec![1.0], overlap: -gap[row] });
@@ -149,6 +146,27 @@ fn are_parallel(by_row: &SparseMatrix, a: usize, b: usize) -> bool {
         difference.add_product(0, -of_order_one(at_b, first_b), of_order_one(first_a, first_a));
         difference.into_sums()[0] == 0.0
     })
+}
+
+/// The rows of a matrix without an entry.
+pub(super) fn without_entries(contact: &SparseMatrix) -> Vec<usize> {
+    let mut has_entry = vec![false; contact.rows()];
+    (0..contact.columns()).for_each(|dof| contact.with_rows(dof, &mut has_entry, |has, b| *has |= b != 0.0));
+    (0..contact.rows()).filter(|&row| !has_entry[row]).collect()
+}
+
+/// Sets the gaps of these rows to zero where they are rounding beside the largest; returns the rows with their former
+/// gaps.
+pub(super) fn settle(without_entries: &[usize], gap: &mut [f64]) -> Vec<(usize, f64)> {
+    let size = OF_LARGEST * largest_finite(gap);
+    let is_rounding = |row: &usize| gap[*row] != 0.0 && gap[*row].abs() <= size;
+    let rows: Vec<usize> = without_entries.iter().copied().filter(is_rounding).collect();
+    rows.into_iter().map(|row| (row, std::mem::take(&mut gap[row]))).collect()
+}
+
+/// The largest magnitude of the finite gaps.
+pub(super) fn largest_finite(gap: &[f64]) -> f64 {
+    gap.iter().filter(|gap| gap.is_finite()).fold(0.0, |most, gap| gap.abs().max(most))
 }
 
 #[cfg(test)]

@@ -3,11 +3,25 @@
 //! An answer may be right for a stiff part and wrong for a soft one beside it, because the energy of the soft part is
 //! too small to show in that of the whole. Therefore a certificate measures every part in its own scale.
 
-use super::diagonal::Diagonal;
 use crate::linear::{Forest, SparseMatrix, SymmetricMatrix};
 
 /// A coupling below this share of `sqrt(K_ii K_jj)` does not make two dofs one part.
 const WEAK_COUPLING: f64 = 1e-6;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Diagonal {
+    /// K_ii of each dof.
+    pub values: Vec<f64>,
+    /// `sqrt(K_ii)` of each dof.
+    pub roots: Vec<f64>,
+}
+
+impl Diagonal {
+    pub fn of(stiffness: &SymmetricMatrix) -> Self {
+        let values = stiffness.diagonal();
+        Diagonal { roots: values.iter().map(|value| value.sqrt()).collect(), values }
+    }
+}
 
 /// The connected components of K and B: dofs that a coupling of K or a row with an obstacle joins.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +74,6 @@ impl Parts {
         self.count.max(1)
     }
 
-    /// The part of a dof.
     pub fn of_dof(&self, dof: usize) -> usize {
         self.of_dof[dof]
     }

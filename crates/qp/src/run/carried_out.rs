@@ -16,9 +16,6 @@ use crate::settings::{Method, Settings};
 use crate::solution::{Certificate, Seconds, Solution, Why};
 
 /// The answer of `problem` from a start, by the ladder of `settings`.
-///
-/// # Errors
-/// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for a start that does not fit.
 pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
     by(problem, start, settings, |ladder| ladder)
 }
@@ -39,9 +36,6 @@ fn by(
 }
 
 /// The engine with these means; `None` for the problem alone.
-///
-/// # Errors
-/// Those of the engine.
 pub(crate) fn engine_by(
     means: Means,
     problem: &ContactProblem,
@@ -57,7 +51,6 @@ pub(crate) fn engine_by(
 /// The prepared data of an attempt, and its load.
 #[derive(Clone, Debug)]
 pub(crate) struct Workbench {
-    /// The number of the attempt in its ladder.
     pub attempt: usize,
     pub engine: Arc<dyn Engine>,
     pub load: Arc<Load>,
@@ -100,9 +93,6 @@ impl<'a> Run<'a> {
     }
 
     /// Carries out the ladder; the best answer, if it meets the goal.
-    ///
-    /// # Errors
-    /// As [`solve`](crate::solve()).
     pub fn solved(mut self) -> Result<Solution, Error> {
         self.carry_out();
         self.ended()
@@ -125,7 +115,6 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Makes a step and judges its answer.
     fn made_step(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
         match record.step {
             Step::Pieces => self.in_pieces(record),
@@ -182,7 +171,6 @@ impl<'a> Run<'a> {
         Ok(self.made.clone())
     }
 
-    /// The start of a step.
     fn start_from(&self, from: From, step: Step) -> Start {
         let best = || self.history.best.as_ref().map(|best| &best.solution);
         match (from, step) {

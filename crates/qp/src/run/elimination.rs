@@ -14,14 +14,12 @@ pub(super) enum Rest {
     Answer(Box<Solution>, Option<Certificate>),
     /// It moves along a direction that nothing holds, as the error says in terms of the whole.
     Moves(Error),
-    /// Nothing.
     Open,
 }
 
 /// What is kept of a prepared problem without its equalities.
 pub(crate) struct KeptRest<'a> {
     pub elimination: &'a Elimination,
-    /// The energy norm of the whole, if it has one.
     pub norm: &'a Option<EnergyNorm>,
     /// The answer of the rest of a problem.
     pub solve: &'a dyn Fn(&Start, &Settings) -> Result<Solution, Error>,
@@ -29,9 +27,6 @@ pub(crate) struct KeptRest<'a> {
 
 /// The answer, found by `solve` without the equalities, or by what is `kept`, with the equalities put back and without
 /// a certificate; nothing if they are not eliminated, or if it is left to the whole whether there is an answer.
-///
-/// # Errors
-/// [`Error::Infeasible`] with rows of the whole; [`Error::Interrupted`].
 pub(super) fn solved(
     problem: &ContactProblem,
     start: &Start,

@@ -17,9 +17,6 @@ fn fallen_short(solution: Solution, goal: Goal) -> Error {
 
 impl Run<'_> {
     /// The best answer with everything that was tried, if it meets the goal.
-    ///
-    /// # Errors
-    /// As [`solve`](crate::solve()).
     pub(super) fn ended(mut self) -> Result<Solution, Error> {
         let is_decided = |record: &Record| match record.ended {
             Ended::Decided(Error::Interrupted) => self.history.best.is_none(),
@@ -71,9 +68,6 @@ impl Run<'_> {
 
     /// The answer without the rows that are closed in `solution` but proven open by its own bound: the exact answer is
     /// the same without them. `None` if there are none, or if no such answer is certified.
-    ///
-    /// # Errors
-    /// [`Error::Interrupted`].
     fn without_open_rows(&self, solution: &Solution) -> Result<Option<Solution>, Error> {
         let Some(proven) = &solution.proven else { return Ok(None) };
         let is_open = |row: usize| solution.contact_set.contains(row) && proven.open.contains(row);

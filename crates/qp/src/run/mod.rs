@@ -4,13 +4,10 @@
 mod carried_out;
 mod elimination;
 mod ending;
-mod many;
 mod pieces;
 mod proximal;
-mod unconstrained;
 
 pub(super) use carried_out::solve_any;
 pub use carried_out::solved;
 pub(super) use carried_out::{Run, Workbench, engine_by};
 pub(super) use elimination::KeptRest;
-pub use many::each;

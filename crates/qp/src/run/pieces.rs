@@ -9,9 +9,6 @@ use crate::transform::Pieces;
 
 /// The answer put together from the pieces, each found by `solve`, without a certificate, and the certificates of the
 /// pieces; `None` if a piece has no answer of its own, or more than one: that is decided for the whole.
-///
-/// # Errors
-/// Those of the pieces, in the terms of a piece.
 pub(super) fn solved(
     problem: &ContactProblem,
     pieces: &Pieces,

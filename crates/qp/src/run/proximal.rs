@@ -58,9 +58,6 @@ impl Run<'_> {
 /// set of the last. The answers of the last two are returned, the last first, without a certificate for the problem
 /// itself; each also without the rounding of its step, which comes before the answer as it is.
 ///
-/// # Errors
-/// [`Error::Infeasible`] for contact rows that contradict each other; those of a ladder.
-///
 /// # Source
 /// R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control Optim. 14 (1976) 877-898.
 fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>, Error> {

@@ -34,16 +34,8 @@ pub struct Condensation {
 }
 
 impl Condensation {
-    /// The dofs that appear in the rows B, in increasing order.
-    pub fn contact_dofs(contact: &SparseMatrix) -> Vec<usize> {
-        contact.columns_with_entries()
-    }
-
     /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does
     /// not pay.
-    ///
-    /// # Errors
-    /// As [`Analysis::sparse_with_last`].
     pub fn analyse(stiffness: &SymmetricMatrix, contact_dofs: &[usize]) -> Result<Option<Analysis>, FactorError> {
         let (dim, count) = (stiffness.dim() as f64, contact_dofs.len() as f64);
         if !Self::pays(count, dim, f64::INFINITY) {
@@ -64,9 +56,6 @@ impl Condensation {
 
     /// Condenses with a factorisation of K, or if it `holds_rows` of K + B'B, that put `contact_dofs` last; the rows
     /// are subtracted from the Schur complement.
-    ///
-    /// # Errors
-    /// Those of the sparse matrices, if the data leave the range of double precision.
     pub fn new(
         cholesky: Cholesky,
         holds_rows: bool,
@@ -93,12 +82,10 @@ impl Condensation {
         &self.contact_dofs
     }
 
-    /// The condensed stiffness S.
     pub fn stiffness(&self) -> &SymmetricMatrix {
         &self.stiffness
     }
 
-    /// The contact rows in the contact dofs.
     pub fn contact(&self) -> &SparseMatrix {
         &self.contact
     }
@@ -178,9 +165,6 @@ fn subtract_rows(schur: &mut [f64], contact: &SparseMatrix) {
 }
 
 /// The lower triangle of a dense matrix (n x n, column by column), zeros included.
-///
-/// # Errors
-/// [`Error::NotFinite`] for an entry that is not finite.
 fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
     let entries = size * (size + 1) / 2;
     let (mut starts, mut rows, mut values) =

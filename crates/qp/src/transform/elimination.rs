@@ -13,7 +13,7 @@
 //! unknown in the place of one of them, and the sum over some of these sums, until a short equality of sums is left.
 
 use crate::error::Error;
-use crate::linear::equations::{FOLLOWS, Found, PIVOT, Pivot, Reduced, Sparse, Sum, Sums, largest};
+use crate::linear::equations::{FOLLOWS, PIVOT, Pivot, Pivots, Remainder, Sparse, Sum, Sums, largest};
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, SymmetricMatrix, Twice, exponent, ldexp};
 use crate::problem::{ContactProblem, Equality};
@@ -54,9 +54,6 @@ pub struct Elimination {
 impl Elimination {
     /// The elimination of all equalities of `problem`; `None` if it would fill the stiffness, or if it is open within
     /// rounding whether some of them follow from others or contradict them.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for equalities that contradict each other.
     pub fn of(problem: &ContactProblem) -> Result<Option<Self>, Error> {
         match Self::cut(problem, usize::MAX)? {
             Some(elimination) => Ok(Some(elimination)),
@@ -83,7 +80,7 @@ impl Elimination {
             .map(|dof| problem.stiffness().lower().column(dof).count() + problem.contact().column(dof).count())
             .collect();
         let most = FEW + FILL * problem.stiffness().entries();
-        let (mut found, mut fill, mut all_sums) = (Found::default(), 0, Vec::new());
+        let (mut found, mut fill, mut all_sums) = (Pivots::default(), 0, Vec::new());
         // Sums come after the dofs, and follow from no equality but their own.
         let rank = |dof: usize| (of_equalities.get(dof).copied().unwrap_or(0), columns.get(dof).copied().unwrap_or(0));
         for number in order {
@@ -91,7 +88,7 @@ impl Elimination {
             let entries: Sparse =
                 by_row.column(row).filter(|entry| entry.1 != 0.0).map(|(dof, b)| (dof, b.into())).collect();
             match found.reduced(&entries, problem.gap()[row].into(), (number, FOLLOWS)) {
-                Reduced::Row(mut pivot) => {
+                Remainder::Row(mut pivot) => {
                     let mut solve_for = |pivot: Pivot, share: f64| {
                         let dof = pivot.best(share, rank)?;
                         fill += pivot.others.len() * (pivot.others.len() + rank(dof).1);
@@ -119,15 +116,15 @@ impl Elimination {
                         return Ok(None);
                     }
                 }
-                Reduced::Follows { .. } => {}
-                Reduced::Contradicts(weights) => {
+                Remainder::Follows { .. } => {}
+                Remainder::Contradicts(weights) => {
                     let (rows, weights) = signed(&equalities, &weights);
                     return match problem.overlap(&rows, &weights) {
                         Some(_) => Err(problem.infeasible(&rows, &weights)),
                         None => Ok(None),
                     };
                 }
-                Reduced::Unclear => return Ok(None),
+                Remainder::Unclear => return Ok(None),
             }
         }
         Ok(Some(Self::with(problem, equalities, (found.pivots, all_sums))))
@@ -144,10 +141,6 @@ impl Elimination {
         Elimination { equalities, pivots, sums, place, dofs, rows }
     }
 
-    /// The problem in the dofs that stay.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
     pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
         let (stiffness, load) = (self.stiffness(problem)?, self.load(problem));
         let (by_row, mut sums) = (problem.contact().transposed(), Sums::default());

@@ -32,7 +32,6 @@ impl Pieces {
         Pieces { of_dof, of_row, place_of_dof, place_of_row, dofs, rows }
     }
 
-    /// Number of pieces.
     pub fn count(&self) -> usize {
         self.dofs.len()
     }
@@ -43,9 +42,6 @@ impl Pieces {
     }
 
     /// One piece of `problem`.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
     pub fn problem(&self, problem: &ContactProblem, piece: usize) -> Result<ContactProblem, Error> {
         let (dofs, rows) = (&self.dofs[piece], &self.rows[piece]);
         let columns = |matrix: &SparseMatrix, of: &[usize], place: &[usize], count: usize| {

@@ -53,9 +53,6 @@ fn largest_exponents(contact: &SparseMatrix, d: &[i32]) -> Vec<i32> {
 
 impl Scaling {
     /// Scales the stiffness K (n x n) and the contact rows B (m x n).
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`] if the data leave the range of double precision.
     pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Self, Error> {
         let equilibration = Equilibration::of(stiffness);
         let d = &equilibration.diagonal;
@@ -68,17 +65,14 @@ impl Scaling {
         Ok(Scaling { equilibration, rows, unscaled: stiffness.clone(), stiffness: OnceLock::new(), contact })
     }
 
-    /// The equilibration of the stiffness.
     pub fn equilibration(&self) -> &Equilibration {
         &self.equilibration
     }
 
-    /// The scaled stiffness.
     pub fn stiffness(&self) -> &SymmetricMatrix {
         self.stiffness.get_or_init(|| self.equilibration.apply(&self.unscaled))
     }
 
-    /// The scaled contact rows.
     pub fn contact(&self) -> &SparseMatrix {
         &self.contact
     }

@@ -276,9 +276,6 @@ impl DofMap {
     }
 
     /// The part of nodal forces along some of the dofs.
-    ///
-    /// # Errors
-    /// As [`DofMap::restrict`].
     pub(crate) fn part(&self, nodal: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
         let mut part = self.turned_in(nodal)?.into_owned();
         part.iter_mut().enumerate().filter(|(dof, _)| !keeps(*dof)).for_each(|(_, value)| *value = 0.0);

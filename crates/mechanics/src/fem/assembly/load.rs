@@ -156,9 +156,6 @@ pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64
 
 /// Adds to the nodal load (length `dim * n_nodes`) the densities of the materials times a constant acceleration (length
 /// per time squared).
-///
-/// # Errors
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
 pub(crate) fn add_gravity(body: &ElasticBody, acceleration: [f64; 3], load: &mut [f64]) -> Result<(), Error> {
     let densities = body.densities()?;
     let force = |element: usize, _| acceleration.map(|component| densities[element] * component);
@@ -169,9 +166,6 @@ pub(crate) fn add_gravity(body: &ElasticBody, acceleration: [f64; 3], load: &mut
 /// Adds to the nodal load (length `dim * n_nodes`) the force of a rotation by `omega` (radians per time) about the axis
 /// through `point` along the unit vector `axis`: the density times omega squared times the vector from the axis to the
 /// point.
-///
-/// # Errors
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
 pub(crate) fn add_centrifugal(
     body: &ElasticBody,
     omega: f64,

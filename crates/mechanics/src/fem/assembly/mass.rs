@@ -77,9 +77,6 @@ pub fn mass(
 
 /// The mass of the nodes (`n_nodes x n_nodes`, the lower triangle), the same for each axis; `contact_nodes` lose their
 /// mass if it is redistributed.
-///
-/// # Errors
-/// As [`mass`].
 pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[usize]) -> Result<SparseMatrix, Error> {
     let elements = element_masses(body)?;
     let mut nodal = match form {
@@ -112,9 +109,6 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
 
 /// A bound from below on `v'M v` over that of the lumped mass, for every velocity v; zero or positive, dimensionless.
 /// It is sharp for bars.
-///
-/// # Errors
-/// As [`mass`].
 pub(crate) fn least_over_lumped(body: &ElasticBody, form: MassForm) -> Result<f64, Error> {
     let of_consistent = || -> Result<f64, Error> {
         let of_element = |element: &ElementMass| {
@@ -165,10 +159,6 @@ fn lumped(element: &ElementMass) -> Vec<f64> {
 }
 
 /// The mass of the free dofs from that of the nodes, as [`nodal_mass`].
-///
-/// # Errors
-/// [`qp::Error::Length`](signorini_qp::Error::Length) if `dofs` does not belong to the mesh,
-/// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the mass overflows.
 pub(crate) fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let dimension = body.dimension();

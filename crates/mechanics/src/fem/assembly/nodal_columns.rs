@@ -11,9 +11,6 @@ const OTHER: usize = usize::MAX;
 
 /// The columns of the stiffness at `nodes`, in force per length: `nodal dofs x (dim * nodes.len())`, free and supported
 /// dofs, along the coordinate axes. Only elements around these nodes are computed.
-///
-/// # Errors
-/// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the stiffness overflows.
 pub(crate) fn stiffness_columns(body: &ElasticBody, nodes: &[usize]) -> Result<SparseMatrix, Error> {
     let dimension = body.dimension();
     let place = places(body, nodes);
@@ -42,9 +39,6 @@ pub(crate) fn stiffness_columns(body: &ElasticBody, nodes: &[usize]) -> Result<S
 
 /// The columns at `nodes` of a nodal mass, given by its lower triangle (`n_nodes x n_nodes`): `n_nodes x nodes.len()`,
 /// the same for each axis.
-///
-/// # Errors
-/// [`qp::Error::IndexOutOfRange`](signorini_qp::Error::IndexOutOfRange) for columns of another body.
 pub(crate) fn mass_columns(body: &ElasticBody, nodes: &[usize], mass: &SparseMatrix) -> Result<SparseMatrix, Error> {
     let place = places(body, nodes);
     let mut entries = Vec::new();

@@ -58,7 +58,6 @@ impl PositiveBasis {
         std::iter::once((node, own)).chain(ends.into_iter().flatten().map(|end| (end, WEIGHT)))
     }
 
-    /// The coefficient at a node of a function with these values at the nodes.
     pub fn coefficient(&self, node: usize, value: impl Fn(usize) -> f64) -> f64 {
         match self.ends(node) {
             Some(ends) => positive_coefficient(value(node), ends.map(value)),

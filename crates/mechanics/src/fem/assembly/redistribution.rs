@@ -23,9 +23,6 @@ pub(super) struct Redistribution {
 
 impl Redistribution {
     /// Redistributes the given masses of all elements so that the nodes `massless` have none.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] for a mesh too coarse to preserve mass and centre of mass of a body.
     pub fn of(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Result<Self, Error> {
         let mut heirs = heirs(body, elements, massless)?;
         heirs.resize(body.mesh().nodes().len(), Vec::new());

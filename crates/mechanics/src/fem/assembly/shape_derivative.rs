@@ -132,9 +132,6 @@ pub(crate) fn body_force_by_places(
 }
 
 /// The same for the load of [`add_gravity`](super::add_gravity).
-///
-/// # Errors
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
 pub(crate) fn gravity_by_places(
     body: &ElasticBody,
     acceleration: [f64; 3],
@@ -151,9 +148,6 @@ pub(crate) fn gravity_by_places(
 }
 
 /// The same for the load of [`add_centrifugal`](super::add_centrifugal).
-///
-/// # Errors
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density.
 pub(crate) fn centrifugal_by_places(
     body: &ElasticBody,
     omega: f64,
@@ -241,7 +235,6 @@ pub(crate) fn interpolated(values: &PerNode<[f64; 3]>, shape: &PerNode<f64>, nod
         .fold([0.0; 3], |sum, (value, share)| [0, 1, 2].map(|axis| sum[axis] + share * value[axis]))
 }
 
-/// Adds vectors at some nodes to a nodal vector.
 pub(super) fn add(body: &ElasticBody, nodes: &[usize], vectors: &PerNode<[f64; 3]>, nodal: &mut [f64]) {
     let dimension = body.dimension();
     for (&node, vector) in nodes.iter().zip(vectors) {

@@ -111,9 +111,6 @@ impl Springs {
     }
 
     /// The stiffness of the free dofs, with all springs added to it.
-    ///
-    /// # Errors
-    /// [`qp::Error::NotFinite`] if it overflows.
     pub fn added_to(
         all: &[Springs],
         stiffness: &SymmetricMatrix,

@@ -9,7 +9,6 @@ use crate::fem::mesh::{Boundary, FacetKind, Mesh};
 
 /// A quadrature point of a facet.
 pub(crate) struct FacetPoint<'a> {
-    /// The nodes of the facet.
     pub nodes: &'a [usize],
     /// Values of its shape functions, node by node.
     pub shape: PerNode<f64>,

@@ -42,7 +42,6 @@ pub struct ElasticBody {
     regions: Vec<Region>,
     /// The phases of a region are consecutive; each has an element.
     phases: Vec<Phase>,
-    /// The phase of each element.
     of_elements: Vec<u32>,
     /// Elements whose Jacobian is negative at a node alone: element, local node and determinant, relative to the size
     /// of the element to the power of its dimension.
@@ -66,13 +65,11 @@ impl PartialEq for Skins {
 pub struct BodyElement<'a> {
     /// Its nodes, in the order of its kind.
     pub nodes: &'a [usize],
-    /// Its kind.
     pub kind: ElementKind,
     /// The cell with its coordinates.
     pub cell: Cell,
     /// Its material and its stress without strain.
     pub phase: &'a Phase,
-    /// The number of the phase among the phases of the body.
     pub phase_number: u32,
 }
 
@@ -180,9 +177,6 @@ impl ElasticBody {
 
     /// The same body on a mesh of parts of its elements, region by region, with [`Integration::Standard`]; the second
     /// argument gives, for each element of that mesh, the element that it is a part of.
-    ///
-    /// # Errors
-    /// As [`ElasticBody::new`].
     pub(crate) fn on(&self, mesh: Mesh, parents: &[usize]) -> Result<Self, Error> {
         let regions = Region::on(&self.regions, &mesh, parents);
         let body = Self::new(mesh, *self.phases[0].material(), self.formulation)?;
@@ -192,9 +186,6 @@ impl ElasticBody {
     }
 
     /// The same body with another named boundary.
-    ///
-    /// # Errors
-    /// As [`Mesh::with_boundary`].
     pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
         self.mesh = self.mesh.with_boundary(boundary)?;
         Ok(self)
@@ -293,7 +284,6 @@ impl ElasticBody {
         self.per_kind(|reference| Tabulated::new(reference, self.rule()).extrapolation())
     }
 
-    /// A value for each kind of its elements.
     pub(crate) fn per_kind<T>(&self, make: impl Fn(&'static ReferenceElement) -> T) -> PerKind<T> {
         PerKind::of(self.mesh.kinds(), |kind| make(kind.reference()))
     }
@@ -326,7 +316,6 @@ impl ElasticBody {
         &self.phases[self.of_elements[element] as usize]
     }
 
-    /// The number of the phase of an element among the phases of the body.
     pub(crate) fn phase_number(&self, element: usize) -> u32 {
         self.of_elements[element]
     }
@@ -443,9 +432,6 @@ impl ElasticBody {
     }
 
     /// Checks that a nodal vector has `dimension` entries per node.
-    ///
-    /// # Errors
-    /// [`qp::Error::Length`] if it has not.
     pub(crate) fn check_nodal(&self, name: &'static str, found: usize) -> Result<(), Error> {
         Ok(qp::Error::check_length(name, found, self.nodal_dofs(), "nodal dofs")?)
     }
@@ -470,7 +456,6 @@ pub(crate) struct Elastic {
 }
 
 impl Strained<'_> {
-    /// The deformation at a tabulated point.
     #[inline]
     pub fn displaced(&self, at: &TabulatedPoint) -> Displaced {
         self.body.displaced(&self.element.cell, at, &self.local)
@@ -488,7 +473,6 @@ impl Strained<'_> {
         self.element.cell.unit().powi(self.body.dimension() as i32 - 1)
     }
 
-    /// The stress at a tabulated point with this deformation.
     #[inline]
     pub fn stress(&self, at: &TabulatedPoint, point: &Displaced) -> Symmetric {
         self.element.stress(at, &point.strain(), self.mean_dilatation)

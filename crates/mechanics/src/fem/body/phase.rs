@@ -11,7 +11,6 @@ use signorini_qp as qp;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
     material: Material,
-    /// The law of the material.
     pub law: Law,
     /// The integration of the stiffness of the elements of this phase.
     pub integration: Integration,
@@ -82,8 +81,6 @@ impl OwnStress {
 }
 
 impl Phase {
-    /// # Errors
-    /// As [`Material::law`].
     pub(super) fn new(material: Material, formulation: &Formulation) -> Result<Self, Error> {
         Ok(Phase { material, law: material.law(formulation)?, integration: Integration::Standard, own: None })
     }

@@ -111,9 +111,6 @@ impl ElasticBody {
     }
 
     /// The density of the material of every element, in the order of [`elements`](Self::elements).
-    ///
-    /// # Errors
-    /// [`qp::Error::Setting`] for a material without density.
     pub(crate) fn densities(&self) -> Result<Vec<f64>, Error> {
         let missing = || qp::Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
         let of_phases: Vec<f64> =
@@ -130,7 +127,6 @@ mod tests {
     use crate::fem::mesh::bisection::Tetrahedra;
     use crate::fem::mesh::gmsh::GmshFile;
 
-    /// The volume of each phase.
     fn volumes(body: &ElasticBody) -> Vec<f64> {
         let (tables, mut volumes) = (body.tabulated(), vec![0.0; body.phases().len()]);
         for element in body.elements() {

@@ -32,7 +32,6 @@ pub(crate) struct Displaced {
 }
 
 impl Displaced {
-    /// The strain at the point.
     #[inline]
     pub fn strain(&self) -> Symmetric {
         let slope = &self.slope;

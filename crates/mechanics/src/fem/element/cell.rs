@@ -50,7 +50,6 @@ pub struct Cell {
 pub struct Mapping {
     /// Gradients of the shape functions, per unit.
     pub gradients: PerNode<[f64; 3]>,
-    /// Determinant of the Jacobian.
     pub determinant: f64,
 }
 
@@ -93,7 +92,6 @@ impl Cell {
         cell
     }
 
-    /// Number of nodes of the cell.
     pub fn nodes(&self) -> usize {
         self.reference.nodes.len()
     }
@@ -151,9 +149,6 @@ impl Cell {
 
     /// Checks that the determinant of the Jacobian is positive at the quadrature points of `table`, and not zero at the
     /// nodes; returns the worst node at which it is negative, if there is one.
-    ///
-    /// # Errors
-    /// `NonPositiveJacobian` with the worst point.
     pub fn check(&self, table: &Tabulated) -> Result<Option<NonPositiveJacobian>, NonPositiveJacobian> {
         let determinants = table.nodes.iter().chain(&table.points).enumerate().map(|(point, tabulated)| {
             let value = determinant(&self.jacobian(&tabulated.derivative), self.reference.dimension);

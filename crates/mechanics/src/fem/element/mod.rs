@@ -166,7 +166,6 @@ impl ElementKind {
     }
 }
 
-/// A value for each kind of element of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct PerKind<T>(Vec<(ElementKind, T)>);
 
@@ -176,7 +175,6 @@ impl<T> PerKind<T> {
         PerKind(kinds.map(|kind| (kind, make(kind))).collect())
     }
 
-    /// The value of one of the kinds.
     #[inline]
     pub fn at(&self, kind: ElementKind) -> &T {
         &self.0[self.0.iter().position(|entry| entry.0 == kind).unwrap_or(0)].1

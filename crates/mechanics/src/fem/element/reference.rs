@@ -58,7 +58,6 @@ pub struct ReferenceElement {
     pub dimension: usize,
     /// Reference coordinates of the nodes; the corners come first.
     pub nodes: &'static [[f64; 3]],
-    /// Number of corners.
     pub corners: usize,
     /// The two corners next to each mid-side node, in the order of these nodes.
     pub mid_sides: &'static [[usize; 2]],

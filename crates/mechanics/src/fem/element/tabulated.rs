@@ -8,7 +8,6 @@ use crate::fem::dense::DenseMatrix;
 pub struct TabulatedPoint {
     /// Quadrature weight; zero if the point belongs to no rule.
     pub weight: f64,
-    /// Values.
     pub shape: PerNode<f64>,
     /// Derivatives with respect to the reference coordinates.
     pub derivative: PerNode<[f64; 3]>,

@@ -47,7 +47,6 @@ impl Matrices {
 /// The law of a material in a formulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Law {
-    /// The stiffness.
     pub stiffness: Stiffness,
     formulation: Formulation,
 }

@@ -98,9 +98,6 @@ impl Tetrahedra {
 
     /// The mesh of quadratic tetrahedra with straight edges, in the order of the cells; its boundaries keep their
     /// names.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`], as [`Mesh::new`], and for too many nodes.
     pub fn mesh(&self) -> Result<Mesh, Error> {
         let connectivity = self.cells.iter().flat_map(|cell| turned(&self.nodes, cell.nodes)).collect();
         let of_boundary = |number: usize| {

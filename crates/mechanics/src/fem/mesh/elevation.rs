@@ -9,9 +9,6 @@ use crate::fem::geometry::{key, length, minus};
 impl Mesh {
     /// The same mesh of a quadratic `kind`, whose corners are the nodes of its elements; edges stay straight. The new
     /// nodes follow the old ones.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] for a kind with other corners, or more than `MAX_NODES` nodes.
     pub(crate) fn elevated(&self, kind: ElementKind) -> Result<Mesh, Error> {
         let own = self.kind_of(0);
         if (own.nodes(), own.dimension()) != (kind.corners(), kind.dimension()) {

@@ -19,7 +19,6 @@ impl<K: Copy + Eq + Hash> Lattice<K> {
         Lattice { numbers: HashMap::new(), keys: Vec::new() }
     }
 
-    /// The number of the node with this key.
     pub fn node(&mut self, key: K) -> usize {
         *self.numbers.entry(key).or_insert_with(|| {
             self.keys.push(key);

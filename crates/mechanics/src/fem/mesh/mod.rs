@@ -223,7 +223,6 @@ impl Mesh {
         &self.groups
     }
 
-    /// The same mesh with other groups of its elements.
     fn with_groups(self, groups: Vec<ElementGroup>) -> Self {
         Mesh { groups, ..self }
     }
@@ -233,7 +232,6 @@ impl Mesh {
         &self.node_names
     }
 
-    /// The same mesh with other names of its nodes.
     fn with_node_names(self, node_names: NodeNames) -> Self {
         Mesh { node_names, ..self }
     }
@@ -312,9 +310,6 @@ impl Mesh {
     }
 
     /// The same mesh with one more boundary, after the others.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] for a name that exists, facets of the wrong kind, a facet that is not a face of an element.
     pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
         if self.boundary(&boundary.name).is_some() {
             return named_twice(&boundary.name);

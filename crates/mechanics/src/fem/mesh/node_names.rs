@@ -38,12 +38,10 @@ impl NodeNames {
         all.into_iter().collect()
     }
 
-    /// The names of all sets.
     pub fn sets(&self) -> impl Iterator<Item = &str> {
         self.sets.keys().map(String::as_str)
     }
 
-    /// Returns `true` if nodes have numbers.
     pub fn has_numbers(&self) -> bool {
         !self.numbers.is_empty()
     }

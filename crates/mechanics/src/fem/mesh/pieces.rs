@@ -20,9 +20,7 @@ const OF_HEXAHEDRON: [[usize; 4]; 6] =
 pub(crate) struct Pieces {
     /// The nodes of pieces, in the order of the mesh.
     pub nodes: Vec<[f64; 3]>,
-    /// The nodes of each piece.
     pub cells: Vec<Vec<usize>>,
-    /// The element of each piece.
     pub elements: Vec<usize>,
     /// The number of each node of the mesh; `None` for a mid-edge node of a straight edge.
     numbers: Vec<Option<usize>>,
@@ -30,10 +28,6 @@ pub(crate) struct Pieces {
 
 impl Pieces {
     /// The pieces of a mesh in the plane or in space.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] for an element with edges that are so curved that a piece has no size, and in space for any
-    /// curved edge.
     pub fn of(mesh: &Mesh) -> Result<Self, Error> {
         let straight = is_straight(mesh);
         if !straight && mesh.dimension() == 3 {

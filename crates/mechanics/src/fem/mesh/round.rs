@@ -19,8 +19,6 @@ pub(crate) struct Grading {
 }
 
 impl Grading {
-    /// # Errors
-    /// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a radius or a zone out of its range.
     pub fn new(radius: f64, zone: &Zone) -> Result<Self, Error> {
         zone.check(radius)?;
         let quarter = radius * std::f64::consts::FRAC_PI_4;

@@ -171,9 +171,6 @@ impl<'a> Mortar<'a> {
     }
 
     /// The rows in coefficients of slave nodes and displacements of master nodes.
-    ///
-    /// # Errors
-    /// As [`Mortar::rows`].
     pub(crate) fn found(&self) -> Result<Found, Error> {
         self.check()?;
         let alone @ [slave, master] = &[self.slave, self.master].map(|surface| Sided::alone(&surface));
@@ -244,9 +241,6 @@ impl<'a> Mortar<'a> {
     }
 
     /// What the search finds, without rows; surfaces may lie in several layers before each other.
-    ///
-    /// # Errors
-    /// As [`Mortar::rows`], except for layers.
     pub(crate) fn seen(&self) -> Result<Seen, Error> {
         self.check()?;
         let alone = [self.slave, self.master].map(|surface| Sided::alone(&surface));

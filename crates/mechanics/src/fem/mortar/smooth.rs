@@ -14,7 +14,6 @@ use crate::fem::geometry::{dot, key, minus};
 /// A facet whose normal turns from that at a node by more than this many degrees has a corner there.
 const CORNER: f64 = 20.0;
 
-/// The curve of a surface.
 pub(super) struct Curve<'a> {
     normals: &'a [[f64; 3]],
     /// The nodes at the rim: normals there are those of one side alone.

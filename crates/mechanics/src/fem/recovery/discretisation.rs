@@ -43,9 +43,6 @@ const ROUNDING: f64 = 1e-12;
 
 impl EstimatedError {
     /// As [`discretisation_error`].
-    ///
-    /// # Errors
-    /// As [`discretisation_error`].
     pub fn of(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<Self, Error> {
         body.check_nodal("nodal displacement", displacement.len())?;
         qp::Error::check_length("nodal stress", field.nodes.len(), body.mesh().nodes().len(), "nodes")?;

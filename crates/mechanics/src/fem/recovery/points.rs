@@ -11,9 +11,6 @@ use crate::fem::threads::each;
 use signorini_qp as qp;
 
 /// The strain at each node, of all elements around it: recovered as the stress of [`super::StressField`].
-///
-/// # Errors
-/// [`qp::Error::Length`] if the displacement does not have `dim` entries per node.
 pub(crate) fn nodal_strain(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<Symmetric>, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
@@ -28,10 +25,6 @@ pub(crate) fn nodal_strain(body: &ElasticBody, displacement: &[f64]) -> Result<V
 }
 
 /// Strain and stress in some elements at the points of CalculiX, layer by layer.
-///
-/// # Errors
-/// [`qp::Error::Length`] if the displacement does not have `dim` entries per node, [`qp::Error::Setting`] for an
-/// element that does not exist.
 pub(crate) fn at_points(
     body: &ElasticBody,
     displacement: &[f64],
@@ -56,9 +49,6 @@ pub(crate) fn at_points(
 
 /// The volume of each element, and its energy `1/2 sigma : C^-1 : sigma` with the law in space: in the plane, stress
 /// and strain across it do work as well.
-///
-/// # Errors
-/// As [`nodal_strain`].
 pub(crate) fn volume_and_energy(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<[f64; 2]>, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let tables = body.tabulated();

@@ -58,7 +58,6 @@ impl ClosedSurface {
         self.corners[number as usize]
     }
 
-    /// The triangles around a vertex.
     pub(super) fn around(&self, vertex: u32) -> &[u32] {
         self.around.at(vertex as usize)
     }

@@ -17,7 +17,6 @@ struct Branch {
     count: u32,
 }
 
-/// A tree of boxes.
 #[derive(Debug)]
 pub(crate) struct Tree {
     branches: Vec<Branch>,
@@ -43,7 +42,6 @@ pub(super) fn joined(a: Limits, b: Limits) -> Limits {
 }
 
 impl Tree {
-    /// The tree of items with these numbers.
     pub fn new(numbers: &[u32], limits: impl Fn(u32) -> Limits) -> Self {
         let [low, high] = numbers.iter().fold(NOWHERE, |sum, &number| joined(sum, limits(number)));
         let widest = (0..3).map(|axis| high[axis] - low[axis]).fold(f64::MIN_POSITIVE, f64::max);
@@ -87,7 +85,6 @@ impl Tree {
         [low, high]
     }
 
-    /// Limits of all.
     pub fn limits(&self) -> Limits {
         self.branches.first().map_or(NOWHERE, |all| [all.low, all.high])
     }

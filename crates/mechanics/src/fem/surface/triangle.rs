@@ -44,7 +44,6 @@ impl Triangle {
         if length(normal) <= FLAT * longest * longest { [0.0; 3] } else { unit(normal) }
     }
 
-    /// The angle at a corner.
     pub fn angle(&self, corner: usize) -> f64 {
         let [at, next, last] = [0, 1, 2].map(|step| self.0[(corner + step) % 3]);
         let (a, b) = (minus(next, at), minus(last, at));

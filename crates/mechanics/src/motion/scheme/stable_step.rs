@@ -58,9 +58,6 @@ pub(crate) fn frequency_bound(stiffness: &SymmetricMatrix, mass: &[f64]) -> f64 
 }
 
 /// Checks that `step` is stable.
-///
-/// # Errors
-/// [`qp::Error::Numerical`] with the largest step if it is not; as [`stable_step`].
 pub(super) fn check_step(problem: &DynamicProblem, step: f64) -> Result<(), Error> {
     let most = stable_step(problem)?;
     if step <= most * (1.0 + LIMIT_ROUNDING) {

@@ -252,9 +252,6 @@ impl Answer {
     }
 
     /// The answer with other multipliers of the rows: only its pressures are computed again.
-    ///
-    /// # Errors
-    /// [`qp::Error::Length`] if there is not one for each row.
     pub(crate) fn with_multiplier(&self, multiplier: Vec<f64>) -> Result<Self, Error> {
         let pressure = self.model.pressure(&multiplier)?;
         let (forces, resultants) = (OnceLock::new(), OnceLock::new());
@@ -374,9 +371,6 @@ impl Answer {
     }
 
     /// The error, element by element.
-    ///
-    /// # Errors
-    /// As [`discretisation_error`](Self::discretisation_error).
     pub(crate) fn estimated_error(&self) -> Result<recovery::discretisation::EstimatedError, Error> {
         recovery::discretisation::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)
     }

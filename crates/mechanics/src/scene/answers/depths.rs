@@ -25,9 +25,6 @@ impl Depths {
 impl Answer {
     /// The depths at five points in each direction of every facet that may touch a rigid obstacle. Parts of an obstacle
     /// narrower than the distance of these points are missed.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a place without a row because it lies too deep.
     pub(crate) fn depths_between_nodes(&self) -> Result<Depths, Error> {
         let (model, mesh) = (self.model(), self.model().mesh());
         let mut depths = Depths { of_elements: vec![0.0; mesh.element_count()], pushed: 0.0 };

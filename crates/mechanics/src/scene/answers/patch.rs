@@ -109,7 +109,6 @@ impl<'a> Patch<'a> {
         self.moved.set(Some((node, by)));
     }
 
-    /// The answer whose patch this is.
     pub fn answer(&self) -> &Answer {
         self.answer
     }
@@ -159,7 +158,6 @@ impl<'a> Patch<'a> {
         if bend > ROUNDING_OF_NORMALS { bend } else { 0.0 }
     }
 
-    /// The row of a closed node.
     pub fn row(&self, node: usize) -> Option<&ContactRow> {
         self.row_of.get(&node).map(|&row| &self.answer.model().rows()[row])
     }

@@ -4,7 +4,6 @@
 /// The first step, in the scale of the variable; each further one is a tenth of it.
 const FIRST_STEP: f64 = 1e-3;
 
-/// Number of steps that are tried.
 const STEPS: usize = 6;
 
 /// Differences of two steps agree if they are closer than this, relative to the largest of the vector. Where the vector

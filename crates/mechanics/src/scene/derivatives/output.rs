@@ -26,7 +26,6 @@ const ON_ELEMENT: f64 = 1e-9;
 /// Components of a stress by name; the last is the equivalent stress.
 const COMPONENTS: [&str; 7] = ["xx", "yy", "zz", "xy", "yz", "zx", "von-mises"];
 
-/// An output of an answer.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Output {
     /// As `obstacles[0].force`.
@@ -110,10 +109,6 @@ impl Output {
         names
     }
 
-    /// The output of this name.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] with the outputs that there are.
     pub fn of(name: &str, model: &Model) -> Result<Self, Error> {
         let names = Self::names(model);
         let kind = match name.split_once('@') {
@@ -171,7 +166,6 @@ impl Output {
         })
     }
 
-    /// The unit of the output.
     pub fn unit(&self, model: &Model) -> String {
         let units = model.units();
         let product = || match (units.force.as_str(), units.length.as_str()) {
@@ -376,7 +370,6 @@ pub(super) fn stress_of(body: &ElasticBody, displacement: &[f64], element: &Body
     body.strained(&body.tabulated(), displacement, element).at(&point).1
 }
 
-/// A component of a stress, or its equivalent stress.
 fn of_component(stress: &Symmetric, component: usize) -> f64 {
     match stress.get(component) {
         Some(&value) => value,

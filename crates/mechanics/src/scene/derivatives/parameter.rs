@@ -65,10 +65,6 @@ impl Scene {
         self.varied(&parameter, value - parameter.value)
     }
 
-    /// The parameter of this name.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] with the names that there are.
     pub(crate) fn parameter(&self, name: &str) -> Result<Parameter, Error> {
         let all = self.all_parameters();
         if let Some(found) = all.iter().find(|parameter| parameter.name == name) {
@@ -163,9 +159,6 @@ impl Scene {
     }
 
     /// The scene with a parameter of its shapes, loads, materials or temperatures changed by `by`.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a value that the scene does not allow.
     pub(crate) fn varied(&self, parameter: &Parameter, by: f64) -> Result<Scene, Error> {
         let mut varied = self.clone();
         let value = parameter.value + by;
@@ -217,9 +210,6 @@ impl Parameter {
 impl Scene {
     /// The scene with a one in the place of a number to which a load is proportional, and zeros in those of its other
     /// components.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] if the load does not allow it.
     pub(crate) fn unit_load(&self, parameter: &Parameter) -> Result<Scene, Error> {
         let mut unit = self.clone();
         let Kind::InLoad(index, own) = &parameter.kind else { return Ok(unit) };
@@ -274,7 +264,6 @@ fn in_words(place: &str) -> String {
     name
 }
 
-/// A part of a scene with another number.
 fn with_number<T: serde::Serialize + serde::de::DeserializeOwned>(
     part: &T,
     place: &str,

@@ -158,9 +158,6 @@ impl Sensitivities {
 }
 
 /// The answer of a model, with a proof of its rows.
-///
-/// # Errors
-/// Those of [`signorini_qp::solve`].
 pub(crate) fn proven(model: &Arc<Model>, settings: &Settings) -> Result<(Answer, Solution, Derivatives), Error> {
     let explain = |error: signorini_qp::Error| model.explain(error);
     let settings = settings.clone().with_proof();

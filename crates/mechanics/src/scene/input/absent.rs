@@ -1,6 +1,5 @@
 //! What the program does not model, by the names that other programs give it.
 
-/// A thing that is not modelled.
 struct Absent {
     /// Its names in lower case, without spaces, hyphens and underscores, one space apart.
     names: &'static str,

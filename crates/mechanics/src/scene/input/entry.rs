@@ -106,7 +106,6 @@ pub(crate) fn located(error: Error, prefix: &str) -> Error {
     }
 }
 
-/// The boundary of this name.
 pub(crate) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a Boundary, Error> {
     mesh.boundary(name).ok_or_else(|| {
         let names: Vec<&str> = mesh.boundaries().iter().map(|boundary| boundary.name.as_str()).collect();

@@ -19,9 +19,6 @@ pub(crate) struct Profile {
 
 impl Profile {
     /// The factor at a JSON path, in a model of `dimension` coordinates.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for an invalid direction, and for a table that does not increase.
     pub fn of(spec: &ProfileSpec, path: &str, dimension: usize) -> Result<Self, Error> {
         let along = direction(&format!("{path}.along"), &spec.along, dimension)?;
         table(path, ("places", &spec.places), &spec.factors)?;

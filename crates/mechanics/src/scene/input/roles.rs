@@ -42,7 +42,6 @@ type Extent = ([f64; 3], [f64; 3]);
 /// Facets that are held or pressed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Chosen {
-    /// A boundary.
     Boundary(String),
     /// The facets that face a direction: of a boundary, or of the whole surface.
     Facing(Way, Option<String>),

@@ -107,9 +107,6 @@ impl Scene {
 
     /// Refuses bodies whose assembly alone would take more than `most` bytes: the size of a mesh from a file is known
     /// only now.
-    ///
-    /// # Errors
-    /// [`qp::Error::TooLarge`].
     pub(crate) fn check_bodies(bodies: &[ElasticBody], most: f64) -> Result<(), Error> {
         let (mut dofs, mut stiffness_entries, mut bytes) = (0.0, 0.0, Estimate::START);
         for mesh in bodies.iter().map(ElasticBody::mesh) {

@@ -46,7 +46,6 @@ impl Scene {
         self.bodies().and_then(within).map_err(|error| self.with_line(error))
     }
 
-    /// The files that the scene names.
     pub(crate) fn files(&self) -> Files<'_> {
         Files { folder: self.folder.as_deref().unwrap_or(Path::new("")), reads_outside: self.reads_outside }
     }

@@ -111,7 +111,6 @@ fn apart([low, high]: [[f64; 3]; 2], [other_low, other_high]: [[f64; 3]; 2]) -> 
     length([0, 1, 2].map(|axis| (low[axis] - other_high[axis]).max(other_low[axis] - high[axis]).max(0.0)))
 }
 
-/// The length of the largest facet.
 fn largest_facet(nodes: &[[f64; 3]], surface: &Boundary) -> f64 {
     surface.facets().map(|facet| facet_length(nodes, facet)).fold(0.0, f64::max)
 }

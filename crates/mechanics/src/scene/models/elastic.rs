@@ -44,7 +44,6 @@ struct DescribedBody<'a> {
 }
 
 impl Scene {
-    /// The bodies of the scene, separately.
     pub(crate) fn bodies(&self) -> Result<Vec<ElasticBody>, Error> {
         let read = MeshFiles::default();
         self.described().map(|described| described.elastic_body(&read)).collect()
@@ -88,7 +87,6 @@ impl Scene {
 }
 
 impl DescribedBody<'_> {
-    /// The JSON path of a field of the body.
     fn path(&self, field: &str) -> String {
         format!("{}body.{}{field}", self.place, self.spec.about().name)
     }
@@ -159,7 +157,6 @@ impl DescribedBody<'_> {
     }
 }
 
-/// The warning for a body with elements that lock.
 pub(crate) fn locking(body: &ElasticBody) -> Option<Warning> {
     let of_region = |region: &Region| {
         let kind = body.mesh().kind_of(region.elements().start);

@@ -34,9 +34,6 @@ pub(super) struct Facing<'a> {
 }
 
 impl<'a> Facing<'a> {
-    /// # Errors
-    /// [`Error::Scene`] for a boundary that does not exist, a reach that is not positive, and surfaces that do not face
-    /// each other.
     pub fn of(
         names: [&str; 2],
         reach: Option<f64>,

@@ -76,9 +76,6 @@ impl Held {
     }
 
     /// The dofs of `mesh`: a node that is held along coordinate axes only, or fully, needs no frame.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for components of a node that contradict each other.
     pub fn dofs(&self, mesh: &Mesh) -> Result<DofMap, Error> {
         let dimension = mesh.dimension();
         let mut prescribed = vec![None; dimension * mesh.nodes().len()];

@@ -9,9 +9,6 @@ use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
 impl Model {
     /// The mass of the nodes, in one of its forms; the lower triangle.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a material without density, and for a mesh too coarse to redistribute its mass.
     pub(crate) fn nodal_mass(&self, form: MassForm) -> Result<SparseMatrix, Error> {
         let contact_nodes: Vec<usize> = self.rows().iter().flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
         nodal_mass(self.body(), form, &contact_nodes).map_err(|error| match error {
@@ -21,9 +18,6 @@ impl Model {
     }
 
     /// The mass of the unknowns, from that of the nodes.
-    ///
-    /// # Errors
-    /// [`signorini_qp::Error::NotFinite`] if it overflows.
     pub(crate) fn mass_of(&self, nodal_mass: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
         let parts = &self.parts;
         let of_body = parts.unknowns.congruent(free_mass(&parts.body, &parts.dofs, nodal_mass)?)?;

@@ -88,9 +88,6 @@ impl Scene {
     }
 
     /// Load number `index` on a body.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] at the JSON path of a value that describes no load.
     pub(crate) fn acting<'a>(&self, body: &'a ElasticBody, index: usize) -> Result<Acting<'a>, Error> {
         let placed = |kind: &str| PlacedLoad { body, path: format!("loads[{index}].{kind}"), model: self.model };
         match &self.loads[index] {
@@ -112,9 +109,6 @@ impl Scene {
 }
 
 /// The constant traction of a force on a boundary, in force per area.
-///
-/// # Errors
-/// [`Error::Scene`] at the JSON path of the boundary if its area is zero.
 pub(crate) fn spread(body: &ElasticBody, boundary: &Boundary, force: [f64; 3], path: &str) -> Result<[f64; 3], Error> {
     let area: f64 = tributary_areas(body, boundary).into_iter().map(|(_, area)| area).sum();
     let largest = body.mesh().size().powi(2);
@@ -245,7 +239,6 @@ impl<'a> PlacedLoad<'a> {
         Ok(Acting::Centrifugal { omega: spec.omega, axis: (axis, point) })
     }
 
-    /// Checks that every material has a density.
     fn check_density(&self) -> Result<(), Error> {
         let lacks = |region: &Region| self.body.materials(region).any(|material| material.density().is_none());
         let without = self.body.regions().iter().position(lacks);

@@ -32,9 +32,6 @@ impl BodyMaterials<'_> {
     }
 
     /// The first material: that of all other elements, or of the first part.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for an invalid material, or if there is no material.
     pub fn first(&self) -> Result<Material, Error> {
         let missing = || wrong(format!("{}material", self.place), "is missing; a body needs a material");
         let (spec, path) = self.given().next().ok_or_else(missing)?;
@@ -42,9 +39,6 @@ impl BodyMaterials<'_> {
     }
 
     /// Checks all materials, also those without elements.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a material that is invalid in the formulation.
     pub fn check(&self, formulation: &Formulation) -> Result<(), Error> {
         for (spec, path) in self.given() {
             self.material(spec, &path)?.law(formulation).map_err(|error| self.in_material(error, &path))?;
@@ -53,9 +47,6 @@ impl BodyMaterials<'_> {
     }
 
     /// The body with the materials of its parts; given is the body with the first material everywhere.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a part without elements, elements without a material.
     pub fn placed(&self, mut body: ElasticBody) -> Result<ElasticBody, Error> {
         let mut has_material = vec![self.material.is_some(); body.mesh().element_count()];
         for (index, part) in self.parts.iter().enumerate() {

@@ -178,9 +178,6 @@ impl Model {
     }
 
     /// The same scene with another force on the one obstacle that a force presses.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite.
     pub(crate) fn pressed_by(&self, force: f64) -> Result<Self, Error> {
         let parts = &self.parts;
         let &[obstacle] = parts.unknowns.pressed.as_slice() else {
@@ -204,9 +201,6 @@ impl Model {
     }
 
     /// The solution with pressed obstacles at their first contact with the body, without a force.
-    ///
-    /// # Errors
-    /// As [`solve`].
     pub(crate) fn touched(&self, settings: &Settings) -> Result<Solution, Error> {
         let (parts, problem) = (&self.parts, &self.problem);
         let is_pressed = |row: usize| parts.unknowns.travel(self.rows[row].obstacle).is_some();

@@ -13,10 +13,6 @@ const SAME_ANGLE: f64 = 1e-6;
 
 impl Scene {
     /// The body with the parts of its boundaries that the scene names, after the others.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a name that exists, a boundary that does not exist, an invalid region, a part without a
-    /// facet.
     pub(crate) fn with_parts(&self, mut body: ElasticBody) -> Result<ElasticBody, Error> {
         for (index, spec) in self.parts.iter().enumerate() {
             let path = format!("parts[{index}]");
@@ -35,9 +31,6 @@ impl Scene {
 
 impl PartSpec {
     /// The facets of `whole` that belong to the part.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for an invalid region, and without a facet.
     pub(crate) fn facets(&self, body: &ElasticBody, whole: &Boundary, path: &str) -> Result<Boundary, Error> {
         let (region, size) = (Region::of(self, path, body.dimension())?, body.mesh().size());
         let tolerance = PLACE_TOLERANCE * size;
@@ -65,9 +58,6 @@ impl PartSpec {
 
 impl PartBoxSpec {
     /// The smallest and the largest coordinates of the box at the JSON path `path`.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a corner that is not a point of the model, or an empty box.
     pub(crate) fn corners(&self, path: &str, dimension: usize) -> Result<[[f64; 3]; 2], Error> {
         let low = vector(&format!("{path}.box.min"), &self.min, dimension)?;
         let high = vector(&format!("{path}.box.max"), &self.max, dimension)?;

@@ -58,9 +58,6 @@ pub(crate) enum Origin {
 
 impl Parts {
     /// The stiffness of the free dofs of the bodies, with all springs of the scene added to it.
-    ///
-    /// # Errors
-    /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if it overflows.
     pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
         match self.springs.is_empty() {
             true => Ok(of_body),
@@ -86,9 +83,6 @@ impl Parts {
     }
 
     /// A problem of the unknowns with the equations of the ties.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::with_equalities`].
     pub fn tied(&self, problem: ContactProblem) -> Result<ContactProblem, Error> {
         match self.ties.rows.is_empty() {
             true => Ok(problem),

@@ -26,7 +26,6 @@ const CONTRADICTION: f64 = 1e-9;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ReferencePoints {
     pub all: Vec<ReferencePoint>,
-    /// Number of nodes of the mesh.
     nodes: usize,
     /// The sums of each tie at points that are zero.
     pub ties: BTreeMap<usize, Vec<Sum>>,
@@ -40,7 +39,6 @@ pub(crate) struct ReferencePoints {
 /// What ties and springs at points are in the scene, before the elimination.
 #[derive(Clone, Debug, Default)]
 struct Whole {
-    /// Each equation with its tie.
     equations: Vec<(usize, Sum)>,
     /// The elongation of each spring, without points that no tie joins to a body: they are the ground.
     springs: BTreeMap<usize, Sum>,
@@ -48,7 +46,6 @@ struct Whole {
     sides: BTreeMap<usize, BTreeSet<usize>>,
 }
 
-/// A point, with what moves it.
 #[derive(Clone, Debug)]
 pub(crate) struct ReferencePoint {
     pub name: String,
@@ -62,10 +59,6 @@ pub(crate) struct ReferencePoint {
 }
 
 impl Scene {
-    /// The number of a reference point.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a name that no point has.
     pub(super) fn point_named(&self, name: &str, path: &str) -> Result<usize, Error> {
         self.points.iter().position(|point| point.name == name).ok_or_else(|| {
             let names = || self.points.iter().map(|point| point.name.as_str());
@@ -76,9 +69,6 @@ impl Scene {
     }
 
     /// The number of a reference point that equations, springs and couplings may name.
-    ///
-    /// # Errors
-    /// As [`point_named`](Self::point_named); [`Error::Scene`] for a point that stands for a bolt.
     fn joining(&self, name: &str, path: &str) -> Result<usize, Error> {
         match self.bolt_of(name) {
             None => self.point_named(name, path),
@@ -90,10 +80,6 @@ impl Scene {
     }
 
     /// A sum of terms, and the place of the first one in the list; points come after the nodes.
-    ///
-    /// # Errors
-    /// As [`terms_of`]; [`Error::Scene`] for a point that does not exist or stands for a bolt, and a rotation of a
-    /// node.
     fn sum_of(&self, terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<(Sum, usize), Error> {
         let (mut sum, nodes) = (Sum::default(), body.mesh().nodes().len());
         let point = |name: &str, path: String| self.joining(name, &path).map(|point| nodes + point);
@@ -107,10 +93,6 @@ impl Scene {
     }
 
     /// The reference points, eliminated from all ties, springs and loads.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a point without a name of its own, for couplings and terms that name no point or no node,
-    /// for equations that prescribed components contradict, and for a force or a spring on a component that is free.
     pub(crate) fn reference_points(&self, body: &ElasticBody) -> Result<ReferencePoints, Error> {
         let nodes = body.mesh().nodes().len();
         let mut points = ReferencePoints { nodes, ..ReferencePoints::default() };
@@ -243,7 +225,6 @@ impl Elimination {
         Ok(Elimination { nodes, equations, springs, load, whole, solved: Vec::new() })
     }
 
-    /// All sums.
     fn sums(&mut self) -> impl Iterator<Item = &mut Sum> {
         let Elimination { equations, springs, load, solved, .. } = self;
         let equations = equations.iter_mut().map(|(_, sum)| sum);
@@ -264,9 +245,6 @@ impl Elimination {
     }
 
     /// The points after the elimination of all their components.
-    ///
-    /// # Errors
-    /// As [`Scene::reference_points`].
     fn points(
         mut self,
         scene: &Scene,

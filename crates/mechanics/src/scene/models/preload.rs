@@ -21,7 +21,6 @@ use crate::scene::input::schema::{PointSpec, PreloadSpec, Scene, TieSpec};
 /// The shortening of a bolt: the sum of `vector . u` over its terms.
 #[derive(Clone, Debug)]
 pub(crate) struct Shortening {
-    /// The number of its tie.
     pub tie: usize,
     /// Nodes with their vectors, as in [`TieRow`].
     pub terms: Vec<(usize, [f64; 3])>,
@@ -59,10 +58,6 @@ impl Scene {
     }
 
     /// A preload with the force or the shortening of its point.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a point that does not exist or stands for another bolt, and for a preload with a force or a
-    /// shortening of its own.
     pub(super) fn drawn(&self, spec: &PreloadSpec, (path, tie): (&str, usize)) -> Result<PreloadSpec, Error> {
         let Some(name) = &spec.point else { return Ok(spec.clone()) };
         let point = self.point_named(name, &format!("{path}.point"))?;
@@ -83,11 +78,6 @@ impl Scene {
 
 impl PreloadSpec {
     /// The rows of the cut at `path`, tie number `tie`, and its shortening.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for boundaries that do not face each other, for a preload without a force or a shortening or
-    /// with both, and for a direction along the faces; [`Error::Refused`] for one against the outward normal
-    /// with a positive amount.
     pub(super) fn rows(
         &self,
         (path, tie): (&str, usize),

@@ -307,9 +307,6 @@ impl Model {
 
     /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the
     /// body.
-    ///
-    /// # Errors
-    /// [`qp::Error::Length`](signorini_qp::Error::Length) if the forces are not those of all nodes.
     pub(crate) fn force_of_faces(&self, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
         let faces = self.parts.rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
         let mut on_face = vec![false; self.mesh().nodes().len()];
@@ -319,9 +316,6 @@ impl Model {
     }
 
     /// The resultants of the rigid faces on the body, in the order of the scene, with their motions.
-    ///
-    /// # Errors
-    /// As [`Model::force_of_faces`].
     pub(crate) fn face_resultants(&self, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
         let mut all = Vec::with_capacity(self.parts.rigid_faces.len());
         for (index, face) in self.parts.rigid_faces.iter().enumerate() {

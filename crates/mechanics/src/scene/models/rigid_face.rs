@@ -49,11 +49,6 @@ impl Motion {
 impl Scene {
     /// The rigid faces. Other prescribed components of their nodes are removed if the faces move the nodes in the same
     /// way.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a face that is not a boundary, shares nodes with another face or has motions or forces that
-    /// the model does not have, and for a node at which a support or a plane of symmetry contradicts the motion of its
-    /// face.
     pub(crate) fn rigid_faces(&self, body: &ElasticBody, held: &mut Held) -> Result<Vec<RigidFace>, Error> {
         let mut owner: BTreeMap<usize, usize> = BTreeMap::new();
         let mut faces = Vec::with_capacity(self.rigid_faces.len());
@@ -174,10 +169,6 @@ pub(super) fn motion_name(kind: usize) -> &'static str {
 }
 
 /// The motions of the model, with their prescribed values and forces.
-///
-/// # Errors
-/// [`Error::Scene`] for a motion, a force or a moment that the model does not have, and for a force along a prescribed
-/// motion.
 pub(super) fn motions(given: &Given, path: &str, body: &ElasticBody) -> Result<Vec<Motion>, Error> {
     let (dimension, turns) = (body.dimension(), body.turns());
     let revolved = body.formulation().is_axisymmetric();

@@ -14,9 +14,6 @@ pub(crate) struct Selection<'a> {
 
 impl Selection<'_> {
     /// The elements, numbered from 0, of the selection at the JSON path `path`.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a group that does not exist, an invalid box, or an empty selection.
     pub fn elements(&self, body: &ElasticBody, path: &str) -> Result<Vec<usize>, Error> {
         let mut elements: Vec<usize> = match self.group {
             None => (0..body.mesh().element_count()).collect(),
@@ -51,7 +48,6 @@ fn of_group(body: &ElasticBody, name: &str, path: &str) -> Result<Vec<usize>, Er
     Ok(elements)
 }
 
-/// The centroid of each element.
 pub(crate) fn centroids(body: &ElasticBody) -> Vec<[f64; 3]> {
     let tables = body.tabulated();
     body.elements().map(|element| element.cell.place(&tables.at(element.kind).centroid.shape)).collect()

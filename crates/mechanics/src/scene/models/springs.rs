@@ -15,9 +15,6 @@ const BOTH: &str = "has both a place `on` and `terms` with `along`; give one of 
 
 impl Scene {
     /// The springs, in the order of the scene.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for springs without a direction, a positive stiffness or a place.
     pub(crate) fn springs(&self, body: &ElasticBody, points: &ReferencePoints) -> Result<Vec<Springs>, Error> {
         let placed = |(index, spec): (usize, &SpringSpec)| match points.spring(index) {
             Some(springs) => Ok(springs),
@@ -80,9 +77,6 @@ impl SpringSpec {
     }
 
     /// The stiffness per area of springs under a boundary, along the axes and along the normal.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] without a positive stiffness.
     pub(crate) fn per_area(
         &self,
         path: &str,
@@ -104,9 +98,6 @@ impl SpringSpec {
     }
 
     /// The stiffness along the elongation that terms give.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] without it, and with others.
     pub(crate) fn along_alone(&self, path: &str) -> Result<f64, Error> {
         if self.on.is_some() {
             return Err(wrong(path, BOTH));

@@ -23,9 +23,6 @@ const SYMMETRY: &str = "symmetry-";
 
 impl Scene {
     /// The suspect supports, loads and properties of the mesh.
-    ///
-    /// # Errors
-    /// As [`Scene::build`].
     pub(crate) fn suspect(&self, body: &ElasticBody, dofs: &DofMap) -> Result<Vec<Warning>, Error> {
         let mut warnings = self.free_symmetries(body);
         let tied = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));

@@ -20,10 +20,6 @@ pub(crate) struct Symmetry {
 
 impl Scene {
     /// The planes of symmetry; they lie at flat ends of the body.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a plane that is named twice or does not exist in the model, if the body has no flat end
-    /// normal to its axis, or if both ends are flat and neither lies at zero.
     pub(crate) fn planes_of_symmetry(&self, body: &ElasticBody) -> Result<Symmetry, Error> {
         let rounding = COORDINATE_ROUNDING * body.mesh().size();
         let mut symmetry = Symmetry { planes: Vec::new(), rounding };

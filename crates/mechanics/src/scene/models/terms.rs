@@ -9,18 +9,11 @@ use crate::scene::input::schema::{TermPlace, TermSpec};
 pub(super) type NumberOfPoint<'a> = &'a dyn Fn(&str, String) -> Result<usize, Error>;
 
 /// For terms of nodes alone.
-///
-/// # Errors
-/// [`Error::Scene`] for any name.
 pub(super) fn no_point(name: &str, path: String) -> Result<usize, Error> {
     Err(wrong(path, format!("the reference point `{name}` is not known here")))
 }
 
 /// The nodes and points of terms, each with its vector [x, y, z].
-///
-/// # Errors
-/// [`Error::Scene`] for a list without terms, a term without a node or a coefficient, and for a displacement or a
-/// rotation that the model does not have.
 pub(super) fn terms_of(
     terms: &[TermSpec],
     path: &str,
@@ -63,7 +56,6 @@ pub(super) fn terms_of(
     }
 }
 
-/// The one node of a term.
 fn node_of(place: &TermPlace, path: &str, body: &ElasticBody) -> Result<usize, Error> {
     let mesh = body.mesh();
     let (nodes, path) = match place {

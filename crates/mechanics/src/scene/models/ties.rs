@@ -59,10 +59,6 @@ impl Ties {
 
 impl Scene {
     /// The ties, without equations that supports alone fulfil.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a boundary or a node that does not exist, surfaces that do not face each other, an equation
-    /// without terms, and for one that supports contradict.
     pub(crate) fn tied(
         &self,
         body: &ElasticBody,
@@ -165,7 +161,6 @@ fn means(facing: &Facing) -> Result<Vec<TieRow>, Error> {
     Ok((0..facing.body.dimension()).map(rows).collect::<Result<Vec<_>, Error>>()?.concat())
 }
 
-/// The row of an equation.
 fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMap) -> Result<TieRow, Error> {
     let path = format!("{path}.equation");
     finite(format!("{path}.value"), spec.value)?;

@@ -88,7 +88,6 @@ impl Unknowns {
         Ok(Unknowns { free: dofs.free().len(), on_faces, pressed })
     }
 
-    /// Number of unknowns of the body.
     fn of_body(&self) -> usize {
         self.on_faces.as_ref().map_or(self.free, |on_faces| on_faces.rows.rows())
     }
@@ -111,9 +110,6 @@ impl Unknowns {
     }
 
     /// The displacement of the free dofs at values of the unknowns.
-    ///
-    /// # Errors
-    /// [`qp::Error::Length`] if there is not one value for each unknown.
     pub fn displacement<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         let mut moved = self.motion(values)?;
         if let Some(on_faces) = &self.on_faces {
@@ -123,9 +119,6 @@ impl Unknowns {
     }
 
     /// The motion of the free dofs in one of the unknowns.
-    ///
-    /// # Errors
-    /// As [`Unknowns::displacement`].
     pub fn motion<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         qp::Error::check_length("displacement", values.len(), self.count(), "unknowns")?;
         let of_body = &values[..self.of_body()];
@@ -197,7 +190,6 @@ impl Unknowns {
         })
     }
 
-    /// Returns `true` if there are rigid faces.
     pub fn has_faces(&self) -> bool {
         self.on_faces.is_some()
     }

@@ -17,10 +17,6 @@ pub(crate) struct Unstrained<'a> {
 
 impl Unstrained<'_> {
     /// The body with them; `place` is the prefix of its JSON paths.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for invalid values, elements that do not exist, a material without expansion, a dynamic
-    /// analysis.
     pub fn placed(
         &self,
         mut body: ElasticBody,

@@ -10,9 +10,7 @@ use crate::scene::input::schema::{DynamicSpec, FactorSpec, LoadInTimeSpec, Scene
 /// The loads on all nodes, in force, length `dim * n_nodes` each; or on some nodes, in their order.
 #[derive(Clone, Debug)]
 pub(crate) struct NodalLoads {
-    /// The sum of the constant loads.
     pub constant: Vec<f64>,
-    /// Each changing load with its factor.
     pub changing: Vec<(TimeFunction, Vec<f64>)>,
 }
 
@@ -42,9 +40,6 @@ impl NodalLoads {
 impl Scene {
     /// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is the JSON path of the
     /// motion.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a load that does not exist or has two factors, and for an invalid factor.
     pub(crate) fn loads_in_time(&self, body: &ElasticBody, spec: &DynamicSpec) -> Result<NodalLoads, Error> {
         let changes = |load: usize| spec.loads_in_time.iter().any(|changing| changing.load == load);
         let mut constant = vec![0.0; body.nodal_dofs()];

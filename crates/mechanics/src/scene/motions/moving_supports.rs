@@ -37,9 +37,6 @@ type Effects = Vec<(usize, usize, f64)>;
 impl MovingSupports {
     /// The data of `model` with a nodal mass (the lower triangle, `n_nodes x n_nodes`), the damping c_m and c_k, and
     /// the loads on all nodes.
-    ///
-    /// # Errors
-    /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the stiffness overflows.
     pub fn new(model: &Model, mass: &SparseMatrix, damping: [f64; 2], loads: &NodalLoads) -> Result<Self, Error> {
         let (body, dofs, parts) = (model.body(), model.dofs(), &model.parts);
         let dimension = body.dimension();

@@ -25,9 +25,6 @@ impl WatchedPoint {
     }
 
     /// The point of `spec`, which is at the JSON path `path`.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a node that does not exist or a point outside the body.
     pub(crate) fn new(model: &Model, spec: &WatchSpec, path: &str) -> Result<Self, Error> {
         let (mesh, dimension) = (model.mesh(), model.mesh().dimension());
         let at = match spec {

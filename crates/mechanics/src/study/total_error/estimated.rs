@@ -35,9 +35,6 @@ impl TotalError {
 
 /// Refines the meshes of a scene until the estimate is small enough, or time, memory or meshes end: tetrahedra where
 /// the estimate is large, other elements everywhere.
-///
-/// # Errors
-/// Those of [`solve`] on the first mesh.
 pub(super) fn total_error(given: &Given, reason: String) -> Result<TotalError, Error> {
     let settings = given.settings.clone().with_accuracy(OF_ALGEBRA * given.goal.total_error);
     let search = Search { given, settings };

@@ -30,10 +30,6 @@ impl TotalErrorGoal {
         error > 0.0 && error < 1.0
     }
 
-    /// Checks both errors.
-    ///
-    /// # Errors
-    /// [`qp::Error::Setting`] for the first that may not be asked for.
     pub(super) fn check(self) -> Result<(), Error> {
         for (name, value) in [("total_error", Some(self.total_error)), ("force_error", self.force_error)] {
             if let Some(value) = value.filter(|&value| !Self::is_allowed(value)) {

@@ -26,10 +26,6 @@ const COARSE: usize = 6;
 const OF_SOLVER: f64 = 1e-4;
 
 /// Refines the mesh of a problem until its total error is small enough, or time or memory end.
-///
-/// # Errors
-/// Those of [`signorini_qp::solve`] on the first mesh; [`Error::Scene`] for a bound of the force with obstacles from
-/// several directions.
 pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
     if given.goal.force_error.is_some() && !problem.has_one_direction() {
         let message = "the contact force has a guaranteed interval only if all obstacles stand still, in one direction from the body";
@@ -217,9 +213,6 @@ impl Search<'_> {
     }
 
     /// The answer on the scene's own mesh and its warnings; `None` without an answer.
-    ///
-    /// # Errors
-    /// Those of [`of_refined`].
     fn own_answer(&self) -> Result<Option<(Answer, Vec<AnswerWarning>)>, Error> {
         let Ok(solution) = solve(self.given.model.problem(), &self.given.settings.clone().exactly()) else {
             return Ok(None);

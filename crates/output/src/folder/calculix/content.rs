@@ -24,8 +24,6 @@ pub(super) struct Content<'a> {
 }
 
 impl<'a> Content<'a> {
-    /// # Errors
-    /// [`Error::Mesh`] if the mesh of the answer does not come from a deck, and those of its forces.
     pub fn new(answer: &'a Answer, requests: &'a Requests) -> Result<Self, Error> {
         let mesh = answer.model().mesh();
         let (Some(numbers), Some(elements)) = (mesh.node_numbers(), mesh.element_numbers()) else {

@@ -59,9 +59,6 @@ pub(super) struct Fields<'a> {
 impl<'a> Fields<'a> {
     /// The fields in the order of CalculiX: displacement and stress, contact if there is a row, and the others if the
     /// deck asks for them.
-    ///
-    /// # Errors
-    /// Those of the recovery of stresses, and of values without room.
     pub fn of(content: &'a Content<'a>) -> Result<Self, Error> {
         let asks = |label: &str| content.requests.fields.contains(label);
         let (answer, mesh) = (content.answer, content.answer.model().mesh());

@@ -10,9 +10,6 @@ const SMALLEST: f64 = 1e-99;
 const LARGEST: f64 = 9.999_999e99;
 
 /// The values of a table or a field of this name, if all have room.
-///
-/// # Errors
-/// [`qp::Error::NotFinite`] for a value that is not finite or has no room.
 pub(super) fn checked(of: &str, values: Vec<f64>) -> Result<Vec<f64>, Error> {
     // A value that is no number is not below either.
     let has_room = |value: &f64| value.abs() < LARGEST;

@@ -5,7 +5,6 @@ use std::io::{self, Write};
 use super::numbers;
 use signorini_mechanics::scene::Requests;
 
-/// Writes the file of some steps.
 pub(super) fn write<'a>(out: &mut dyn Write, steps: impl Iterator<Item = &'a Requests>) -> io::Result<()> {
     writeln!(out, "SUMMARY OF JOB INFORMATION")?;
     writeln!(out, "  STEP      INC     ATT  ITRS     TOT TIME     STEP TIME      INC TIME")?;

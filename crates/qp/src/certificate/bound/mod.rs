@@ -32,8 +32,7 @@ mod witness;
 use std::sync::Arc;
 
 use super::EnergyNorm;
-use super::energy_norm::Loose;
-use super::springs::Springs;
+use super::energy_norm::{Loose, Springs};
 use crate::error::Error;
 use crate::linear::SparseMatrix;
 use crate::problem::{ContactProblem, Parts};
@@ -69,7 +68,6 @@ pub(super) struct ErrorBound {
 }
 
 impl ErrorBound {
-    /// No bound.
     pub fn none() -> Self {
         ErrorBound { whole: f64::INFINITY, of_parts: None }
     }
@@ -203,9 +201,6 @@ impl ContactProblem {
     /// The energy norm of K; if K is semidefinite, that of K with springs on the rows that press, without the dofs that
     /// have neither stiffness nor a force. `None` if the springs do not hold the body, or if K has a negative
     /// eigenvalue, which springs would hide.
-    ///
-    /// # Errors
-    /// As [`EnergyNorm::of`].
     pub(super) fn energy_norm(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<EnergyNorm>, Error> {
         if let Some(norm) = EnergyNorm::of(&self.stiffness, &self.contact)? {
             return Ok(Some(norm));
@@ -229,9 +224,6 @@ impl ContactProblem {
 
     /// The energy norm of a stiffness that is definite by itself, or with springs on equalities alone: it serves every
     /// answer. `None` if there is none.
-    ///
-    /// # Errors
-    /// As [`EnergyNorm::of`].
     pub(crate) fn norm_on_equalities(&self) -> Result<Option<EnergyNorm>, Error> {
         let (at_rest, forces) = (vec![0.0; self.dofs()], vec![0.0; self.rows()]);
         let norm = self.two_sided(&forces).0.energy_norm(&at_rest, &forces)?;

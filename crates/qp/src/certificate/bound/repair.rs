@@ -7,7 +7,6 @@ use super::{Answer, EnergyNorm, ErrorBound};
 use crate::linear::{SparseMatrix, dot, forward_all, ldexp};
 use crate::problem::ContactProblem;
 
-/// The multipliers of a repair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Multipliers {
     /// The multipliers that balance the closed rows at their gaps.
@@ -103,7 +102,6 @@ impl<'a> Repair<'a> {
         Some(Repair { problem, norm, boundary, answer, rows, violation, multiplier, halves, interior, swept })
     }
 
-    /// Number of rows.
     pub fn count(&self) -> usize {
         self.rows.shift.len()
     }
@@ -136,7 +134,6 @@ impl<'a> Repair<'a> {
         }
     }
 
-    /// The product of two halves.
     pub fn product(&self, a: usize, b: usize) -> f64 {
         match &self.rows.compliance {
             Some(compliance) => compliance.product(a, b),
@@ -144,7 +141,6 @@ impl<'a> Repair<'a> {
         }
     }
 
-    /// Makes the halves of these rows in one sweep.
     fn find_halves(&self, rows: &[usize]) {
         let missing: Vec<usize> = rows.iter().copied().filter(|&row| self.halves[row].get().is_none()).collect();
         let size = self.boundary.dofs.len();
@@ -169,7 +165,6 @@ impl<'a> Repair<'a> {
         Some(rows.iter().map(|&row| self.half(row)).collect())
     }
 
-    /// The sweep of a force on the boundary.
     pub fn sweep(&self, force: &Force) -> Vec<f64> {
         let mut sweep = self.spread(&force.rows);
         sweep.iter_mut().zip(&self.swept).for_each(|(entry, swept)| *entry += force.alpha * swept);

@@ -95,7 +95,6 @@ impl ContactProblem {
         squares.map(|(force, stiffness)| force * force / stiffness).sum()
     }
 
-    /// The bound of a repaired answer.
     fn with_slack(&self, norm: &EnergyNorm, answer: &Answer, repaired: &Repaired) -> ErrorBound {
         let Repaired { repair, residual, multiplier, rest, closed } = repaired;
         let parts = self.parts();

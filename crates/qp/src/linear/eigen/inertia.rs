@@ -7,8 +7,8 @@ use faer::sparse::linalg::cholesky::supernodal::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut};
 
+use super::super::power_iteration::random;
 use super::super::{Analysis, FactorError, SymmetricMatrix, call, largest, par};
-use super::random::random;
 use crate::error::Error;
 
 /// A solution with the factor leaves at most this share of its load, if the pivots are those of the matrix and not of
@@ -22,9 +22,6 @@ const ACCURATE: f64 = 1e-6;
 /// that a small pivot may spoil it. The pivots are exactly those of a matrix A + E. A random load b excites the
 /// eigenvector of A + E that is nearest to singular by the inverse of its eigenvalue; if the solution leaves little of
 /// b, E is small beside that eigenvalue, and no sign is that of rounding.
-///
-/// # Errors
-/// [`Error::Numerical`] for lack of memory.
 pub fn negative_eigenvalues(
     analysis: &Analysis,
     matrix: &SymmetricMatrix,

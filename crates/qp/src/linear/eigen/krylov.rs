@@ -4,8 +4,8 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
+use super::super::power_iteration::random;
 use super::super::{FactorError, call, dot, norm};
-use super::random::random;
 use crate::error::Error;
 
 /// Number of columns that are added at once: eigenvalues of up to this multiplicity converge together.
@@ -82,7 +82,6 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
         space
     }
 
-    /// Number of columns of the basis.
     pub fn columns(&self) -> usize {
         self.projected.len()
     }
@@ -210,9 +209,6 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
     }
 
     /// The eigenpairs of the operator in the space.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] if the iteration for the small matrix fails.
     pub fn pairs(&self) -> Result<Pairs, Error> {
         let count = self.columns();
         let matrix = Mat::from_fn(count, count, |i, j| self.projected[j.max(i)][i.min(j)]);

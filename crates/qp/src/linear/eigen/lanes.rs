@@ -32,7 +32,6 @@ impl Lanes {
         Lanes { rows, columns: columns.len() / dim.max(1) }
     }
 
-    /// The columns, one after the other.
     pub fn into_columns(self) -> Vec<f64> {
         (0..self.columns).flat_map(|lane| self.rows.iter().map(move |row| row[lane])).collect()
     }
@@ -56,7 +55,7 @@ impl Lanes {
 
     fn swept(mut self, factor: &Cholesky, direction: Direction) -> Self {
         match factor.block_columns() {
-            Some((nodes, values)) => Arch::new().dispatch(Sweep { nodes, values, x: &mut self.rows, direction }),
+            Some((nodes, values)) => Arch::new().dispatch(LaneSweep { nodes, values, x: &mut self.rows, direction }),
             // Nothing passes for a solution.
             None => self.rows.fill([f64::NAN; LANES]),
         }
@@ -102,7 +101,6 @@ struct Block<'a> {
     own: Range<usize>,
     /// Its entries, column by column: the rows of its own columns, then those below.
     values: &'a [f64],
-    /// The rows below.
     below: &'a [usize],
 }
 
@@ -117,7 +115,6 @@ impl<'a> Block<'a> {
         Block { own, values, below }
     }
 
-    /// The entries of column j.
     #[inline(always)]
     fn column(&self, j: usize) -> &'a [f64] {
         let height = self.own.len() + self.below.len();
@@ -182,7 +179,6 @@ fn without<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], factor: f64,
     row
 }
 
-/// A row over a number.
 #[inline(always)]
 fn divided<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], by: f64) -> [S::f64s; P] {
     let by = simd.splat_f64s(by);
@@ -193,7 +189,7 @@ fn divided<S: Simd, const P: usize>(simd: S, mut row: [S::f64s; P], by: f64) -> 
 }
 
 /// A sweep through the block columns of a factor.
-struct Sweep<'a> {
+struct LaneSweep<'a> {
     nodes: &'a SymbolicSupernodalCholesky<usize>,
     values: &'a [f64],
     x: &'a mut [Lane],
@@ -206,7 +202,7 @@ enum Direction {
     Backward,
 }
 
-impl WithSimd for Sweep<'_> {
+impl WithSimd for LaneSweep<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -219,11 +215,11 @@ impl WithSimd for Sweep<'_> {
     }
 }
 
-impl Sweep<'_> {
+impl LaneSweep<'_> {
     /// Runs with P vectors for each row.
     #[inline(always)]
     fn run<S: Simd, const P: usize>(self, simd: S) {
-        let Sweep { nodes, values, x, direction } = self;
+        let LaneSweep { nodes, values, x, direction } = self;
         let mut buffer: Vec<f64> = Vec::new();
         let count = nodes.n_supernodes();
         for step in 0..count {

@@ -4,7 +4,6 @@
 mod inertia;
 mod krylov;
 mod lanes;
-mod random;
 
 pub use inertia::negative_eigenvalues;
 pub use krylov::{Krylov, Pairs};

@@ -14,7 +14,6 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The nodes to which this one is strongly connected.
     pub fn neighbours(&self, node: usize) -> &[u32] {
         &self.neighbours[self.starts[node]..self.starts[node + 1]]
     }
@@ -64,7 +63,6 @@ pub fn aggregate(graph: &Graph) -> (Vec<u32>, usize) {
     (of_node, count as usize)
 }
 
-/// The strong connections of a block matrix.
 pub fn strong_connections<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> Graph {
     let square = |place: usize| matrix.block(place).iter().map(|value| value.double() * value.double()).sum::<f64>();
     // Shared rows have few blocks.

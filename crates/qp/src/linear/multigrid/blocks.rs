@@ -20,7 +20,6 @@ pub struct BlockMatrix<T> {
     pub height: usize,
     /// Columns of a block.
     pub width: usize,
-    /// Number of block columns.
     pub columns: usize,
     /// Start of each block row in `indices`, length block rows + 1; if rows are shared, only the differences count.
     pub starts: Vec<usize>,
@@ -78,12 +77,10 @@ macro_rules! with_block_size {
 pub(super) use with_block_size;
 
 impl<T: Real> BlockMatrix<T> {
-    /// Number of block rows.
     pub fn rows(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Number of values of a block.
     pub fn block_size(&self) -> usize {
         self.height * self.width
     }
@@ -111,7 +108,6 @@ impl<T: Real> BlockMatrix<T> {
         !self.shared_rows.is_empty()
     }
 
-    /// The columns of the blocks of a row.
     #[inline]
     pub fn columns_of(&self, row: usize) -> impl ExactSizeIterator<Item = u32> + '_ {
         let (places, shift) = self.places(row);
@@ -125,14 +121,12 @@ impl<T: Real> BlockMatrix<T> {
         places.map(move |place| (self.indices[place].wrapping_add(shift) as usize, self.block(place)))
     }
 
-    /// The place of the diagonal block of a row, if there is one.
     pub fn diagonal_place(&self, row: usize) -> Option<usize> {
         let (places, shift) = self.places(row);
         let found = self.indices[places.clone()].binary_search_by_key(&row, |index| index.wrapping_add(shift) as usize);
         found.ok().map(|place| places.start + place)
     }
 
-    /// Bytes of memory that the matrix holds.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.starts[..])
             + size_of_val(&self.indices[..])
@@ -282,7 +276,6 @@ impl<T: Real> BlockMatrix<T> {
         sum
     }
 
-    /// The same matrix without the blocks of zeros.
     pub fn without_zeros(&self) -> Self {
         let mut kept = Self::empty(0, self.columns, (self.height, self.width));
         for row in 0..self.rows() {
@@ -309,7 +302,6 @@ impl<T: Real> BlockMatrix<T> {
         part
     }
 
-    /// The transposed matrix.
     pub fn transposed(&self) -> Self {
         self.transposed_rows(0..self.rows())
     }

@@ -62,7 +62,6 @@ impl<T: Real> Chebyshev<T> {
         smoother
     }
 
-    /// Returns `true` if it works on patches.
     pub fn has_patches(&self) -> bool {
         self.patches.is_some()
     }
@@ -156,7 +155,6 @@ impl<T: Real> Chebyshev<T> {
     }
 }
 
-/// The inverse of each diagonal block.
 fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
     let size = matrix.height;
     let mut inverse = RowByRow::new(size, matrix.rows());

@@ -24,7 +24,6 @@ pub struct Coarser {
     pub matrix: SymmetricMatrix,
     /// Its hierarchy: the levels below the first.
     pub multigrid: Multigrid,
-    /// The place of each dof.
     place: Vec<u32>,
     /// The exponent of the load: the matrix of the hierarchy is `2^shift` times that of the problem.
     shift: i32,

@@ -15,7 +15,6 @@ pub(super) const LOST_DIAGONAL: f64 = 3000.0;
 /// Shift that then holds the body, on a diagonal of order one: about as stiff as a coarse cell, as its contact will be.
 const SHIFT: f64 = 1e-3;
 
-/// The factor of a coarsest matrix.
 #[derive(Debug)]
 pub(super) struct Coarsest {
     analysis: Analysis,
@@ -28,9 +27,6 @@ pub(super) struct Coarsest {
 impl Coarsest {
     /// Factorises a coarsest matrix from the entries that are `kept`, as in [`lower_part`]: all of them, if a face will
     /// change them. One that is singular to the precision of its entries is held by a shift.
-    ///
-    /// # Errors
-    /// [`FactorError`] if it has a negative eigenvalue, or if memory does not suffice.
     pub fn of<T: Real>(blocks: &BlockMatrix<T>, kept: fn(f64) -> bool) -> Result<Self, FactorError> {
         let matrix = lower_part(blocks, kept);
         let analysis = Analysis::of(&matrix)?;
@@ -54,9 +50,6 @@ impl Coarsest {
 
     /// Factorises the coarsest `matrix`, of which this is the factor, minus `change`, the reduction by a face. Unknowns
     /// with a diagonal entry that is only rounding do not move.
-    ///
-    /// # Errors
-    /// As [`Coarsest::of`].
     pub fn in_face<T: Real>(&self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Result<Self, FactorError> {
         let mut rest = matrix.plus(-1.0, change);
         let size = rest.height;
@@ -84,12 +77,10 @@ impl Coarsest {
         }
     }
 
-    /// Number of values of the factor of the coarsest matrix.
     pub fn entries(&self) -> usize {
         self.cholesky.entries()
     }
 
-    /// The displacement under a force.
     pub fn solve(&self, force: &[f64]) -> Vec<f64> {
         let scale = &self.equilibration.diagonal;
         let scaled: Vec<f64> =

@@ -24,7 +24,6 @@ impl Multigrid {
 pub struct ConjugateGradients {
     /// The solution x, one entry per dof.
     pub solution: Vec<f64>,
-    /// Number of cycles of the hierarchy.
     pub cycles: usize,
     /// `|b - A x| / |b|`, for the residual that the iteration updates.
     pub residual: f64,
@@ -43,9 +42,6 @@ impl Preconditioned<'_> {
     /// Solves A x = b to `|b - A x| <= tolerance |b|` in the Euclidean norm, in at most `most_cycles` cycles.
     ///
     /// The tolerance was met if `residual` is at most `tolerance`.
-    ///
-    /// # Errors
-    /// [`Error::NotConvex`] if a search direction has negative energy.
     pub fn solve(&self, b: &[f64], tolerance: f64, most_cycles: usize) -> Result<ConjugateGradients, Error> {
         let size = norm(b);
         let mut iterate = Iterate::new(vec![0.0; b.len()], b.to_vec(), Blocks::ONE);

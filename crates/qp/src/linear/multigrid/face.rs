@@ -35,15 +35,11 @@ pub struct FaceLevels<T> {
     pub changes: Vec<BlockMatrix<T>>,
     /// Smoothers of each level except the finest and the coarsest.
     pub smoothers: Vec<Chebyshev<T>>,
-    /// The factor of the coarsest matrix in the face.
     pub coarsest: Coarsest,
 }
 
 impl<T: Real> FaceLevels<T> {
     /// The hierarchy if the displacements of `holds` are held: built from the `last` face if less changes from there.
-    ///
-    /// # Errors
-    /// As [`Hierarchy::new`].
     pub fn new(hierarchy: &Hierarchy<T>, holds: &[Hold], last: Option<&FaceLevels<T>>) -> Result<Self, FactorError> {
         let held = Held::of(&hierarchy.nodes, holds);
         let from_last = last.map(|last| (last, held.beyond(&last.held)));

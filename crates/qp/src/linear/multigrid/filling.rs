@@ -32,7 +32,7 @@ pub struct Filling<'a> {
 
 /// Some rows of blocks, one after another.
 #[derive(Default)]
-struct Rows {
+struct BlockRows {
     /// The blocks of each row.
     lengths: Vec<usize>,
     columns: Vec<u32>,
@@ -130,8 +130,8 @@ impl Filling<'_> {
 
     /// The rows of the nodes of some groups, those alone that are the `first` of their kind. `next` is for each column,
     /// how far its next entry is thought to lie from its first.
-    fn rows(&self, groups: Range<usize>, next: &mut [u32], first: &[u32]) -> Rows {
-        let (size, mut met, mut rows) = (self.size, Vec::new(), Rows::default());
+    fn rows(&self, groups: Range<usize>, next: &mut [u32], first: &[u32]) -> BlockRows {
+        let (size, mut met, mut rows) = (self.size, Vec::new(), BlockRows::default());
         for group in groups.start as u32..groups.end as u32 {
             if self.nodes(group).all(|node| first[node as usize] != node) {
                 rows.lengths.extend(self.nodes(group).map(|_| 0));

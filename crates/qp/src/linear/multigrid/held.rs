@@ -35,7 +35,6 @@ impl Hold {
 /// The projection N of a face.
 #[derive(Debug)]
 pub struct Held<T> {
-    /// The projection N as a matrix.
     pub matrix: BlockMatrix<T>,
     /// N'.
     pub transposed: BlockMatrix<T>,

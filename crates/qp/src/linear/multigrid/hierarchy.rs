@@ -34,7 +34,6 @@ const SLOW: f64 = 4.8;
 /// fifth more cycles, eight a tenth fewer, with twice the memory.
 const MOST_STEPS: usize = 4;
 
-/// Largest number of unknowns of a patch.
 const MOST_IN_PATCH: usize = 120;
 
 /// Largest number of patches as a share of the nodes: if there are more, most nodes are alone, and patches gain
@@ -47,7 +46,6 @@ const COARSEST: usize = 1500;
 /// A level with more than this share of the nodes above it is not worth its work: the matrix is factorised there.
 const LEAST_COARSENING: f64 = 0.4;
 
-/// A hierarchy of levels in one precision.
 #[derive(Debug)]
 pub struct Hierarchy<T> {
     pub(super) nodes: Nodes,
@@ -69,7 +67,6 @@ pub(super) struct Level<T> {
     pub matrix: BlockMatrix<T>,
     pub smoother: Chebyshev<T>,
     pub prolongator: BlockMatrix<T>,
-    /// The near-null space in the unknowns of the next level.
     pub near_null: Candidates,
 }
 
@@ -102,9 +99,6 @@ fn smoother_of_finest<T: Real>(matrix: &BlockMatrix<T>, threads: usize) -> Cheby
 
 impl<T: Real> Hierarchy<T> {
     /// Builds the levels of `matrix`.
-    ///
-    /// # Errors
-    /// [`FactorError`] if the coarsest matrix has a negative eigenvalue, or if memory does not suffice for its factor.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, FactorError> {
         let hierarchy = Self::with_steps(matrix, near_null, threads, 1)?;
         if !hierarchy.is_slow() {

@@ -21,9 +21,7 @@ const LINES: f64 = 0.36;
 /// The connections along the lines of a matrix.
 pub struct Lines {
     graph: Graph,
-    /// The aggregate of each node.
     pub of_node: Vec<u32>,
-    /// Number of aggregates.
     pub aggregates: usize,
 }
 

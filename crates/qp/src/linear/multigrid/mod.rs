@@ -16,7 +16,6 @@ mod coarser;
 mod coarsest;
 mod conjugate_gradients;
 mod cycle;
-mod degree;
 mod dual_norm;
 mod face;
 mod filling;
@@ -48,7 +47,6 @@ use hierarchy::Hierarchy;
 /// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
 #[derive(Debug)]
 pub struct Multigrid {
-    /// The matrix that the hierarchy was made from.
     matrix: SymmetricMatrix,
     levels: Levels,
     /// Work vectors of the iteration around the cycles.
@@ -227,9 +225,6 @@ impl Face<'_> {
 }
 
 /// Checks that a dof without stiffness has no coupling either: a cycle then leaves it to itself.
-///
-/// # Errors
-/// [`Error::NotConvex`] for a diagonal entry that is negative, or zero beside a coupling.
 fn check_diagonal(matrix: &SymmetricMatrix) -> Result<(), Error> {
     let diagonal = matrix.diagonal();
     if diagonal.iter().all(|&value| value > 0.0) {

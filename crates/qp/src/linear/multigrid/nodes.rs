@@ -15,7 +15,6 @@ const MOST_DOFS: usize = 3;
 pub struct Nodes {
     /// Number of places of each node, at least its number of dofs.
     pub size: usize,
-    /// Number of nodes of the problem.
     pub count: usize,
     /// The place `size * node + component` of each dof.
     pub place: Vec<u32>,

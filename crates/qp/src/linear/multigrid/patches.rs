@@ -72,7 +72,6 @@ impl Patches {
         self.starts.push(self.members.len());
     }
 
-    /// Number of patches.
     pub fn count(&self) -> usize {
         self.starts.len() - 1
     }

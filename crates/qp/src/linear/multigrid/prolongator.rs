@@ -22,9 +22,7 @@ const STEP: f64 = 4.0 / 3.0;
 /// The near-null space on a level: `count` values for each place, place by place.
 #[derive(Clone, Debug)]
 pub struct Candidates {
-    /// Number of vectors.
     pub count: usize,
-    /// Their values.
     pub values: Vec<f64>,
 }
 

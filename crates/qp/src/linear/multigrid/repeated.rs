@@ -177,7 +177,7 @@ fn multiply_in<T: Real, const H: usize>(
                         (0..H).for_each(|i| product.put(&mut y[i], sums[i]));
                     }
                 }
-                false => arch.dispatch(Run { matrix, components, rows: run.clone(), sums, product }),
+                false => arch.dispatch(RepeatedRows { matrix, components, rows: run.clone(), sums, product }),
             }
             row = run.end;
         }
@@ -186,7 +186,7 @@ fn multiply_in<T: Real, const H: usize>(
 }
 
 /// Rows that all have the blocks of the first, at least [`TILE`] of them, and their products.
-struct Run<'a, T, const H: usize> {
+struct RepeatedRows<'a, T, const H: usize> {
     matrix: &'a BlockMatrix<T>,
     components: [&'a [T]; H],
     rows: Range<usize>,
@@ -194,12 +194,12 @@ struct Run<'a, T, const H: usize> {
     product: Product,
 }
 
-impl<T: Real, const H: usize> WithSimd for Run<'_, T, H> {
+impl<T: Real, const H: usize> WithSimd for RepeatedRows<'_, T, H> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Run { matrix, components, rows, sums, product } = self;
+        let RepeatedRows { matrix, components, rows, sums, product } = self;
         let first = matrix.shared_rows[rows.start] as usize;
         let places = first..first + matrix.starts[rows.start + 1] - matrix.starts[rows.start];
         let blocks = matrix.values[places.start * H * H..places.end * H * H].as_chunks::<H>().0;

@@ -25,7 +25,7 @@ const MOST_BEYOND: usize = 24;
 const GROUPS_OF_A_PAIR: usize = 2;
 
 /// Rows by rows, with their gaps.
-struct Rows<'a> {
+struct GapRows<'a> {
     by_row: SparseMatrix,
     gap: &'a [f64],
     /// The node of each dof, one entry per dof.
@@ -34,9 +34,8 @@ struct Rows<'a> {
 
 /// Bounds that are being made.
 struct Making<'a> {
-    rows: &'a Rows<'a>,
+    rows: &'a GapRows<'a>,
     all: Bounds,
-    /// The bound of each place.
     bound_of: Vec<Option<usize>>,
     /// The places that the shears of means contain: none of them becomes a pivot.
     carried: HashSet<usize>,
@@ -46,17 +45,13 @@ impl Bounds {
     /// The bounds that rows B (m x n) and gaps g give if the dofs have these `units` and `travels` have no stiffness.
     /// The rows are taken in the order that is preferred, means last. Those without entries or with an infinite gap
     /// give no bounds.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for rows that share dofs with too many others; for a row of several travels, and for an
-    /// unknown whose rows have different travels.
     pub fn of(
         (contact, gap): (&SparseMatrix, &[f64]),
         order: &Preferred,
         units: &Units,
         travels: Vec<usize>,
     ) -> Result<Self, Error> {
-        let rows = Rows { by_row: contact.transposed(), gap, groups: &units.groups };
+        let rows = GapRows { by_row: contact.transposed(), gap, groups: &units.groups };
         let mut means = rows.means(&travels);
         loop {
             let (bounds, without_pivot) = Making::of(&rows, order, &means, units, travels.clone())?;
@@ -69,7 +64,7 @@ impl Bounds {
     }
 }
 
-impl Rows<'_> {
+impl GapRows<'_> {
     /// The entries of a row that are not zero.
     fn entries(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.by_row.column(row).filter(|entry| entry.1 != 0.0)
@@ -99,7 +94,7 @@ impl Rows<'_> {
 impl Making<'_> {
     /// All bounds: of other rows first, then of `means`; and the means that have no pivot.
     fn of(
-        rows: &Rows,
+        rows: &GapRows,
         order: &Preferred,
         means: &[usize],
         units: &Units,

@@ -30,7 +30,6 @@ struct Side {
     value: f64,
 }
 
-/// The bounds of one unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
     /// The unknown, after reflections and shears.
@@ -80,15 +79,12 @@ pub struct Bounds {
     is_unscaled: bool,
     /// The unit vector of each reflection.
     reflections: Vec<Direction>,
-    /// The reflections that touch each place.
     touching: HashMap<usize, Vec<usize>>,
-    /// The bounds.
     pub bounds: Vec<Bound>,
     /// `true` if all rows are bounds on single dofs, and nothing travels.
     pub is_plain: bool,
     /// The travels, the dofs without stiffness.
     pub travels: Vec<usize>,
-    /// The rows that are no bounds.
     pub left_out: Vec<LeftOut>,
     rows: usize,
 }
@@ -247,7 +243,6 @@ impl Bounds {
 /// Two shares of a travel are equal if they differ by no more than this share.
 const EQUAL_SHARES: f64 = 1e-12;
 
-/// Returns `true` if two shears are equal.
 fn are_equal(a: &Direction, b: &Direction) -> bool {
     let is_near = |((p, a), (q, b)): (&(usize, f64), &(usize, f64))| p == q && (a - b).abs() <= EQUAL_SHARES * a.abs();
     a.len() == b.len() && a.iter().zip(b).all(is_near)
@@ -257,7 +252,6 @@ fn length(vector: &Direction) -> f64 {
     vector.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1))
 }
 
-/// The error of rows that are no bounds.
 fn no_bound(what: String) -> Error {
     Error::Numerical {
         step: "turning contact rows into bounds",
@@ -315,7 +309,6 @@ mod tests {
     use crate::linear::SparseMatrix;
     use crate::linear::multigrid::Units;
 
-    /// Rounding of a reflection.
     const ROUNDING: f64 = 1e-14;
 
     /// Rounding of shears with shares up to 10.

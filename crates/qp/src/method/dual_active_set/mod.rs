@@ -25,7 +25,7 @@ mod polyhedron;
 
 use std::collections::HashSet;
 
-use super::{Definiteness, Ending, Outcome, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::linear::{Augmented, norm};
 use crate::problem::ContactProblem;
@@ -58,8 +58,7 @@ const ROW_MET: f64 = 4.0 * f64::EPSILON;
 /// As [`ContactProblem::dual_active_set`].
 pub(crate) fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Outcome, Error> {
     let augmented = Augmented::new(problem.stiffness(), problem.contact(), None, 1);
-    let definiteness = if is_definite { Definiteness::Definite } else { Definiteness::Semidefinite };
-    let scaled = ScaledProblem::new(problem, &augmented, definiteness);
+    let scaled = ScaledProblem::new(problem, &augmented, is_definite);
     let Some(method) = DualActiveSet::of(&scaled)? else {
         return Err(Error::NotCondensed { step: "the dual active set" });
     };
@@ -74,9 +73,6 @@ pub struct DualActiveSet<'a> {
 
 impl<'a> DualActiveSet<'a> {
     /// Factorises the problem; `None` if that fails or the problem is too large for a dense basis of its rows.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory.
     pub fn of(scaled: &'a ScaledProblem<'a>) -> Result<Option<Self>, Error> {
         Ok(Polyhedron::of(scaled)?.map(|polyhedron| DualActiveSet { scaled, polyhedron }))
     }
@@ -87,9 +83,6 @@ impl Solver for DualActiveSet<'_> {
     ///
     /// The answer is not settled if the method was cut short or if its corrections do not converge, for example if rows
     /// and stiffness do not hold the body: the method makes no claim about that.
-    ///
-    /// # Errors
-    /// None.
     fn solve(&self, _: Start) -> Result<Outcome, Error> {
         let (dofs, rows) = (self.scaled.problem.dofs(), self.scaled.problem.rows());
         let mut search = Search {

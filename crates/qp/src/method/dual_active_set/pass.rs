@@ -23,7 +23,6 @@ const NO_WEIGHT: f64 = 1e-24;
 /// Corrections of the weights: the first gains all digits except the last, the second and the third as many again.
 const WEIGHT_CORRECTIONS: usize = 3;
 
-/// The way in which a pass ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Passed {
     /// No row is violated beyond rounding.
@@ -55,7 +54,6 @@ pub(super) struct Pass<'a> {
     target: Vec<f64>,
     /// Distances of the base from all rows.
     distances: Vec<f64>,
-    /// The change of the point.
     pub point: Vec<f64>,
     /// Length of the base and of the change, the scale of distances.
     base: f64,

@@ -49,9 +49,6 @@ pub(super) struct Contradiction {
 
 impl Polyhedron {
     /// The polyhedron of a problem; `None` if its factorisation fails or would take too many sweeps.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for lack of memory, [`Error::NotFinite`] if data leave the range of double precision.
     pub fn of(scaled: &ScaledProblem) -> Result<Option<Self>, Error> {
         let of = scaled.problem;
         let equilibration = Equilibration::of(of.stiffness());

@@ -29,7 +29,7 @@ pub enum At {
 }
 
 /// The unknowns after reflections and shears, their gradient, and the bounds that they are at.
-pub struct Iterate<'a> {
+pub struct BoundedIterate<'a> {
     pub problem: &'a ContactProblem,
     pub bounds: &'a Bounds,
     pub load: Vec<f64>,
@@ -57,7 +57,7 @@ pub struct Conjugate {
 }
 
 impl Conjugate {
-    pub fn of(step: Vec<f64>, last: Option<Conjugate>, gradient: &[f64], iterate: &Iterate) -> Self {
+    pub fn of(step: Vec<f64>, last: Option<Conjugate>, gradient: &[f64], iterate: &BoundedIterate) -> Self {
         let mut p = step;
         if let Some(last) = last {
             let share = dot(&p, &last.moved) / last.energy;
@@ -79,7 +79,7 @@ impl Conjugate {
     }
 }
 
-impl<'a> Iterate<'a> {
+impl<'a> BoundedIterate<'a> {
     pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, multigrid: &'a Multigrid) -> Self {
         let mut load = problem.load().to_vec();
         bounds.turn_forces(&mut load);
@@ -91,7 +91,7 @@ impl<'a> Iterate<'a> {
         let (gradient, largest_eigenvalue) = (Vec::new(), OnceCell::new());
         let work = multigrid.work();
         let mut iterate =
-            Iterate { problem, bounds, load, diagonal, x, gradient, at, largest_eigenvalue, multigrid, work };
+            BoundedIterate { problem, bounds, load, diagonal, x, gradient, at, largest_eigenvalue, multigrid, work };
         if is_unknown {
             iterate.travel_along_load();
         }
@@ -166,7 +166,7 @@ impl<'a> Iterate<'a> {
         self.gradient.iter_mut().zip(&self.load).for_each(|(g, f)| *g -= f);
     }
 
-    /// As [`Iterate::refresh_gradient`], in twice the working precision.
+    /// As [`BoundedIterate::refresh_gradient`], in twice the working precision.
     pub fn refresh_gradient_accurately(&mut self) {
         let mut u = self.x.clone();
         self.bounds.turn_back(&mut u);

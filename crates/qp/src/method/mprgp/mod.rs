@@ -30,7 +30,7 @@ use crate::linear::multigrid::{Face, Multigrid};
 use crate::problem::ContactProblem;
 use crate::watch::Watch;
 use exchange::{Exchange, order};
-use iterate::{Conjugate, Iterate};
+use iterate::{BoundedIterate, Conjugate};
 use nested::nested_start;
 use travel::Travels;
 pub use travel::takes_travels;
@@ -63,7 +63,6 @@ const NO_GAIN: f64 = 0.5;
 pub struct Limits {
     /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
     pub tolerance: f64,
-    /// Largest number of cycles of the hierarchy.
     pub most_cycles: usize,
     /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or
     /// after this number unless few are left.
@@ -89,7 +88,6 @@ impl Limits {
 pub struct Mprgp<'a> {
     /// The problem in its own units.
     pub problem: &'a ContactProblem,
-    /// The hierarchy.
     pub multigrid: &'a Multigrid,
     /// The accuracy and the cycles of this solve.
     pub limits: Limits,
@@ -102,10 +100,6 @@ impl Solver for Mprgp<'_> {
     ///
     /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations
     /// together do not halve the residual; those that change the face count only beyond one for each row.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for rows that cannot be bounds, [`Error::NotConvex`] for a coarsest matrix of a face with a
-    /// negative eigenvalue.
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let Mprgp { problem, multigrid, limits, .. } = *self;
         let (rows, units, mut start) = ((problem.contact(), problem.gap()), multigrid.units(), start);
@@ -134,7 +128,6 @@ impl Solver for Mprgp<'_> {
 }
 
 impl Mprgp<'_> {
-    /// The answer with some rows as bounds.
     fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome, Error> {
         let Mprgp { problem, multigrid, limits, watch } = *self;
         let mut iterate = started(self, bounds, start);
@@ -187,8 +180,8 @@ impl Mprgp<'_> {
 }
 
 /// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
-fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> Iterate<'a> {
-    let at = |start: Start| Iterate::new(mprgp.problem, bounds, start, mprgp.multigrid);
+fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> BoundedIterate<'a> {
+    let at = |start: Start| BoundedIterate::new(mprgp.problem, bounds, start, mprgp.multigrid);
     let from_nothing = || at(nested(mprgp, bounds).unwrap_or_default());
     if start.is_unknown() {
         return from_nothing();
@@ -212,7 +205,6 @@ fn nested(mprgp: &Mprgp, bounds: &Bounds) -> Option<Start> {
     nested_start(mprgp.problem, bounds, mprgp.multigrid, below).map(Start::near)
 }
 
-/// The progress of the iteration.
 struct Progress {
     /// Cycles before the last change of the face, and the residual then.
     on_face: (usize, f64),
@@ -261,7 +253,7 @@ impl Progress {
 
     /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement
     /// is left.
-    fn has_settled(&mut self, iterate: &mut Iterate) -> bool {
+    fn has_settled(&mut self, iterate: &mut BoundedIterate) -> bool {
         iterate.refresh_gradient_accurately();
         let checked = iterate.residual();
         if checked > NO_GAIN * self.last_checked {
@@ -289,7 +281,7 @@ struct Steps<'a> {
 impl Steps<'_> {
     /// Takes a proportioning, conjugate gradient or expansion step. Returns `false` at a direction along which nothing
     /// is held, or along which the energy is negative.
-    fn take_one(&mut self, iterate: &mut Iterate) -> Result<bool, Error> {
+    fn take_one(&mut self, iterate: &mut BoundedIterate) -> Result<bool, Error> {
         if iterate.is_disproportionate() {
             iterate.proportion();
             return Ok(true);

@@ -10,7 +10,7 @@
 //! # Source
 //! J. Mandel, *Balancing domain decomposition*, Comm. Numer. Methods Engrg. 9 (1993) 233-241.
 
-use super::iterate::Iterate;
+use super::iterate::BoundedIterate;
 use crate::linear::dot;
 use crate::linear::multigrid::{Face, Units};
 use crate::method::bounds::{Bounds, Preferred};
@@ -59,7 +59,7 @@ struct Move {
 impl Travels {
     /// The displacements in another face: they start from those of the last one, and one cycle takes them nearer to
     /// balance.
-    pub fn in_face(self, iterate: &Iterate, face: &Face) -> Self {
+    pub fn in_face(self, iterate: &BoundedIterate, face: &Face) -> Self {
         let (mut before, mut moves) = (self.moves.into_iter(), Vec::<Move>::new());
         for &travel in &iterate.bounds.travels {
             let mut way = before.next().map_or_else(|| iterate.alone(travel), |last| last.way);
@@ -88,7 +88,7 @@ impl Travels {
     }
 
     /// M r for the free gradient r; the way of a travel that nothing holds, if a force drives it.
-    pub fn preconditioned(&self, iterate: &Iterate, face: &Face, gradient: &[f64]) -> Vec<f64> {
+    pub fn preconditioned(&self, iterate: &BoundedIterate, face: &Face, gradient: &[f64]) -> Vec<f64> {
         if let Some(free) = self.moves.iter().find(|free| free.energy == 0.0 && dot(&free.way, gradient) != 0.0) {
             let work = dot(&free.way, gradient).signum();
             return free.way.iter().map(|way| work * way).collect();

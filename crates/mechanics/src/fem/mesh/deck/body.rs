@@ -17,12 +17,6 @@ impl Deck {
     ///
     /// Nodes of other elements are left out; the others keep the order of the deck. Boundaries are the surfaces, with
     /// the facets that are on the mesh; nodes have the names of their sets and their numbers.
-    ///
-    /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line: for elements of more than one kind, a
-    /// node outside the plane, an element that is inverted or has no volume, a surface within the body. [`Error::Mesh`]
-    /// for a group that does not exist, [`qp::Error::Setting`](signorini_qp::Error::Setting) for a scale that is not
-    /// positive and finite.
     pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;
         let elements = self.elements_of(groups)?;

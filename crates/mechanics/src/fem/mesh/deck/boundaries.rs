@@ -18,10 +18,6 @@ impl Deck {
 
     /// The mesh with the surfaces that have facets on it; `elements` are its elements in the deck, increasing. Of a
     /// surface under a pressure only the faces on the outside are kept.
-    ///
-    /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a surface within the body that is
-    /// touched or tied; another one is left out.
     pub(super) fn with_boundaries(&self, mut mesh: Mesh, elements: &[usize]) -> Result<Mesh, Error> {
         let (facet, faces) = (mesh.kind_of(0).facet(), mesh.kind_of(0).reference().faces);
         let mut boundaries = Vec::new();

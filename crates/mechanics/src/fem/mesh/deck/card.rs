@@ -61,12 +61,10 @@ impl Card {
         self.key == keyword || self.key == key(keyword)
     }
 
-    /// Returns `true` if it has this parameter.
     pub fn has(&self, name: &str) -> bool {
         self.parameters.iter().any(|(own, _)| own == name)
     }
 
-    /// The value of a parameter.
     pub fn value(&self, name: &str) -> Option<&str> {
         self.parameters.iter().find(|(own, _)| own == name).and_then(|(_, value)| value.as_deref())
     }

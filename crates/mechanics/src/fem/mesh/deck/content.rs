@@ -64,12 +64,6 @@ pub(crate) struct DeckElement {
 impl Deck {
     /// Reads a deck up to the end of a step, from 1, or of the last one. The files that it includes must lie in the
     /// folder `within` or below it; anywhere without one.
-    ///
-    /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read;
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a value of the wrong kind, a number
-    /// that is given twice or does not exist, an element that is not read, a deck without elements or without that
-    /// step.
     pub fn read(path: &Path, within: Option<&Path>, step: Option<usize>) -> Result<Self, Error> {
         let mut source = Source::read(path, within)?;
         let mut cards = std::mem::take(&mut source.cards);
@@ -201,9 +195,6 @@ impl Deck {
 
     /// Leaves out lines and sheets that no section names and that lie on elements of more dimensions, as mesh
     /// generators write them beside a body. Their sets lose them; sets of their nodes stay.
-    ///
-    /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for other elements that are not read.
     fn leave_out(&mut self, cards: &[Card]) -> Result<(), Error> {
         let dimension = |element: usize| self.element_list[element].of_type.dimension();
         let most = (0..self.elements.len()).map(dimension).max().unwrap_or_default();

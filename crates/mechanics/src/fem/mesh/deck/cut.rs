@@ -12,10 +12,6 @@ impl Deck {
     /// Cuts a body along the surface of a card: the elements with its faces get nodes of their own, which have numbers
     /// after all others, and the elements behind the cut keep the nodes of the deck. The faces behind it are a surface
     /// as well.
-    ///
-    /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a surface that does not exist, lies
-    /// on the outside, or does not divide its body.
     pub(super) fn cut(&mut self, card: &Card) -> Result<(), Error> {
         let fault = |deck: &Deck, message: String| Err(deck.source.fault(card.place, message));
         let Some(name) = card.value("SURFACE") else {

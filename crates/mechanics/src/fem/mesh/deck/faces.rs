@@ -180,10 +180,6 @@ impl Deck {
     }
 
     /// Takes the faces of pressures away that a later step presses anew, or frees by OP=NEW.
-    ///
-    /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line of a load on a surface of which a part
-    /// is pressed anew.
     pub(super) fn replace_pressures(&mut self, cards: &[Card]) -> Result<(), Error> {
         let is_distributed = |card: &&Card| card.is("DLOAD") || card.is("DSLOAD");
         let first = cards.iter().filter(is_distributed).filter(|card| card.is_new()).map(|card| card.step).max();

@@ -69,7 +69,6 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// The next field as a finite number.
     pub fn finite(&mut self, what: impl Display) -> Result<f64, Error> {
         let field = self.next().filter(|field| !field.is_empty());
         let Some(field) = field else { return Err(self.fault(format!("{what} is missing"))) };

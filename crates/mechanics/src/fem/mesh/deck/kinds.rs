@@ -105,9 +105,6 @@ impl DeckElementType {
 }
 
 /// The element of this name in capitals.
-///
-/// # Errors
-/// As [`refusal`].
 pub(super) fn element_type(name: &str) -> Result<&'static DeckElementType, String> {
     TYPES.iter().find(|element| element.name == name).ok_or_else(|| refusal(name))
 }

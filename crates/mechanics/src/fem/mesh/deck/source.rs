@@ -44,11 +44,6 @@ pub(crate) struct Source {
 
 impl Source {
     /// Reads a deck. The files that it includes must lie in the folder `within` or below it; anywhere without one.
-    ///
-    /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read,
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) for data without a keyword, an include without a file
-    /// or outside the folder, a file that includes itself.
     pub fn read(path: &Path, within: Option<&Path>) -> Result<Self, Error> {
         let mut source = Source::default();
         let content = source.content(path)?;

@@ -31,7 +31,6 @@ impl SpringType {
     }
 }
 
-/// A spring element.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SpringElement {
     pub of_type: SpringType,

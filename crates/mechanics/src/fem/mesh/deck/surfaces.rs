@@ -4,7 +4,6 @@ use std::collections::HashMap;
 
 use super::card::{Place, key};
 
-/// A named surface.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Surface {
     pub name: String,

@@ -15,11 +15,9 @@ const FLAT: f64 = 1e-9;
 /// The number in the mesh of each node of the file, if it is in the body.
 pub(super) type Numbers = Vec<Option<usize>>;
 
-/// The elements of the body.
 pub(super) struct Body<'a> {
     kind: ElementKind,
     elements: Vec<Element<'a>>,
-    /// The groups of the elements.
     groups: Vec<ElementGroup>,
 }
 

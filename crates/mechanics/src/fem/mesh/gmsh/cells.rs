@@ -12,7 +12,6 @@ pub(super) struct CellType {
     pub plural: &'static str,
     /// Dimension, 0 to 3.
     pub dimension: usize,
-    /// Number of nodes of a cell of this type.
     pub nodes: usize,
 }
 

@@ -33,7 +33,6 @@ pub(super) struct Block {
     pub nodes: Vec<usize>,
 }
 
-/// One element of a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Element<'a> {
     pub cell: &'static CellType,
@@ -49,7 +48,6 @@ pub struct PhysicalGroup {
     pub dimension: usize,
     /// Its number among the groups of this dimension.
     pub tag: u64,
-    /// Its name.
     pub name: String,
     pub(super) line: usize,
 }

@@ -148,7 +148,6 @@ impl<'a> Record<'_, 'a> {
         self.fault(format!("{name} is `{value}`; it must be {allowed}"))
     }
 
-    /// An error at this record.
     pub fn fault(&self, message: impl Into<String>) -> Error {
         self.source.fault(message)
     }

@@ -14,9 +14,6 @@ use crate::scene::models::rows::ContactRow;
 /// A is a sum of integrals of shape functions N, and o is along the integral s of N^2 times the normal, less its parts
 /// along the normals of planes of symmetry on which the node lies. Thus `n . do = v . ds` with
 /// `v = (n - (n . o) o)/|s|`.
-///
-/// # Errors
-/// One sentence: what has no derivative, or none yet.
 pub(crate) fn areas_by_places(model: &Model, weights: &[f64]) -> Result<Vec<f64>, String> {
     model.check_multiplier(weights).map_err(|error| error.to_string())?;
     let mut gradient = vec![0.0; model.body().nodal_dofs()];

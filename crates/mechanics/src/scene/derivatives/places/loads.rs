@@ -16,9 +16,6 @@ use crate::scene::models::load::Acting;
 
 /// Adds the change of the work of all loads, `virtual_displacement . load`, both nodal vectors. Forces at nodes do not
 /// change.
-///
-/// # Errors
-/// As [`Scene::acting`].
 pub(super) fn add_loads(
     scene: &Scene,
     body: &ElasticBody,
@@ -127,9 +124,6 @@ impl Loaded<'_> {
 
 /// Adds the change of the work of the forces of all springs at the first of two nodal displacements on the second. Only
 /// foundations under boundaries change.
-///
-/// # Errors
-/// As [`Scene::springs`].
 pub(super) fn add_springs(
     scene: &Scene,
     body: &ElasticBody,
@@ -175,7 +169,6 @@ fn factor(profile: Option<&Profile>, at: [f64; 3]) -> (f64, [f64; 3]) {
     profile.map_or((1.0, [0.0; 3]), |profile| (profile.at(at), profile.by_place(at)))
 }
 
-/// The points at which a load with this profile is integrated.
 fn points(profile: Option<&Profile>) -> Points<'_> {
     profile.map_or(Points::Own, |profile| Points::Fine(profile.kinks()))
 }

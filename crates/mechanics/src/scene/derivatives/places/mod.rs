@@ -34,9 +34,6 @@ use crate::scene::Scene;
 use crate::scene::input::schema::{SupportSpec, TieSpec};
 
 /// The change of R with the place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), per length.
-///
-/// # Errors
-/// One sentence: what depends on the places of nodes in a way that has no derivative, or none yet.
 pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, String> {
     refused(scene).map_or(Ok(()), Err)?;
     let said = |error: Error| error.to_string();

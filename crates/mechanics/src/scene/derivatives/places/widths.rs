@@ -13,9 +13,6 @@ use crate::scene::derivatives::differences::derivative;
 /// The width is the sum of L c over the facets: the length L, and the share c of its straight cells that the contact
 /// covers. L changes in closed form. The share changes only at the ends of the contact; it depends on few nodes there,
 /// and its change is a difference.
-///
-/// # Errors
-/// One sentence: where the width has no derivative.
 pub(crate) fn add_width(answer: &Answer, obstacle: usize, factor: f64, gradient: &mut [f64]) -> Result<(), String> {
     let (model, body) = (answer.model(), answer.model().body());
     let Some(boundary) = model.mesh().boundary(model.obstacles()[obstacle].boundary()) else { return Ok(()) };

@@ -18,8 +18,6 @@ pub(super) struct Amplitudes {
 }
 
 impl Amplitudes {
-    /// # Errors
-    /// An error with the line for an amplitude without a name or without values, and for times that do not increase.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
         let periods = periods(deck)?;
         let mut all = HashMap::new();
@@ -48,9 +46,6 @@ impl Amplitudes {
 
     /// The factor of a card: 1 without an amplitude. In a later step a load keeps the factor of the end of its own
     /// step, unless the times of the amplitude go on; temperatures follow the last step.
-    ///
-    /// # Errors
-    /// An error with the line of the card for an amplitude that does not exist.
     pub fn factor(&self, deck: &Deck, card: &Card) -> Result<f64, Error> {
         let Some(name) = card.value("AMPLITUDE") else { return Ok(1.0) };
         let missing = || deck.source.fault(card.place, format!("there is no amplitude `{name}`"));

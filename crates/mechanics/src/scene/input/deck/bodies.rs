@@ -84,9 +84,6 @@ pub(super) struct Body {
 
 impl Body {
     /// Body number `index` of a deck that the scene calls `named`.
-    ///
-    /// # Errors
-    /// An error with the line for temperatures that change within the body.
     pub fn of(
         deck: &Deck,
         index: usize,

@@ -18,15 +18,12 @@ struct Bolt {
     place: Place,
 }
 
-/// The bolts of a deck.
 pub(super) struct Bolts {
     all: Vec<Bolt>,
     dimension: usize,
 }
 
 impl Bolts {
-    /// # Errors
-    /// An error with the line for a cut without a reference node of its own, and for a direction that is not read.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
         let dimension = deck.dimension();
         let mut bolts = Bolts { all: Vec::new(), dimension };

@@ -18,9 +18,6 @@ pub(super) struct Contacts {
 }
 
 /// The obstacles of a scene; a deck with friction is refused unless it `may_rub`, and is then solved without it.
-///
-/// # Errors
-/// An error with the line for a contact that is not read.
 pub(super) fn contacts(deck: &Deck, may_rub: bool) -> Result<Contacts, Error> {
     let mut found = Contacts { obstacles: Vec::new(), ties: Vec::new(), warnings: Vec::new() };
     let interactions = interactions(deck, may_rub, &mut found.warnings)?;

@@ -48,9 +48,6 @@ pub(super) struct Coupling {
 }
 
 /// The couplings of a deck, rigid bodies first.
-///
-/// # Errors
-/// An error with the line for a surface or a node that does not exist, and for directions outside 1 to 6.
 pub(super) fn couplings(deck: &Deck) -> Result<Vec<Coupling>, Error> {
     let rigid_bodies = deck.source.cards.iter().filter(|card| card.is("RIGIDBODY"));
     let rigid_bodies =
@@ -168,10 +165,6 @@ impl Coupling {
         matches!(self.kind, Kind::Kinematic(axes) if axes[..deck.dimension()].iter().all(|follows| *follows))
     }
 
-    /// Its equations.
-    ///
-    /// # Errors
-    /// An error with the line for a model of revolution, and for a surface whose nodes lie on a line.
     pub fn equations(&self, deck: &Deck) -> Result<Vec<Equation>, Error> {
         let fault = |message: String| deck.source.fault(self.place, message);
         if deck.is_axisymmetric() {

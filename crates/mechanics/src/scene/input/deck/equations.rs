@@ -40,10 +40,6 @@ pub(super) fn along(deck: &Deck, transforms: &Transforms, node: usize, vector: [
     Ok(sum)
 }
 
-/// The equations of all cards *EQUATION.
-///
-/// # Errors
-/// An error with the line for a term that is not read.
 pub(super) fn equations(deck: &Deck, transforms: &Transforms) -> Result<Vec<Equation>, Error> {
     let mut equations = Vec::new();
     for card in deck.source.cards.iter().filter(|card| card.is("EQUATION")) {

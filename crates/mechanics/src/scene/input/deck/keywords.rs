@@ -7,7 +7,6 @@ use crate::fem::mesh::deck::{Card, Deck, Place, key};
 /// A keyword that is read, in capitals without blanks.
 struct Read {
     keyword: &'static str,
-    /// Its parameters that are read.
     parameters: &'static [&'static str],
     /// Its parameters that change no answer.
     passed: &'static [&'static str],
@@ -131,10 +130,6 @@ const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC",
 
 /// Checks every card of a deck and the order of its steps; returns the names of what is passed over, each once with its
 /// first place. What may not be meant is added to `noted`.
-///
-/// # Errors
-/// An error with the line for a keyword or a parameter that changes the answer and is not read, and for a deck without
-/// a whole step.
 pub(super) fn judged(deck: &Deck, noted: &mut Vec<(Place, String)>) -> Result<Vec<(String, Place)>, Error> {
     let mut passed: Vec<(String, Place)> = Vec::new();
     let mut pass = |name: String, place: Place| {

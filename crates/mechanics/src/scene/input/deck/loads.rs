@@ -24,7 +24,6 @@ struct OnVolume {
     elements: Vec<bool>,
 }
 
-/// The loads of a scene.
 pub(super) struct Loads<'a, 'd> {
     deck: &'a Deck,
     /// Of a plane model; otherwise 1.
@@ -38,8 +37,6 @@ pub(super) struct Loads<'a, 'd> {
 }
 
 impl<'a, 'd> Loads<'a, 'd> {
-    /// # Errors
-    /// An error with the line for a load that is not read.
     pub fn of(
         deck: &'a Deck,
         thickness: f64,
@@ -186,7 +183,6 @@ impl<'a, 'd> Loads<'a, 'd> {
         Ok(())
     }
 
-    /// The vector of the next fields.
     fn vector(&self, fields: &mut Fields, what: &str) -> Result<[f64; 3], Error> {
         let mut vector = [0.0; 3];
         for (value, axis) in vector.iter_mut().zip(["x", "y", "z"]) {

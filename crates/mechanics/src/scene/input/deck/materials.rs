@@ -8,7 +8,6 @@ use crate::error::{Error, nearly};
 use crate::fem::geometry::minus;
 use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
 
-/// A material as it is given.
 #[derive(Clone, Debug, Default)]
 struct Given {
     elastic: Option<Elastic>,
@@ -48,9 +47,6 @@ pub(super) struct Sections {
 }
 
 impl Sections {
-    /// # Errors
-    /// An error with the line for a material that is not read, a section without a set or a material, elements without
-    /// a section, sections of different thickness.
     pub fn of(deck: &Deck, space: Space) -> Result<Self, Error> {
         let mut noted = Vec::new();
         let (materials, orientations) = (materials(deck, &mut noted)?, orientations(deck)?);
@@ -320,7 +316,6 @@ fn one(deck: &Deck, card: &Card, what: &str) -> Result<f64, Error> {
     Ok(value)
 }
 
-/// The fields of the one line of a card.
 fn only_line<'a>(deck: &'a Deck, card: &Card) -> Result<Fields<'a>, Error> {
     match &card.lines[..] {
         [line] => Ok(deck.source.fields(line)),

@@ -57,7 +57,6 @@ pub(crate) fn is_deck(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("inp"))
 }
 
-/// The scene of a deck.
 pub(crate) struct DeckScene {
     /// Its text, with a comment for each entry.
     pub text: String,
@@ -69,7 +68,6 @@ pub(crate) struct DeckScene {
     lines: Vec<(String, (PathBuf, usize))>,
 }
 
-/// How a deck is read.
 #[derive(Clone, Copy)]
 pub(crate) struct Reading<'a> {
     /// Files that the deck includes may lie outside its folder with `outside`; friction is left out with `friction`.
@@ -82,9 +80,6 @@ pub(crate) struct Reading<'a> {
 
 impl DeckScene {
     /// The scene of the deck `file`, which it calls `named`.
-    ///
-    /// # Errors
-    /// As [`Deck::read`]; [`qp::Error::FileSyntax`] with the line for what changes the answer and is not read.
     pub fn read(file: &Path, named: &str, Reading { permits, step, earlier }: Reading) -> Result<Self, Error> {
         let within = file.parent().filter(|_| !permits.contains(&"outside"));
         let deck = Deck::read(file, within, step)?;
@@ -167,7 +162,6 @@ impl Scene {
         Ok(Scene::of_text(path, &named, deck)?.0)
     }
 
-    /// The scene of a deck, and what is left of it.
     fn of_text(path: &Path, named: &str, deck: DeckScene) -> Result<(Scene, Deck, Vec<ReferenceNode>), Error> {
         let (scene, folder) = (Scene::from_json(&deck.text, named)?, path.parent().map(Path::to_path_buf));
         Ok((Scene { folder, noted: deck.warnings, lines: deck.lines, ..scene }, deck.deck, deck.references))

@@ -26,9 +26,6 @@ const ABSENT: [(&str, &str); 2] = [
 ];
 
 /// The equations of all cards *MPC; each adds a warning.
-///
-/// # Errors
-/// An error with the line for a constraint that is not read, and for nodes that it does not fit.
 pub(super) fn constraints(
     deck: &Deck,
     transforms: &Transforms,

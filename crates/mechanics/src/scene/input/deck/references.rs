@@ -53,8 +53,6 @@ pub(super) struct Entries {
 }
 
 impl<'a> References<'a> {
-    /// # Errors
-    /// An error with the line for an equation, a constraint, a coupling or a spring that is not read.
     pub fn of(deck: &'a Deck, mut rigid_bodies: RigidBodies, transforms: &Transforms) -> Result<Self, Error> {
         let couplings = std::mem::take(&mut rigid_bodies.couplings);
         let (mut equations, springs) = (equations(deck, transforms)?, springs(deck, transforms)?);
@@ -206,7 +204,6 @@ impl<'a> References<'a> {
         Entries { points, ties, springs, warnings: self.warnings, nodes }
     }
 
-    /// A reference point.
     fn point(&self, node: usize) -> Value {
         let (dimension, turns) = (self.deck.dimension(), Coupling::turns(self.deck));
         let at = self.deck.place_of_node(node);
@@ -233,7 +230,6 @@ impl<'a> References<'a> {
         equations.chain(self.springs.iter_mut().map(|spring| &mut spring.elongation))
     }
 
-    /// The terms of a sum.
     fn terms(&self, sum: &Sum) -> Vec<Value> {
         let mut terms: BTreeMap<(bool, usize), Value> = BTreeMap::new();
         for (&(node, kind), &part) in &sum.terms {

@@ -65,7 +65,6 @@ const FIELDS: [&str; 6] = ["NODEFILE", "ELFILE", "CONTACTFILE", "NODEOUTPUT", "E
 /// The cards that ask for tables.
 const TABLES: [&str; 3] = ["NODEPRINT", "ELPRINT", "CONTACTPRINT"];
 
-/// The kinds of requests.
 const KINDS: [&[&str]; 6] = [
     &["NODEFILE", "NODEOUTPUT"],
     &["ELFILE", "ELEMENTOUTPUT"],
@@ -80,10 +79,6 @@ const OTHERS: [&str; 4] = ["FACEPRINT", "SECTIONPRINT", "SECTIONFILE", "ENERGYPR
 
 impl Requests {
     /// What a deck asks for at the end of its step; `references` are its reference nodes.
-    ///
-    /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line for a set that does not exist, and for
-    /// what is not read.
     pub(super) fn of(deck: &Deck, references: Vec<ReferenceNode>) -> Result<Self, Error> {
         let end = Temperatures::of(deck, &Amplitudes::of(deck)?)?.end;
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
@@ -158,7 +153,6 @@ impl Requests {
     }
 }
 
-/// The labels of a card with their places.
 fn labels(deck: &Deck, card: &Card) -> Vec<(String, Place)> {
     let mut labels = Vec::new();
     for line in &card.lines {

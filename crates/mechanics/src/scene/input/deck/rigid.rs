@@ -39,8 +39,6 @@ pub(super) struct RigidBodies {
 }
 
 impl RigidBodies {
-    /// # Errors
-    /// An error with the line for a coupling or a bolt that is not read.
     pub fn of(deck: &Deck) -> Result<Self, Error> {
         let dimension = deck.dimension();
         let (couplings, bolts) = (couplings(deck)?, Bolts::of(deck)?);
@@ -49,9 +47,6 @@ impl RigidBodies {
 
     /// Makes a coupling a rigid body, if its nodes belong to one body and all follow in all directions; `false` for
     /// another.
-    ///
-    /// # Errors
-    /// An error with the line for a reference node of two rigid bodies.
     pub fn takes(&mut self, deck: &Deck, coupling: &Coupling) -> Result<bool, Error> {
         let fault = |message: String| deck.source.fault(coupling.place, message);
         let mut nodes = coupling.nodes(deck).map_err(fault)?;

@@ -44,7 +44,6 @@ impl<'a> SceneText<'a> {
         let _ = write!(self.text, ",\n  \"{key}\": {}", written(value));
     }
 
-    /// Adds a key of the scene.
     pub fn one(&mut self, key: &str, entry: &Entry) {
         let named = self.deck.source.named(entry.place);
         let _ = write!(self.text, ",\n  // {named}\n  \"{key}\": {}", written(&entry.value));
@@ -72,7 +71,6 @@ impl<'a> SceneText<'a> {
     }
 }
 
-/// An object with one key.
 pub(super) fn object(key: &str, value: Value) -> Value {
     Value::Object(Map::from_iter([(key.to_string(), value)]))
 }

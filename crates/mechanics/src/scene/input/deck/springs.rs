@@ -16,11 +16,6 @@ pub(super) struct Spring {
     pub place: Place,
 }
 
-/// The springs of a deck.
-///
-/// # Errors
-/// An error with the line for springs without a card *SPRING, of a model of revolution, or with values that are not
-/// read.
 pub(super) fn springs(deck: &Deck, transforms: &Transforms) -> Result<Vec<Spring>, Error> {
     let mut springs: Vec<Option<Spring>> = vec![None; deck.springs.all.len()];
     for card in deck.source.cards.iter().filter(|card| card.is("SPRING")) {
@@ -79,7 +74,6 @@ fn values(deck: &Deck, card: &Card, of_type: SpringType) -> Result<([usize; 2], 
     }
 }
 
-/// The elongation of a spring element.
 fn elongation(deck: &Deck, transforms: &Transforms, element: usize, directions: [usize; 2]) -> Result<Sum, String> {
     let element = &deck.springs.all[element];
     let (mut sum, nodes) = (Sum::default(), &element.nodes[..]);

@@ -32,7 +32,6 @@ struct Boundaries<'a> {
 
 /// A line: the displacements that it prescribes for some nodes.
 struct Prescribed {
-    /// The number of its card.
     card: usize,
     target: String,
     nodes: Vec<usize>,
@@ -71,10 +70,6 @@ impl Merged {
     }
 }
 
-/// The supports of a scene.
-///
-/// # Errors
-/// An error with the line for a dof that is not a displacement.
 pub(super) fn supports(
     deck: &Deck,
     amplitudes: &Amplitudes,
@@ -210,9 +205,6 @@ fn in_force(given: &Boundaries) -> Result<Vec<Prescribed>, Error> {
 
 impl Boundaries<'_> {
     /// A line of FIXED, a line for each node: it holds what it names where the step before ended.
-    ///
-    /// # Errors
-    /// An error with the line if that is not known.
     fn fixed(&self, line: Prescribed, step: usize) -> Result<Vec<Prescribed>, Error> {
         let before = match step {
             0 | 1 => None,

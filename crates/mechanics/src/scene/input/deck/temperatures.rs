@@ -14,8 +14,6 @@ pub(super) struct Temperatures {
 }
 
 impl Temperatures {
-    /// # Errors
-    /// An error with the line for values that are not read.
     pub fn of(deck: &Deck, amplitudes: &Amplitudes) -> Result<Self, Error> {
         let mut start = vec![0.0; deck.nodes.len()];
         for card in deck.source.cards.iter().filter(|card| card.is("INITIALCONDITIONS")) {
@@ -38,9 +36,6 @@ impl Temperatures {
     }
 
     /// The one difference of a body, with the line that gives it; `None` if it is zero.
-    ///
-    /// # Errors
-    /// An error with the line if nodes of the body have different ones.
     pub fn of_body(&self, deck: &Deck, body: usize) -> Result<Option<(f64, Place)>, Error> {
         let Some(place) = self.last else { return Ok(None) };
         let mut own = (0..deck.nodes.len()).filter(|&node| deck.body_of_node[node] == Some(body));

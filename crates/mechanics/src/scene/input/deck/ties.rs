@@ -8,9 +8,6 @@ use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place};
 
 /// The tied surfaces of a scene.
-///
-/// # Errors
-/// An error with the line for a surface that cannot be tied.
 pub(super) fn ties(deck: &Deck) -> Result<Vec<Entry>, Error> {
     let mut ties = Vec::new();
     for card in deck.source.cards.iter().filter(|card| card.is("TIE")) {

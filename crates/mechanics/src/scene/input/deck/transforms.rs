@@ -25,9 +25,6 @@ pub(super) struct Transforms {
 }
 
 impl Transforms {
-    /// # Errors
-    /// An error with the line for a set or a type that does not exist, for vectors that give no axes, and for a
-    /// reference node of a rigid body.
     pub fn of(deck: &Deck, rigid_bodies: &RigidBodies) -> Result<Self, Error> {
         let mut transforms = Transforms { all: Vec::new(), of_node: HashMap::new() };
         for card in deck.source.cards.iter().filter(|card| card.is("TRANSFORM")) {

@@ -15,7 +15,6 @@ pub(crate) struct Fault {
     pub at: Option<usize>,
 }
 
-/// What is wrong.
 #[derive(Debug)]
 pub(crate) enum What {
     /// A value of another type than the right one.

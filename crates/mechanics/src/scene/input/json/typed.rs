@@ -26,7 +26,6 @@ impl<'a> Typed<'a> {
         Err(Fault::at(self.0.start(), what))
     }
 
-    /// The fault of a value of another type.
     fn not<T>(self, expected: &str) -> Result<T, Fault> {
         let found = match self.0 {
             Value::StringLit(text) => format!("the string {:?}", text.value),
@@ -145,7 +144,6 @@ impl<'de> Deserializer<'de> for Typed<'de> {
     }
 }
 
-/// The items of an array.
 struct Items<'a>(std::iter::Enumerate<Iter<'a, Value<'a>>>);
 
 impl<'a> SeqAccess<'a> for Items<'a> {
@@ -157,7 +155,6 @@ impl<'a> SeqAccess<'a> for Items<'a> {
     }
 }
 
-/// The fields of an object.
 struct Fields<'a> {
     rest: Iter<'a, ObjectProp<'a>>,
     last: Option<&'a ObjectProp<'a>>,

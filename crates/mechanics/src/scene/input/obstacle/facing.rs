@@ -190,9 +190,6 @@ impl FitSpec {
 }
 
 /// The node of the other body opposite to each candidate.
-///
-/// # Errors
-/// [`Error::Refused`] with [`UNPAIRED`] if a node has no node opposite to it.
 fn pairs(site: &Site, own: &Boundary, other: &Boundary) -> Result<Vec<Pair>, Error> {
     if [own, other].iter().any(|side| has_corners(site.body.mesh().nodes(), &outward(site.body, side))) {
         let message =

@@ -25,9 +25,6 @@ const SAG: f64 = 5.0;
 
 /// The rows between the boundary of an obstacle and that of another body; `side` is `true` if the other boundary is to
 /// carry them, and `None` to choose.
-///
-/// # Errors
-/// [`Error::Scene`] if a surface lies in several layers before the other within reach.
 pub(super) fn between(
     site: &Site,
     boundaries: [&Boundary; 2],
@@ -77,9 +74,6 @@ pub(super) fn between(
 
 /// The means of the first boundary over the second within reach, along a direction or half way between the normals of
 /// both, at the nodes that may carry one; with `has_sides` for each side of a corner.
-///
-/// # Errors
-/// [`Error::Scene`] at `path` if a surface lies in several layers before the other within reach.
 pub(crate) fn means(
     (body, dofs): (&ElasticBody, &DofMap),
     [slave, master]: [&Boundary; 2],

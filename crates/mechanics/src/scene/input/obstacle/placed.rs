@@ -55,9 +55,6 @@ pub struct Inertia {
 
 impl PlacedObstacle {
     /// The same rigid obstacle with the shape of another description, at the same JSON path.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a shape that is not valid.
     pub(crate) fn shaped(
         &self,
         spec: &ObstacleSpec,

@@ -27,7 +27,6 @@ pub enum Place {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
-    /// The place.
     pub on: Place,
     /// Prescribed displacement along x.
     #[serde(skip_serializing_if = "Option::is_none")]

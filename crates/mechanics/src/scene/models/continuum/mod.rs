@@ -31,9 +31,6 @@ const ALL_OF_IT: f64 = 1e-6;
 
 impl Scene {
     /// Refuses a scene without an answer in the continuum.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a force at a point, except on a bar.
     pub(crate) fn check_continuum(&self) -> Result<(), Error> {
         match self.loads.iter().position(LoadSpec::is_at_points) {
             Some(index) if self.model.dimension() > 1 => {
@@ -137,9 +134,6 @@ impl Scene {
     }
 
     /// The scene on the last mesh of a guaranteed error, with the boundaries and parts of the first mesh.
-    ///
-    /// # Errors
-    /// As [`Scene::build`].
     pub(crate) fn on_last_mesh(&self, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
         // Contacts that the program found are found again.
         let found: Vec<&str> = first.obstacles()[self.obstacles.len()..]

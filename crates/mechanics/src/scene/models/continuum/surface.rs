@@ -124,9 +124,6 @@ impl Scene {
     }
 
     /// Adds load number `index`, if it acts on facets.
-    ///
-    /// # Errors
-    /// [`WhyNot::NoGuarantee`] for a load that is not linear on each facet.
     fn add_load_on_surface(
         &self,
         model: &Model,
@@ -204,10 +201,6 @@ impl Factor {
         Ok(Factor { counts_radius, profile: spec.map(|spec| Profile::of(spec, &path, dimension)).transpose()?, path })
     }
 
-    /// The factor on a facet.
-    ///
-    /// # Errors
-    /// [`WhyNot::NoGuarantee`] if it has a kink there.
     fn on(&self, facet: &Facet) -> Result<Linear, WhyNot> {
         let Some(profile) = &self.profile else { return Ok(Linear::constant(1.0)) };
         if self.counts_radius && facet.corners.iter().any(|corner| corner[0] != facet.corners[0][0]) {
@@ -232,7 +225,6 @@ impl Factor {
     }
 }
 
-/// A facet of a boundary.
 struct Facet {
     corners: Vec<Point>,
     /// Inside the body, the normal of the boundary.

@@ -7,7 +7,6 @@ use crate::error::Error;
 pub(crate) struct NoGuarantee {
     /// JSON path of what has none.
     pub path: String,
-    /// A sentence.
     pub message: String,
 }
 

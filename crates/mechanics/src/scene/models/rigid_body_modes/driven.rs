@@ -21,9 +21,6 @@ impl RigidBodyModes {
     ///
     /// Of all motions that supports and ties leave free, the one nearest to the drive of the load that closes no row is
     /// itself the answer to a contact problem, with K = I.
-    ///
-    /// # Errors
-    /// [`qp::Error::Unbounded`] with the name of the motion.
     pub fn check_bounded(&self, parts: &Parts, problem: &ContactProblem) -> Result<(), Error> {
         let mut free = self.free(parts, &[]);
         if free.len() > MOST_MOTIONS {

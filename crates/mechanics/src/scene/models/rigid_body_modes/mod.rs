@@ -111,9 +111,6 @@ impl RigidBodyModes {
     }
 
     /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
-    ///
-    /// # Errors
-    /// [`qp::Error::UnderHeld`] with the names of all such motions.
     pub fn check_held(&self, parts: &Parts, rows: &[ContactRow]) -> Result<(), Error> {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
@@ -132,7 +129,6 @@ impl RigidBodyModes {
         parts.unknowns.of_motion(of_free, travel)
     }
 
-    /// Motions in words.
     pub fn names(&self, motions: &[Vec<f64>]) -> Vec<String> {
         motions.iter().map(|motion| self.describe(motion, Sense::Either)).collect()
     }

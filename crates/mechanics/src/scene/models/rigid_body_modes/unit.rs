@@ -12,7 +12,6 @@ use signorini_qp::dot;
 /// A part of a motion below this, relative to the whole, is left out of its name.
 pub(super) const NAMED: f64 = 1e-6;
 
-/// The names of the axes.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions:
@@ -123,7 +122,6 @@ impl UnitMotions {
         (amplitudes, dot(&off, &off).sqrt())
     }
 
-    /// The name of a motion.
     pub fn describe(&self, &[x, y, z, a, b, c]: &Amplitudes, sense: Sense) -> String {
         let (shift, turn) = ([x, y, z], [a, b, c]);
         let (distance, angle) = (dot(&shift, &shift).sqrt(), dot(&turn, &turn).sqrt());

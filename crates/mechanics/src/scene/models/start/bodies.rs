@@ -26,8 +26,6 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// # Errors
-    /// As [`GmshFile::mesh`], for one of the bodies.
     pub fn of(file: &GmshFile) -> Result<Self, Error> {
         let mut sets = file.glued();
         if let [Glued { groups, .. }] = &mut sets[..]

@@ -1,18 +1,58 @@
-//! State shared by a solve and its caller: a request to stop, a deadline, the current step.
-
-mod activity;
-mod cancellation;
-mod deadline;
-mod pace;
+//! State shared by a solve and its caller: a request to stop, a deadline, the current step, and the speed of this
+//! machine against the estimates of cost.
 
 use std::fmt;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-pub use activity::{Activity, Part};
-use cancellation::Cancellation;
-use deadline::{Deadline, Refused};
-use pace::Pace;
+/// Finishing an answer, for example its certificate, may take this share of the time beyond the deadline.
+const FINISHING: f64 = 0.1;
+
+/// Work shorter than this is too short to measure the pace.
+const TELLING_SECONDS: f64 = 1e-3;
+
+/// The work that a command does at the moment: its part, its step and its iteration.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Activity {
+    /// The part of the work if there are several, such as one gap of a sweep.
+    pub part: Option<Part>,
+    /// The step of the work, such as `factorisation`; empty before the first.
+    pub step: &'static str,
+    /// The iteration of the step, from 1; 0 if the step has no iterations.
+    pub iteration: usize,
+    /// Start and expected duration of the current work, if it is [timed](crate::Watch::timed).
+    pub timed: Option<(Instant, Duration)>,
+}
+
+/// One of several parts of a longer work, such as a point of a sweep.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Name of the parts, such as `gap`.
+    pub name: &'static str,
+    /// Number of this part, from 1.
+    pub number: usize,
+    /// The number of all parts together.
+    pub of: usize,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} of {}", self.name, self.number, self.of)
+    }
+}
+
+impl fmt::Display for Activity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let part = self.part.as_ref().map(Part::to_string);
+        let step = match self.iteration {
+            _ if self.step.is_empty() => None,
+            0 => Some(self.step.to_string()),
+            iteration => Some(format!("{}, iteration {iteration}", self.step)),
+        };
+        f.write_str(&part.into_iter().chain(step).collect::<Vec<_>>().join(": "))
+    }
+}
 
 /// A handle on running work: any thread can ask it to stop and read its current step.
 ///
@@ -42,9 +82,11 @@ pub struct Watch {
 
 #[derive(Debug, Default)]
 struct Shared {
-    cancellation: Cancellation,
+    is_stopped: AtomicBool,
+    is_noticed: AtomicBool,
     activity: Mutex<Activity>,
-    pace: Mutex<Pace>,
+    /// Measured seconds per estimated second; `None` before anything was measured.
+    pace: Mutex<Option<f64>>,
     observer: Observer,
 }
 
@@ -92,12 +134,12 @@ impl Watch {
 
     /// Asks the work to end with its best answer so far.
     pub fn stop(&self) {
-        self.shared.cancellation.request();
+        self.shared.is_stopped.store(true, SeqCst);
     }
 
     /// Returns `true` if the work was asked to stop.
     pub fn is_stopped(&self) -> bool {
-        self.shared.cancellation.is_requested()
+        self.shared.is_stopped.load(SeqCst)
     }
 
     /// Returns `true` if the work was asked to stop, and takes down that the work has [noticed](Self::is_noticed) it:
@@ -105,14 +147,14 @@ impl Watch {
     pub fn acknowledge(&self) -> bool {
         let stopped = self.is_stopped();
         if stopped {
-            self.shared.cancellation.acknowledge();
+            self.shared.is_noticed.store(true, SeqCst);
         }
         stopped
     }
 
     /// Returns `true` if the work has noticed the request to stop. A factorisation, for example, does not notice it.
     pub fn is_noticed(&self) -> bool {
-        self.shared.cancellation.is_acknowledged()
+        self.shared.is_noticed.load(SeqCst)
     }
 
     /// Returns `true` if the work must end: it was asked to stop, or its deadline has passed. Work asks this where it
@@ -182,17 +224,17 @@ impl Watch {
     /// Seconds that work needs on this machine: `estimate` times the pace of the work that was [timed](Self::timed)
     /// last.
     pub fn needed(&self, estimate: f64) -> f64 {
-        locked(&self.shared.pace).seconds(estimate)
+        estimate * self.pace().unwrap_or(1.0)
     }
 
     /// Sets the pace: from now on work is expected to take `pace` times its estimate.
     pub fn learn(&self, pace: f64) {
-        *locked(&self.shared.pace) = Pace(Some(pace));
+        *locked(&self.shared.pace) = Some(pace);
     }
 
     /// Measured seconds per estimated second; `None` before anything was timed.
     pub fn pace(&self) -> Option<f64> {
-        locked(&self.shared.pace).0
+        *locked(&self.shared.pace)
     }
 
     /// Runs `work`, which is estimated to take `estimate` seconds, and measures the pace of this machine by it.
@@ -202,8 +244,9 @@ impl Watch {
         locked(&self.shared.activity).timed = expected.map(|time| (clock, time));
         let done = work();
         locked(&self.shared.activity).timed = None;
-        let mut pace = locked(&self.shared.pace);
-        *pace = pace.after(estimate, clock.elapsed().as_secs_f64());
+        if estimate >= TELLING_SECONDS {
+            self.learn(clock.elapsed().as_secs_f64() / estimate);
+        }
         done
     }
 
@@ -223,6 +266,88 @@ impl Watch {
         // The lock is free again: the observer may ask for the activity.
         if let Observer(Some(observer)) = &self.shared.observer {
             observer(self);
+        }
+    }
+}
+
+/// A moment at which work must end.
+#[derive(Clone, Debug)]
+struct Deadline {
+    at: Instant,
+    /// Time from setting the deadline to the deadline.
+    span: Duration,
+    cut: Arc<OnceLock<Cut>>,
+}
+
+/// Work that a deadline cut short or left out.
+#[derive(Clone, Debug)]
+struct Cut {
+    activity: Activity,
+    refused: Option<Refused>,
+}
+
+/// Seconds of work that did not begin.
+#[derive(Clone, Copy, Debug)]
+struct Refused {
+    /// Seconds that the work needed.
+    needed: f64,
+    /// Seconds that were left.
+    left: f64,
+}
+
+impl Deadline {
+    /// The deadline `seconds` from now; `None` if no clock can represent it.
+    fn within(seconds: f64) -> Option<Self> {
+        let span = Duration::try_from_secs_f64(seconds).ok()?;
+        Some(Deadline { at: Instant::now().checked_add(span)?, span, cut: Arc::default() })
+    }
+
+    /// This deadline, or `other` if that is sooner.
+    fn or_sooner(&self, other: Deadline) -> Self {
+        if other.at < self.at { other } else { self.clone() }
+    }
+
+    /// This deadline, sooner by `seconds`; what it cuts short, this deadline cut short.
+    fn sooner(&self, seconds: f64) -> Self {
+        let left = self.left();
+        let sooner =
+            Self::within(left - seconds.min(left)).map_or_else(|| self.clone(), |sooner| self.or_sooner(sooner));
+        Deadline { cut: self.cut.clone(), ..sooner }
+    }
+
+    /// The deadline for finishing an answer: later by a share of the time.
+    fn finishing(&self) -> Option<Self> {
+        Some(Deadline { at: self.at.checked_add(self.span.mul_f64(FINISHING))?, ..self.clone() })
+    }
+
+    /// Seconds until the deadline, 0 after it.
+    fn left(&self) -> f64 {
+        self.at.saturating_duration_since(Instant::now()).as_secs_f64()
+    }
+
+    /// Takes down that the deadline ended this activity, or `refused` to begin the next; only the first is kept.
+    fn note(&self, activity: Activity, refused: Option<Refused>) {
+        self.cut.get_or_init(|| Cut { activity, refused });
+    }
+
+    /// What the deadline cut short or left out first, in words; `None` if nothing.
+    fn cut(&self) -> Option<String> {
+        self.cut.get().map(Cut::to_string)
+    }
+}
+
+impl fmt::Display for Cut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let activity = self.activity.to_string();
+        let step = if activity.is_empty() { String::new() } else { format!(" the step `{activity}`") };
+        match self.refused {
+            Some(Refused { needed, left }) => {
+                let after = if step.is_empty() { "" } else { " after" };
+                let words = "the next step takes about";
+                write!(f, "the time does not suffice{after}{step}: {words} {needed:.1e} s, and {left:.1e} s are left")
+            }
+            None if step.is_empty() => write!(f, "the time ended before the first step"),
+            None => write!(f, "the time ended in{step}"),
         }
     }
 }
