@@ -246,7 +246,6 @@ fn check_options(options: &Solve) -> Result<(), Error> {
         ("--start", options.start.is_some()),
         ("--precision", options.precision.is_some()),
         ("--no-proof", options.no_proof),
-        ("--extrapolate", options.extrapolate),
         ("--total-error", options.total_error.is_some()),
         ("--along", !options.along.is_empty()),
         ("--refine-in-time", options.refine_in_time),

@@ -77,9 +77,6 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
         }
         None => {}
     }
-    if let Method::Penalty(ladder) = &mut settings.method {
-        ladder.extrapolate = options.extrapolate;
-    }
     let start = options.start.as_deref().map_or_else(|| Ok(Start::default()), earlier)?;
     if options.plan {
         let plan = input.problem().plan(&start, &settings).map_err(|error| input.explain(error))?;
@@ -87,10 +84,6 @@ pub(super) fn run(options: &Solve, watch: &Watch, kept: &Kept) -> Result<Outcome
     }
     let about = about(&input.title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
     let (solution, why) = best_of(&input, &start, &settings)?;
-    if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
-        let method = &solution.method;
-        warn(&format!("warning: --extrapolate changes nothing: the method is {method}; it needs --method penalty\n"));
-    }
     let answer = input.answer(&solution)?;
     Ok(reported(&input, (solution, answer), settings.goal(), (about, options), watch)?.because(why))
 }
@@ -102,7 +95,6 @@ fn check_options(options: &Solve, scene: Option<&Scene>) -> Result<(), Error> {
         ("--accuracy", options.accuracy.is_some()),
         ("--precision", options.precision.is_some()),
         ("--no-proof", options.no_proof),
-        ("--extrapolate", options.extrapolate),
         ("--explain", options.explain),
         ("--plan", options.plan),
         ("--start", options.start.is_some()),

@@ -140,7 +140,6 @@ fn options_without_effect_are_refused() {
         &["--accuracy", "1e-3"],
         &["--precision", "double"],
         &["--no-proof"],
-        &["--extrapolate"],
         &["--explain"],
         &["--plan"],
         &["--start", "earlier"],

@@ -1,4 +1,4 @@
-//! The penalty ladder with a requested accuracy, and Richardson's extrapolation over the penalty.
+//! The penalty ladder with a requested accuracy.
 
 use signorini::qp::{Condense, Error, Method, Settings};
 use signorini::{ContactProblem, Penalty, Solution, solve};
@@ -84,28 +84,6 @@ fn the_ladder_ends_with_an_error_at_the_accuracy_that_rounding_allows() {
             // A penalty answer without penetration is exact.
             Ok(solution) => assert!(solution.certificate.energy_error_bound <= 1e-15, "{name}"),
             Err(error) => panic!("{name}: {error}"),
-        }
-    }
-}
-
-#[test]
-fn extrapolation_over_the_penalty_gains_two_digits() {
-    for (name, problem) in problems() {
-        let exact = exact(&problem);
-        for condense in [Condense::Auto, Condense::Never] {
-            for last in [1e3, 1e4, 1e5] {
-                let of = |extrapolate| {
-                    let ladder = Penalty { last, extrapolate, penetration_threshold: 0.0, ..Penalty::default() };
-                    penalty(&problem, |settings| {
-                        (settings.method, settings.condense) = (Method::Penalty(ladder), condense);
-                    })
-                };
-                let (plain, beyond) = (of(false), of(true));
-                let (before, after) = (error(&problem, &plain, &exact), error(&problem, &beyond, &exact));
-                assert!(after <= 1e-2 * before, "{name}, {condense:?}, {last:e}: {before:e} to {after:e}");
-                assert_eq!(beyond.method, "penalty-extrapolated");
-                assert!(after <= beyond.certificate.energy_error_bound * (1.0 + 1e-6) + 1e-12, "{name}");
-            }
         }
     }
 }

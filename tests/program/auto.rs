@@ -102,7 +102,7 @@ fn invalid_accuracies_are_refused_by_name() {
 }
 
 #[test]
-fn the_command_line_takes_accuracy_time_precision_and_extrapolation() {
+fn the_command_line_takes_accuracy_time_and_precision() {
     let desk = Desk::new();
     let scene = example("indentation");
     let run = |options: &[&str]| desk.run(&[&["solve", &scene], options].concat());
@@ -115,8 +115,8 @@ fn the_command_line_takes_accuracy_time_precision_and_extrapolation() {
     assert!(refused.contains("single precision are gone") && refused.contains("take the method mprgp"), "{refused}");
     let text = run(&["--method", "penalty", "--accuracy", "1e-3"]).ends_with(0).stdout;
     assert!(text.contains("the penalty went up to"), "{text}");
-    let text = run(&["--method", "penalty", "--extrapolate", "--accuracy", "1e-6"]).ends_with(0).stdout;
-    assert!(text.contains("penalty-extrapolated"), "{text}");
+    let refused = run(&["--method", "penalty", "--extrapolate"]).ends_with(2).stderr;
+    assert!(refused.contains("the extrapolation of a penalty is gone: take the method active-set"), "{refused}");
 
     let short = run(&["--accuracy", "1e-30", "--format", "json"]).ends_with(0).json();
     assert_eq!((&short["status"], &short["certificate"]["met"]), (&json!("certified"), &json!("rounding")));

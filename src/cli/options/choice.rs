@@ -23,6 +23,12 @@ pub(super) fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
     })
 }
 
+/// Refuses the extrapolation of penalties, which is gone.
+pub(super) fn extrapolation(_: &str) -> Result<(), String> {
+    Err("the extrapolation of a penalty is gone: take the method active-set, whose answer is that of an infinite penalty"
+        .into())
+}
+
 /// Takes the precision of a factor, of which one is left.
 pub(super) fn precision(name: &str) -> Result<(), String> {
     match name {

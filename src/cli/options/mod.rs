@@ -15,7 +15,7 @@ use super::memory::parse_size;
 use crate::output::{Medium, Pictures, Wanted};
 use crate::qp::Method;
 use crate::study::TotalErrorGoal;
-use choice::{choice, precision};
+use choice::{choice, extrapolation, precision};
 use limits::DeckOptions;
 pub(super) use limits::Limits;
 
@@ -196,13 +196,13 @@ pub(super) struct Solve {
     /// Do not prove which rows are open and closed
     #[arg(long)]
     pub no_proof: bool,
-    /// Extrapolate the penalty answer to an infinite penalty
-    #[arg(long)]
-    pub extrapolate: bool,
+    /// Extrapolate the penalty answer to an infinite penalty, which no method does
+    #[arg(long, hide = true, num_args = 0, default_missing_value = "", value_parser = extrapolation)]
+    pub extrapolate: Option<()>,
     /// Refine the mesh until the error against the continuum, relative in the energy norm, is below E: guaranteed,
     /// but estimated for several bodies in space and for a few keys; the report says which
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error,
-          conflicts_with_all = ["accuracy", "extrapolate", "resume"])]
+          conflicts_with_all = ["accuracy", "resume"])]
     pub total_error: Option<f64>,
     /// Refine further until the contact force is guaranteed to this relative error
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error, requires = "total_error")]

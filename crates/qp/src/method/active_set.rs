@@ -17,7 +17,6 @@
 use std::cell::LazyCell;
 use std::collections::HashSet;
 
-use super::earlier_factor::{EarlierFactor, TRIAL, steps_for_a_factor};
 use super::equilibrium::{Equilibrium, WEIGHT, by_compliance, equilibrium, reach};
 use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
 use crate::error::Error;
@@ -58,11 +57,10 @@ impl Solver for ActiveSet<'_> {
         let mut seen = HashSet::new();
         let mut rule = Rule::Exchange;
         let mut ending = Ending::Unsettled;
-        let mut earlier = earlier_factor(scaled)?;
         let is_over = |done: usize| done > 0 && scaled.watch().is_over();
         while ending == Ending::Unsettled && history.len() < self.most_iterations && !is_over(history.len()) {
             scaled.watch().step("active set", history.len() + 1);
-            let balance = match balance(scaled, &mut earlier, &mut closed, &displacement)? {
+            let balance = match balance(scaled, &mut closed, &displacement)? {
                 Ok(balance) => balance,
                 Err(without) => {
                     ending = without;
@@ -95,40 +93,21 @@ impl Solver for ActiveSet<'_> {
     }
 }
 
-/// The factor of an earlier set for the steps of a loop, if K is definite, every row bounds one dof, and a factor is
-/// expensive.
-fn earlier_factor<'a>(scaled: &ScaledProblem<'a>) -> Result<Option<EarlierFactor<'a>>, Error> {
-    if !scaled.is_definite() || scaled.compliance.is_some() {
-        return Ok(None);
-    }
-    let most_steps = steps_for_a_factor(scaled.augmented()?.analysis());
-    Ok(if most_steps >= TRIAL { EarlierFactor::of(scaled.problem, most_steps) } else { None })
-}
-
 /// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the
-/// factor of an `earlier` set if that takes few steps, or by the compliance of the rows if they do not follow from each
-/// other, otherwise by its own. The ending of the loop if there is none.
+/// compliance of the rows if they do not follow from each other, otherwise by a factor of its own. The ending of the
+/// loop if there is none.
 fn balance(
     scaled: &ScaledProblem,
-    earlier: &mut Option<EarlierFactor>,
     closed: &mut ContactSet,
     near: &[f64],
 ) -> Result<Result<Equilibrium, Ending>, Error> {
-    if let Some(balance) = earlier.as_mut().and_then(|earlier| earlier.balance(closed, near)) {
-        return Ok(Ok(balance));
-    }
     let is_near = |balance: &Equilibrium| wrong_rows(scaled, balance, closed, CLEARLY).next().is_none();
     let by_compliance = |compliance| by_compliance(scaled, compliance, closed, is_near);
     if let Some(balance) = scaled.compliance.and_then(by_compliance) {
         return Ok(Ok(balance));
     }
-    Ok(scaled.hold_with_more(closed, WEIGHT, near)?.map(|cholesky| {
-        let balance = equilibrium(scaled.problem, &cholesky, closed);
-        if let Some(earlier) = earlier {
-            earlier.keep(cholesky, closed);
-        }
-        balance
-    }))
+    let cholesky = scaled.hold_with_more(closed, WEIGHT, near)?;
+    Ok(cholesky.map(|cholesky| equilibrium(scaled.problem, &cholesky, closed)))
 }
 
 /// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if

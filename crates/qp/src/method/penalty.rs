@@ -36,16 +36,13 @@ pub struct Penalty {
     pub first: f64,
     /// Last penalty, in multiples of the local stiffness; 1e8 balances penetration and rounding.
     pub last: f64,
-    /// `true` to extrapolate the answer to an infinite penalty, from two rungs of the ladder with one contact set.
-    pub extrapolate: bool,
     /// Penetration at which the ladder ends, relative to the largest displacement of a contact row.
     pub penetration_threshold: f64,
 }
 
 impl Penalty {
     /// The ladder from 1 to [`BEST_PENALTY`].
-    pub(crate) const DEFAULT: Penalty =
-        Penalty { first: 1.0, last: BEST_PENALTY, extrapolate: false, penetration_threshold: 1e-10 };
+    pub(crate) const DEFAULT: Penalty = Penalty { first: 1.0, last: BEST_PENALTY, penetration_threshold: 1e-10 };
 }
 
 impl Default for Penalty {
@@ -90,37 +87,26 @@ impl Solver for PenaltyLoop<'_> {
         let PenaltyLoop { scaled, ladder, .. } = self;
         let mut climb = Climb::new(scaled.problem, start);
         let mut penalty = ladder.first;
-        let mut rung_before: Option<PenaltyRung> = None;
         let mut last_bound = f64::INFINITY;
-        let answer = loop {
+        let multiplier = loop {
             self.settle(&mut climb, penalty)?;
-            let rung = PenaltyRung::new(&climb.state, climb.closed.clone(), penalty);
-            let answer = match self.ladder.extrapolate && climb.is_settled() {
-                true => self.extrapolated(&rung, rung_before.as_ref())?,
-                false => rung.clone(),
-            };
+            let multiplier = climb.multiplier(penalty);
             if let Some(goal) = self.goal.filter(|_| climb.is_settled()) {
-                let bound = (goal.bound)(&answer.displacement, &answer.multiplier);
+                let bound = (goal.bound)(&climb.state.displacement, &multiplier);
                 if bound <= goal.accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
-                    break answer;
+                    break multiplier;
                 }
                 last_bound = bound;
             }
-            rung_before = Some(rung);
             let is_small = climb.is_settled() && climb.penetrates_at_most(scaled.problem, ladder.penetration_threshold);
             let is_last = penalty * RUNG > ladder.last || climb.history.len() >= self.most_iterations;
             if is_small || scaled.watch().is_over() || is_last || climb.ending == Ending::Unheld {
-                break answer;
+                break multiplier;
             }
             penalty *= RUNG;
         };
-        let variant = match (climb.is_settled(), ladder.extrapolate) {
-            (false, _) => "-unsettled",
-            (true, false) => "",
-            (true, true) => "-extrapolated",
-        };
-        let PenaltyRung { displacement, multiplier, .. } = answer;
-        let Climb { closed: contact_set, history, ending, .. } = climb;
+        let variant = if climb.is_settled() { "" } else { "-unsettled" };
+        let Climb { closed: contact_set, state: State { displacement, .. }, history, ending } = climb;
         Ok(Outcome { displacement, multiplier, contact_set, iterations: history.len(), history, ending, variant })
     }
 }
@@ -156,14 +142,6 @@ impl PenaltyLoop<'_> {
         }
         Ok(())
     }
-
-    /// The answer of a rung, extrapolated from the one `before`, or from one below it if their sets differ.
-    fn extrapolated(&self, rung: &PenaltyRung, before: Option<&PenaltyRung>) -> Result<PenaltyRung, Error> {
-        Ok(match before {
-            Some(before) if before.closed == rung.closed => rung.extrapolated(before),
-            _ => rung_below(self.scaled, rung)?.map_or_else(|| rung.clone(), |below| rung.extrapolated(&below)),
-        })
-    }
 }
 
 /// The state of the loop between two rungs.
@@ -186,54 +164,19 @@ impl Climb {
         self.ending == Ending::Settled
     }
 
+    /// The forces of the closed rows as springs of this penalty.
+    fn multiplier(&self, penalty: f64) -> Vec<f64> {
+        let force = |(row, violation): (usize, &f64)| {
+            if self.closed.contains(row) { -penalty * violation.max(0.0) } else { 0.0 }
+        };
+        self.state.violation.iter().enumerate().map(force).collect()
+    }
+
     /// Returns `true` if no closed row penetrates by more than this share of the largest displacement of a row.
     fn penetrates_at_most(&self, problem: &ContactProblem, share: f64) -> bool {
         let penetration = self.closed.iter().map(|row| self.state.violation[row]).fold(0.0, f64::max);
         penetration <= share * largest(&problem.contact().mul(&self.state.displacement))
     }
-}
-
-#[derive(Clone)]
-struct PenaltyRung {
-    penalty: f64,
-    closed: ContactSet,
-    displacement: Vec<f64>,
-    multiplier: Vec<f64>,
-}
-
-impl PenaltyRung {
-    fn new(state: &State, closed: ContactSet, penalty: f64) -> Self {
-        let force = |(row, violation): (usize, &f64)| {
-            if closed.contains(row) { -penalty * violation.max(0.0) } else { 0.0 }
-        };
-        let multiplier = state.violation.iter().enumerate().map(force).collect();
-        PenaltyRung { penalty, displacement: state.displacement.clone(), multiplier, closed }
-    }
-
-    /// Richardson's extrapolation to an infinite penalty: to the first order, the error of either answer is
-    /// proportional to one over its penalty.
-    fn extrapolated(&self, before: &PenaltyRung) -> PenaltyRung {
-        let share = before.penalty / (self.penalty - before.penalty);
-        let beyond = |now: &[f64], before: &[f64]| -> Vec<f64> {
-            now.iter().zip(before).map(|(now, before)| now + share * (now - before)).collect()
-        };
-        let multiplier = beyond(&self.multiplier, &before.multiplier);
-        PenaltyRung {
-            displacement: beyond(&self.displacement, &before.displacement),
-            multiplier: multiplier.into_iter().map(|value| value.min(0.0)).collect(),
-            ..self.clone()
-        }
-    }
-}
-
-/// The answer with the same set and a tenth of the penalty; `None` if that set no longer holds the body.
-fn rung_below(scaled: &ScaledProblem, rung: &PenaltyRung) -> Result<Option<PenaltyRung>, Error> {
-    let penalty = rung.penalty / RUNG;
-    let mut state = State { displacement: rung.displacement.clone(), violation: Vec::new() };
-    let Some(cholesky) = scaled.hold(&rung.closed, penalty)? else { return Ok(None) };
-    let springs = PenaltySprings { factor: &cholesky, closed: &rung.closed, penalty };
-    (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled.problem, &springs));
-    Ok(Some(PenaltyRung::new(&state, rung.closed.clone(), penalty)))
 }
 
 /// Closed rows as springs of one penalty eps.

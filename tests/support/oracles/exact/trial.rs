@@ -262,12 +262,12 @@ fn settings(draws: &mut Draws) -> Settings {
     if draws.one_in(16) {
         settings.time = Some(std::time::Duration::ZERO);
     }
-    let (polish, prove, extrapolates) = (!draws.one_in(6), draws.one_in(2), draws.one_in(4));
+    let (polish, prove) = (!draws.one_in(6), draws.one_in(2));
+    // As above: an extrapolation was drawn here.
+    draws.one_in(4);
     settings.prove = prove;
-    match &mut settings.method {
-        Method::Qp(options) => options.polish = polish,
-        Method::Penalty(ladder) => ladder.extrapolate = extrapolates,
-        _ => {}
+    if let Method::Qp(options) = &mut settings.method {
+        options.polish = polish;
     }
     settings
 }
@@ -281,7 +281,6 @@ fn words(settings: &Settings) -> String {
         (settings.prove, "proving"),
         (matches!(settings.method, Method::Qp(options) if !options.polish), "unpolished"),
         (settings.time.is_some(), "without time"),
-        (matches!(settings.method, Method::Penalty(ladder) if ladder.extrapolate), "extrapolating"),
     ];
     words.extend(marks.into_iter().filter(|mark| mark.0).map(|mark| mark.1.to_string()));
     words.join(", ")

@@ -22,7 +22,7 @@ pub(super) static ABOUT: About = About {
 
 /// The settings with springs of one penalty, in multiples of the local stiffness, instead of closed rows.
 pub(super) fn springs(settings: &Settings, penalty: f64) -> Settings {
-    let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0, ..Penalty::default() };
+    let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0 };
     // Springs yield, so that no certificate of rigid contact is possible.
     settings.clone().by(Method::Penalty(one)).without_tolerance()
 }
