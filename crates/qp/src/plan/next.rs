@@ -154,6 +154,12 @@ impl Ladder {
         is_last && history.best.as_ref().is_some_and(|best| best.solution.certificate.stationarity > required)
     }
 
+    /// Returns `true` if sets of this method that do not settle wander on a dense stiffness: the interior point follows
+    /// at once, so that a bound of where they ended is not worth its time.
+    pub fn wanders_by(&self, method: Method) -> bool {
+        self.is_dense && method == Method::ActiveSet
+    }
+
     /// Returns `true` if a step of an attempt that is due holds.
     fn holds(&self, place: Place, history: &History) -> bool {
         let Rung { step, when, .. } = self.attempts[place.attempt].steps[place.rung];
@@ -169,8 +175,8 @@ impl Ladder {
             (When::Always, _) => true,
             (When::Unheld, _) => !certified && is_unheld && !history.was_in_doubt(),
             (When::UnsettledOnDense, _) => {
-                let wanders = answer.is_some_and(|answer| !answer.is_settled && !answer.is_unheld);
-                !certified && wanders && self.is_dense && method == Method::ActiveSet
+                let is_unsettled = answer.is_some_and(|answer| !answer.is_settled && !answer.is_unheld);
+                !certified && is_unsettled && self.wanders_by(method)
             }
             (When::Unsettled, Step::Continuation) => {
                 let is_by_sets =

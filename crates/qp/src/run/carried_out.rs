@@ -148,7 +148,11 @@ impl<'a> Run<'a> {
         }
         let (ending, solution) = (found.outcome.ending.clone(), self.answer(found, &tried, record));
         self.settings.watch.step("certificate", 0);
-        let by = engine.bounding(&self.settings.watch.finishing());
+        let is_unsettled = record.step == Step::Method && ending == Ending::Unsettled;
+        let by = match is_unsettled && self.ladder.wanders_by(tried.method) {
+            true => Bounding::Nothing,
+            false => engine.bounding(&self.settings.watch.finishing()),
+        };
         let answer = Best { ending, tried: Some(tried), ..Best::of(solution, next.place.attempt) };
         self.judged(answer, &by, record).map(Ended::Answered)
     }
