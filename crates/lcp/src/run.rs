@@ -41,15 +41,13 @@ impl Way {
         };
         // A stack with more contacts than it needs: if all close, one factor is enough. Else the QP would wander.
         let is_alike = known.class.is_alike();
-        let is_monotone = known.class == Class::Monotone;
-        let is_principal = if is_alike { is_singular } else { known.is_unique == Some(true) };
+        // On other monotone matrices its steps may be thousands.
+        let is_principal = if is_alike { is_singular } else { [Class::H, Class::P].contains(&known.class) };
         let ways = [
-            (PrincipalPivoting, by_pivoting && is_principal && !is_monotone),
+            (PrincipalPivoting, by_pivoting && is_principal),
             (Lemke(0), by_pivoting && is_alike && is_singular),
             (QuadraticProgram, by_program && known.factor.is_some() && is_program),
             (GapProgram, by_program && known.factor.is_some() && !is_program),
-            // Its steps may be thousands here.
-            (PrincipalPivoting, by_pivoting && is_principal && is_monotone),
         ];
         let n = known.scaled.offset.len();
         let attempts = if by_pivoting { (EFFORT / (n * n * n).max(1)).clamp(3, ATTEMPTS) } else { 0 };
