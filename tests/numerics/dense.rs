@@ -184,3 +184,29 @@ fn two_threads_give_the_answer_of_one_bit_by_bit() {
     });
     assert_eq!((one.displacement, one.multiplier, one.proven), (two.displacement, two.multiplier, two.proven));
 }
+
+#[test]
+fn sets_that_wander_on_a_nearly_singular_stiffness_give_way_to_the_interior_point() {
+    // A wide Gaussian kernel between points on a line: most of its eigenvalues are the 1e-6 that is added.
+    let (n, mut draws) = (80, Draws::new(5));
+    let kernel = |i: usize, j: usize| (-((i as f64 - j as f64) / 16.0).powi(2)).exp() + if i == j { 1e-6 } else { 0.0 };
+    let sides = |row: usize, dof: usize| if row % n == dof { if row < n { -1.0 } else { 1.0 } } else { 0.0 };
+    let problem = Dense {
+        stiffness: DMatrix::from_fn(n, n, kernel),
+        load: DVector::from_fn(n, |i, _| (9.0 * i as f64 / n as f64).sin() + 0.2 * draws.signed()),
+        contact: DMatrix::from_fn(2 * n, n, sides),
+        gap: DVector::from_fn(2 * n, |row, _| if row < n { 0.0 } else { 2.0 }),
+    };
+    let problem = problem.problem().unwrap();
+    let [chosen, by_program] = [Method::Auto, Method::qp()]
+        .map(|method| solve(&problem, &Settings::with_method(method).with_proof()).unwrap());
+    // Sixteen sets, and the steps of the interior point. The dual method takes hundreds.
+    assert!(
+        chosen.method.contains("interior-point") && chosen.iterations < 60,
+        "{} {}",
+        chosen.method,
+        chosen.iterations
+    );
+    assert_eq!((&chosen.contact_set, &chosen.proven), (&by_program.contact_set, &by_program.proven));
+    assert_eq!(chosen.displacement, by_program.displacement);
+}
