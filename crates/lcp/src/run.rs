@@ -127,6 +127,9 @@ fn near(lcp: &Lcp, known: &Known, z: Vec<f64>, allowed: f64, settings: &Settings
         }
         false => settled(lcp, known, &rough.places, allowed)?,
     };
+    // Rounding may leave a point a little outside.
+    let inside = |i: usize, z: f64| z.clamp(lcp.lower()[i], lcp.upper()[i]);
+    let settled = settled.map(|z| z.into_iter().enumerate().map(|(i, z)| inside(i, z)).collect());
     Ok(settled.into_iter().chain([moved]).map(|z| placed(lcp, z)).collect())
 }
 
