@@ -24,7 +24,8 @@ enum Way {
     Lemke(usize),
 }
 
-/// Most attempts of Lemke's method, and most of their unknowns to the third power; but three of any.
+/// Most attempts of Lemke's method. On large problems they are fewer: their number times the third power of the unknowns
+/// is at most `EFFORT`. Three are always made.
 const ATTEMPTS: usize = 64;
 const EFFORT: usize = 10_000_000;
 
@@ -50,7 +51,7 @@ impl Way {
             (GapProgram, by_program && known.factor.is_some() && !is_program),
         ];
         let n = known.scaled.offset.len();
-        let attempts = if by_pivoting { (EFFORT / (n * n * n).max(1)).clamp(3, ATTEMPTS) } else { 0 };
+        let attempts = if by_pivoting { (EFFORT / n.saturating_pow(3).max(1)).clamp(3, ATTEMPTS) } else { 0 };
         let ways = ways.into_iter().filter_map(|(way, is_tried)| is_tried.then_some(way));
         ways.chain((usize::from(is_alike && is_singular)..attempts).map(Lemke)).collect()
     }
