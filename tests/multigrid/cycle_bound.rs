@@ -229,18 +229,21 @@ fn blocks_on_a_soft_one(young: f64) -> Value {
             "y": {"points": y, "divisions": [rows]}}})
     };
     let material = |young: f64| json!({"young": young, "poisson": 0.3});
-    let names: Vec<String> = (0..6).map(|index| format!("block{index}")).collect();
+    let names: Vec<String> = (0..14).map(|index| format!("block{index}")).collect();
     let block = |(index, name): (usize, &String)| {
         let left = 0.3 + 1.4 * index as f64;
-        let body = rectangle([left, left + 1.0], [3.0, 3.5], [3 + index % 4, 3]);
+        let body = rectangle([left, left + 1.0], [6.0, 6.5], [3 + index % 4, 3]);
         json!({"name": name, "body": body, "material": material(young)})
     };
     let side = |name: &String| json!({"on": {"boundary": format!("{name}.left")}, "x": 0});
-    let pressed = |(index, name): (usize, &String)| json!({"pressure": {"boundary": format!("{name}.top"), "value": 0.5 + 0.2 * (index % 5) as f64}});
+    let pressed = |(index, name): (usize, &String)| {
+        let value = 0.5 + 0.2 * (index % 5) as f64;
+        json!({"pressure": {"boundary": format!("{name}.top"), "value": value}})
+    };
     let supports: Vec<Value> =
         [json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0})].into_iter().chain(names.iter().map(side)).collect();
     json!({
-        "body": rectangle([0.0, 9.0], [0.0, 3.0], [54, 18]), "material": material(100.0), "contact": "auto",
+        "body": rectangle([0.0, 20.0], [0.0, 6.0], [120, 36]), "material": material(100.0), "contact": "auto",
         "further-bodies": names.iter().enumerate().map(block).collect::<Vec<_>>(), "supports": supports,
         "loads": names.iter().enumerate().map(pressed).collect::<Vec<_>>(),
     })
