@@ -24,8 +24,8 @@ enum Way {
     Lemke(usize),
 }
 
-/// Most attempts of Lemke's method. On large problems they are fewer: their number times the third power of the unknowns
-/// is at most `EFFORT`. Three are always made.
+/// Most attempts of Lemke's method. On large problems they are fewer: their number times the third power of the
+/// unknowns is at most `EFFORT`. Three are always made.
 const ATTEMPTS: usize = 64;
 const EFFORT: usize = 10_000_000;
 

@@ -29,8 +29,8 @@ const REST_SHARE: f64 = 0.1;
 /// The Ritz value has settled if one more step reduces it by no more than this share.
 const SETTLED_RITZ: f64 = 0.15;
 
-/// With the hierarchy of A itself, hardly an eigenvalue of M A is above one. Springs that no level knows enlarge some of
-/// them and leave the others. A least Ritz value above one has therefore met only the springs so far.
+/// With the hierarchy of A itself, hardly an eigenvalue of M A is above one. Springs that no level knows enlarge some
+/// of them and leave the others. A least Ritz value above one has therefore met only the springs so far.
 const MOST_RITZ: f64 = 1.0;
 
 /// A hierarchy that needs more cycles than this gives no bound.
