@@ -109,31 +109,29 @@ fn pivots(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[
     (smallest, finite)
 }
 
-/// A vector swept through a factor. If the sweep fails or the vector does not fit, every entry is NaN.
-fn swept(factor: Factor, load: &[f64], sweep: impl FnOnce(MatMut<f64>, &mut MemStack)) -> Vec<f64> {
-    if load.len() != factor.symbolic().nrows() {
-        return vec![f64::NAN; load.len()];
-    }
-    let mut x = load.to_vec();
-    let scratch = factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq);
+/// Columns swept through a factor. If the sweep fails, every entry is NaN.
+fn swept(factor: Factor, mut columns: Vec<f64>, sweep: impl FnOnce(MatMut<f64>, &mut MemStack)) -> Vec<f64> {
+    let dim = factor.symbolic().nrows();
+    let count = columns.len() / dim;
+    let scratch = factor.symbolic().solve_in_place_scratch::<f64>(count, Par::Seq);
     let done = call(|| {
         let mut buffer = memory(scratch)?;
-        sweep(MatMut::from_column_major_slice_mut(&mut x, load.len(), 1), MemStack::new(&mut buffer));
+        sweep(MatMut::from_column_major_slice_mut(&mut columns, dim, count), MemStack::new(&mut buffer));
         Ok(())
     });
-    match done {
-        Ok(()) => x,
-        Err(_) => vec![f64::NAN; load.len()],
+    if done.is_err() {
+        columns.fill(f64::NAN);
     }
+    columns
 }
 
-/// The solution of L y = b, both in the order of elimination.
-pub(super) fn forward(factor: Factor, b: &[f64]) -> Vec<f64> {
+/// The solutions of L Y = B, both in the order of elimination.
+pub(super) fn forward(factor: Factor, b: Vec<f64>) -> Vec<f64> {
     swept(factor, b, |y, stack| factor.l_solve_with_conj(Conj::No, y, Par::Seq, stack))
 }
 
-/// The solution of L' x = y, both in the order of elimination.
-pub(super) fn backward(factor: Factor, y: &[f64]) -> Vec<f64> {
+/// The solutions of L' X = Y, both in the order of elimination.
+pub(super) fn backward(factor: Factor, y: Vec<f64>) -> Vec<f64> {
     swept(factor, y, |x, stack| factor.l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack))
 }
 

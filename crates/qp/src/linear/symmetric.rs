@@ -265,6 +265,11 @@ impl SymmetricMatrix {
         self.product(0..self.dim(), x, |value| value)
     }
 
+    /// The products of A with columns, one after the other.
+    pub(crate) fn mul_all(&self, columns: &[f64]) -> Vec<f64> {
+        columns.chunks(self.dim().max(1)).flat_map(|column| self.mul(column)).collect()
+    }
+
     /// The product A x, length `dim`, on this number of threads; `x` has length `dim`. The sums run over parts of the
     /// columns that depend on the matrix alone, so that the result does not depend on the threads.
     pub fn mul_on(&self, threads: usize, x: &[f64]) -> Vec<f64> {
