@@ -4,7 +4,6 @@ mod accumulator;
 mod augmented;
 mod both_triangles;
 mod cholesky;
-mod columns;
 mod compliance;
 mod conjugate_gradients;
 mod dense;
@@ -28,7 +27,6 @@ mod power_iteration;
 mod power_of_two;
 mod quotient;
 mod real;
-mod rows;
 pub mod selected_inverse;
 mod spare;
 mod symmetric;
@@ -65,7 +63,7 @@ use std::sync::Arc;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::error::Error;
-use columns::{Columns, Taken};
+use both_triangles::{Columns, Taken};
 use grouped::group_starts;
 
 /// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.

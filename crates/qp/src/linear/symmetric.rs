@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::columns::Columns;
+use super::both_triangles::Columns;
 use super::dense::wide_product;
 use super::threads::{SharedRows, in_order};
 use super::{Spare, SparseMatrix};
