@@ -1,6 +1,5 @@
 //! Sparse matrices in compressed columns, and their Cholesky factorisation.
 
-mod accumulator;
 mod augmented;
 mod both_triangles;
 mod cholesky;
@@ -11,7 +10,6 @@ mod dense_factor;
 mod dependence;
 pub mod eigen;
 pub(crate) mod equations;
-mod exact_sum;
 mod factor;
 mod forest;
 mod grouped;
@@ -33,7 +31,6 @@ mod symmetric;
 mod threads;
 pub mod twice;
 
-pub use accumulator::Accumulator;
 pub use augmented::{Augmented, AugmentedMatrix};
 pub use both_triangles::SymmetricLines;
 pub use cholesky::{Analysis, Cholesky};
@@ -43,7 +40,6 @@ use dense::wide_product;
 pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, subtract, take_out, turned};
 pub use dense_factor::{forward_all, par, products};
 pub use dependence::Dependence;
-pub use exact_sum::ExactSum;
 pub use factor::{FactorError, call, if_definite};
 pub use forest::Forest;
 pub use multigrid::Width;
@@ -56,7 +52,7 @@ pub use spare::Spare;
 pub use symmetric::SymmetricMatrix;
 pub(crate) use threads::in_order;
 pub use threads::threads_of_machine;
-pub use twice::Twice;
+pub use twice::{Accumulator, ExactSum, Twice};
 
 use std::sync::Arc;
 
