@@ -189,14 +189,7 @@ impl Analysis {
             }
         }
         let triangle = dense_factor::factorise(dim, values, self.threads)?;
-        let (mut smallest_pivot, mut finite) = (f64::INFINITY, true);
-        for pivot in (0..dim).map(|column| triangle.diagonal(column)) {
-            smallest_pivot = smallest_pivot.min(pivot * pivot);
-            finite &= pivot.is_finite();
-        }
-        if !finite {
-            return Err(FactorError::NotPositiveDefinite);
-        }
+        let smallest_pivot = factor::smallest_pivot((0..dim).map(|column| triangle.diagonal(column)))?;
         Ok(Cholesky { analysis: self.clone(), values: Values::Dense(triangle), smallest_pivot })
     }
 
@@ -251,7 +244,7 @@ impl Cholesky {
     /// # Errors
     /// [`Error::NotConvex`] for a matrix that is not positive definite, [`Error::Numerical`] for a lack of memory.
     pub fn of(matrix: &SymmetricMatrix) -> Result<Self, Error> {
-        Ok(Cholesky::factorised(matrix)?)
+        Self::on(matrix, 1)
     }
 
     /// The same with this number of threads.
@@ -260,11 +253,6 @@ impl Cholesky {
     /// As [`Cholesky::of`].
     pub fn on(matrix: &SymmetricMatrix, threads: usize) -> Result<Self, Error> {
         Ok(Analysis::of(matrix)?.with_threads(threads).factor(matrix)?)
-    }
-
-    /// The same with an error that names the pivot.
-    pub(crate) fn factorised(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
-        Analysis::of(matrix)?.factor(matrix)
     }
 
     /// Number of rows and columns of the factorised matrix.

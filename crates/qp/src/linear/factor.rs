@@ -90,23 +90,19 @@ pub(super) fn factorise(
         Default::default(),
     )
     .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
-    let (smallest_pivot, finite) = pivots(supernodes, &values);
-    if finite { Ok((values, smallest_pivot)) } else { Err(FactorError::NotPositiveDefinite) }
+    let of_node = |node: usize| {
+        let block = Factor::new(supernodes, &values).supernode(node).val();
+        (0..block.ncols()).map(move |j| block[(j, j)])
+    };
+    let smallest_pivot = smallest_pivot((0..supernodes.n_supernodes()).flat_map(of_node))?;
+    Ok((values, smallest_pivot))
 }
 
-/// The smallest pivot, and `true` if all entries are finite: every entry enters the pivot of its row.
-fn pivots(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[f64]) -> (f64, bool) {
-    let (mut smallest, mut finite) = (f64::INFINITY, true);
-    let factor = Factor::new(supernodes, values);
-    for node in 0..supernodes.n_supernodes() {
-        let block = factor.supernode(node).val();
-        for j in 0..block.ncols() {
-            let entry = block[(j, j)];
-            smallest = smallest.min(entry * entry);
-            finite &= entry.is_finite();
-        }
-    }
-    (smallest, finite)
+/// The smallest pivot, from the diagonal of the factor; an error unless all its entries are finite: every entry of the
+/// factor enters the pivot of its row.
+pub(super) fn smallest_pivot(mut diagonal: impl Iterator<Item = f64>) -> Result<f64, FactorError> {
+    let smallest = diagonal.try_fold(f64::INFINITY, |least, entry| entry.is_finite().then(|| least.min(entry * entry)));
+    smallest.ok_or(FactorError::NotPositiveDefinite)
 }
 
 /// Columns swept through a factor. If the sweep fails, every entry is NaN.

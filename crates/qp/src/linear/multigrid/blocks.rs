@@ -264,29 +264,25 @@ impl<T: Real> BlockMatrix<T> {
     }
 
     pub fn without_zeros(&self) -> Self {
+        self.filtered(|_, _, block| block.iter().any(|&value| value != T::default()))
+    }
+
+    /// The entries between rows in which `other` has entries.
+    pub fn within(&self, other: &Self) -> Self {
+        let is_filled = |row: usize| other.starts[row] < other.starts[row + 1];
+        self.filtered(|row, column, _| is_filled(row) && is_filled(column))
+    }
+
+    fn filtered(&self, is_kept: impl Fn(usize, usize, &[T]) -> bool) -> Self {
         let mut kept = Self::empty(0, self.columns, (self.height, self.width));
         for row in 0..self.rows() {
-            for (column, block) in self.row(row).filter(|entry| entry.1.iter().any(|&value| value != T::default())) {
+            for (column, block) in self.row(row).filter(|&(column, block)| is_kept(row, column, block)) {
                 kept.indices.push(column as u32);
                 kept.values.extend_from_slice(block);
             }
             kept.starts.push(kept.indices.len());
         }
         kept
-    }
-
-    /// The entries between rows in which `other` has entries.
-    pub fn within(&self, other: &Self) -> Self {
-        let is_filled = |row: usize| other.starts[row] < other.starts[row + 1];
-        let mut part = Self::empty(0, self.columns, (self.height, self.width));
-        for row in 0..self.rows() {
-            for (column, block) in self.row(row).filter(|entry| is_filled(row) && is_filled(entry.0)) {
-                part.indices.push(column as u32);
-                part.values.extend_from_slice(block);
-            }
-            part.starts.push(part.indices.len());
-        }
-        part
     }
 
     pub fn transposed(&self) -> Self {
