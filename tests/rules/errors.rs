@@ -150,7 +150,11 @@ fn every_variant_is_provoked_with_its_code_and_one_sentence() {
     for (variant, (code, error)) in provoked {
         // The errors of other crates come in their wrapping.
         let named = format!("{error:?}");
-        assert_eq!(named.trim_start_matches("Qp(").trim_start_matches("Linear(").split([' ', ')']).next(), Some(variant), "{error:?}");
+        assert_eq!(
+            named.trim_start_matches("Qp(").trim_start_matches("Linear(").split([' ', ')']).next(),
+            Some(variant),
+            "{error:?}"
+        );
         assert_eq!((error.code(), variants[variant].as_str()), (code, code), "{error}");
         let sentence = error.to_string();
         assert!(sentence.len() > 20 && sentence.lines().count() == 1 && !sentence.contains("  "), "{sentence:?}");

@@ -32,11 +32,10 @@ impl Squares {
         if (0..by_row.columns()).map(of_row).sum::<usize>() > matrix.entries() {
             return Squares::Rows(by_row);
         }
-        let mut search = EntrySearch::of(matrix);
         let (mut row_starts, mut products) = (vec![0], Vec::new());
         for row in 0..by_row.columns() {
             products.extend(by_row.square(row).map(|(second, first, product)| {
-                let (Ok(place) | Err(place)) = search.place(first, second);
+                let place = matrix.column_rows(first).partition_point(|&row| (row as usize) < second);
                 (matrix.column_starts()[first] + place, product)
             }));
             row_starts.push(products.len());
@@ -85,27 +84,23 @@ fn triangle(columns: usize) -> usize {
 }
 
 impl AugmentedMatrix {
-    /// Joins the patterns of K (n x n) and B (m x n) and analyses them once.
-    pub fn new(stiffness: &SymmetricMatrix, rows: &SparseMatrix) -> Result<Self, FactorError> {
-        Self::analysed(stiffness, rows, Analysis::of)
-    }
-
-    /// As [`AugmentedMatrix::new`], with the columns of `last` eliminated last.
-    pub fn with_last(stiffness: &SymmetricMatrix, rows: &SparseMatrix, last: &[usize]) -> Result<Self, FactorError> {
-        Self::analysed(stiffness, rows, |joined| Analysis::with_last(joined, last))
-    }
-
-    /// As [`AugmentedMatrix::new`], with an available `analysis` of K, if K has a place for every entry.
-    pub fn with_analysis(
+    /// Joins the patterns of K (n x n) and B (m x n) and analyses them once; an available `analysis` of K is kept if K
+    /// has a place for every entry.
+    pub fn new(
         stiffness: &SymmetricMatrix,
         rows: &SparseMatrix,
-        analysis: Analysis,
+        analysis: Option<&Analysis>,
     ) -> Result<Self, FactorError> {
         let entries = stiffness.lower().entries();
-        let of_joined = |joined: &SymmetricMatrix| {
-            if joined.lower().entries() == entries { Ok(analysis) } else { Analysis::of(joined) }
-        };
-        Self::analysed(stiffness, rows, of_joined)
+        Self::analysed(stiffness, rows, |joined| match analysis {
+            Some(analysis) if joined.lower().entries() == entries => Ok(analysis.clone()),
+            _ => Analysis::of(joined),
+        })
+    }
+
+    /// The same with the columns of `last` eliminated last.
+    pub fn with_last(stiffness: &SymmetricMatrix, rows: &SparseMatrix, last: &[usize]) -> Result<Self, FactorError> {
+        Self::analysed(stiffness, rows, |joined| Analysis::with_last(joined, last))
     }
 
     fn analysed(
@@ -114,10 +109,14 @@ impl AugmentedMatrix {
         analyse: impl FnOnce(&SymmetricMatrix) -> Result<Analysis, FactorError>,
     ) -> Result<Self, FactorError> {
         let by_row = rows.transposed();
-        let stiffness = with_places(stiffness.lower(), rows, &by_row);
-        let squares = Squares::of(by_row, &stiffness);
-        let analysis = analyse(&SymmetricMatrix::from_sorted_lower(stiffness.clone()))?;
-        Ok(Self { stiffness, squares, analysis })
+        let joined = match missing_places(stiffness.lower(), rows, &by_row) {
+            missing if missing.entries() == 0 => stiffness.clone(),
+            missing => stiffness
+                .combined(1.0, 0.0, &SymmetricMatrix::from_sorted_lower(missing))
+                .map_err(|error| FactorError::Failed(error.to_string()))?,
+        };
+        let (squares, analysis) = (Squares::of(by_row, joined.lower()), analyse(&joined)?);
+        Ok(Self { stiffness: joined.lower().clone(), squares, analysis })
     }
 
     pub fn with_threads(self, threads: usize) -> Self {
@@ -173,47 +172,15 @@ impl Augmented {
     /// The augmented matrix, analysed when it is first asked for.
     pub fn matrix(&self) -> Result<&AugmentedMatrix, FactorError> {
         let Augmented { stiffness, rows, analysis, threads, .. } = self;
-        let made = || {
-            let matrix = match analysis {
-                Some(analysis) => AugmentedMatrix::with_analysis(stiffness, rows, analysis.clone()),
-                None => AugmentedMatrix::new(stiffness, rows),
-            };
-            Ok(matrix?.with_threads(*threads))
-        };
+        let made = || Ok(AugmentedMatrix::new(stiffness, rows, analysis.as_ref())?.with_threads(*threads));
         self.matrix.get_or_init(made).as_ref().map_err(FactorError::clone)
     }
 }
 
-/// A lower triangle with a place, zero if it had none, for every entry of B'B and of the diagonal; the same memory if
-/// nothing was missing. B is given by columns and by rows.
-fn with_places(lower: &SparseMatrix, rows: &SparseMatrix, by_row: &SparseMatrix) -> SparseMatrix {
-    let missing = missing_places(lower, rows, by_row);
-    if missing.is_empty() {
-        return lower.clone();
-    }
-    let entries = lower.entries() + missing.len();
-    let (mut starts, mut indices, mut values) = (vec![0], Vec::with_capacity(entries), Vec::with_capacity(entries));
-    let mut missing = missing.into_iter().peekable();
-    for column in 0..lower.columns() {
-        // The last turn takes the places after the last entry.
-        for entry in lower.column(column).map(Some).chain([None]) {
-            let before = entry.map_or(usize::MAX, |entry| entry.0);
-            while let Some((_, row)) = missing.next_if(|place| place.0 == column && place.1 < before) {
-                indices.push(row as u32);
-                values.push(0.0);
-            }
-            indices.extend(entry.map(|entry| entry.0 as u32));
-            values.extend(entry.map(|entry| entry.1));
-        }
-        starts.push(indices.len());
-    }
-    SparseMatrix::from_parts(lower.rows(), starts, indices, values)
-}
-
-/// The places `(column, row)` of B'B and of the diagonal that a lower triangle lacks, in their order. Rows that share
-/// many dofs are not searched again once a column is full.
-fn missing_places(lower: &SparseMatrix, rows: &SparseMatrix, by_row: &SparseMatrix) -> Vec<(usize, usize)> {
-    let mut missing = Vec::new();
+/// Zeros at the places of B'B and of the diagonal that a lower triangle lacks; B is given by columns and by rows. Rows
+/// that share many dofs are not searched again once a column is full.
+fn missing_places(lower: &SparseMatrix, rows: &SparseMatrix, by_row: &SparseMatrix) -> SparseMatrix {
+    let (mut starts, mut missing) = (vec![0], Vec::new());
     // The last column in which each row was met.
     let mut met = vec![usize::MAX; lower.columns()];
     for column in 0..lower.columns() {
@@ -224,7 +191,7 @@ fn missing_places(lower: &SparseMatrix, rows: &SparseMatrix, by_row: &SparseMatr
         }
         if known.first() != Some(&(column as u32)) {
             met[column] = column;
-            missing.push((column, column));
+            missing.push(column as u32);
         }
         for &row in acting {
             if known.len() + missing.len() - first == lower.columns() - column {
@@ -232,62 +199,20 @@ fn missing_places(lower: &SparseMatrix, rows: &SparseMatrix, by_row: &SparseMatr
             }
             for &dof in by_row.column_rows(row as usize).iter().filter(|&&dof| dof as usize > column) {
                 if std::mem::replace(&mut met[dof as usize], column) != column {
-                    missing.push((column, dof as usize));
+                    missing.push(dof);
                 }
             }
         }
         missing[first..].sort_unstable();
+        starts.push(missing.len());
     }
-    missing
-}
-
-/// A search for entries of a matrix, which are mostly asked for in their order: down a column, one after the other.
-struct EntrySearch<'a> {
-    matrix: &'a SparseMatrix,
-    /// The entry that was asked for last, and the place after it in its column.
-    last: Option<(usize, usize)>,
-    next: usize,
-}
-
-impl<'a> EntrySearch<'a> {
-    fn of(matrix: &'a SparseMatrix) -> Self {
-        EntrySearch { matrix, last: None, next: 0 }
-    }
-
-    /// The place of an entry within its column, or the place that it would have.
-    fn place(&mut self, column: usize, row: usize) -> Result<usize, usize> {
-        let rows = self.matrix.column_rows(column);
-        let from = if self.last.is_some_and(|last| last.0 == column && last.1 < row) { self.next } else { 0 };
-        let place = match rows.get(from) {
-            Some(&next) if next as usize == row => Ok(from),
-            _ => rows[from..].binary_search(&(row as u32)).map(|place| from + place).map_err(|place| from + place),
-        };
-        (self.last, self.next) = (Some((column, row)), place.map_or_else(|place| place, |place| place + 1));
-        place
-    }
+    let zeros = vec![0.0; missing.len()];
+    SparseMatrix::from_parts(lower.rows(), starts, missing, zeros)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn entries_are_found_in_any_order() {
-        let rows = [vec![0, 1, 4, 7], vec![], vec![2, 3, 8]];
-        let entries: Vec<_> = rows
-            .iter()
-            .enumerate()
-            .flat_map(|(column, rows)| rows.iter().map(move |&row| (row, column, 1.0)))
-            .collect();
-        let matrix = SparseMatrix::from_triplets(9, 3, &entries).unwrap();
-        let mut search = EntrySearch::of(&matrix);
-        // Down each column, then every entry after every other.
-        let all: Vec<_> = (0..3).flat_map(|column| (0..9).map(move |row| (column, row))).collect();
-        let pairs = all.iter().flat_map(|&first| all.iter().flat_map(move |&second| [first, second]));
-        for (column, row) in all.iter().copied().chain(pairs) {
-            assert_eq!(search.place(column, row), rows[column].binary_search(&row), "{column} {row}");
-        }
-    }
 
     #[test]
     fn full_rows_are_added_without_a_list_of_their_products() {
@@ -302,7 +227,7 @@ mod tests {
         let stiffness = SparseMatrix::from_triplets(dofs, dofs, &all(&k, dofs, true)).unwrap();
         let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
         let contact = SparseMatrix::from_triplets(rows, dofs, &all(&b, rows, false)).unwrap();
-        let augmented = AugmentedMatrix::new(&stiffness, &contact).unwrap();
+        let augmented = AugmentedMatrix::new(&stiffness, &contact, None).unwrap();
         assert!(matches!(augmented.squares, Squares::Rows(_)));
         for (i, j, value) in augmented.matrix(weight, shift).lower().triplets() {
             let squares: f64 = (0..rows).map(|row| weight(row) * b(row, i) * b(row, j)).sum();

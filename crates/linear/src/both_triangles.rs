@@ -1,16 +1,31 @@
-//! The lower triangle of a symmetric matrix given with both triangles, in one pass.
+//! The lower triangle of a symmetric matrix given with both triangles, in one pass, and the way back.
 //!
 //! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image
 //! in column r, which was walked before. As c grows, the mirror images of row r come in the order of column r: only a
 //! cursor for each column must be kept.
 
-use super::columns::{Columns, Taken};
-use super::{SparseMatrix, check_rows};
+use super::{SparseMatrix, SymmetricMatrix, check_rows};
 use crate::error::Error;
 
 /// Two triangles count as equal if mirrored entries differ by at most this times the larger diagonal entry of their row
 /// and column: assembly in another order differs by rounding, and 1e-10 is far above it.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
+
+/// Compressed columns with indices of any type, as given.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Columns<'a, S, R> {
+    pub starts: &'a [S],
+    pub rows: &'a [R],
+    pub values: &'a [f64],
+}
+
+/// The triangle that gives the values if mirrored entries differ by rounding: the lower one for columns, the upper one
+/// for rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Taken {
+    Lower,
+    Upper,
+}
 
 /// A symmetric matrix that takes its columns, or its rows, with both triangles, one after another: its lower triangle
 /// under construction.
@@ -27,23 +42,97 @@ pub struct SymmetricLines {
 }
 
 impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
+    /// Calls `take(column, rows, values)` for each column, from the first on.
+    pub fn each(self, mut take: impl FnMut(usize, &[R], &[f64]) -> Result<(), Error>) -> Result<(), Error> {
+        let (columns, entries) = (self.starts.len().saturating_sub(1), self.values.len());
+        if self.rows.len() != entries {
+            let (name, found) = ("row indices", self.rows.len());
+            return Err(Error::Length { name, found, expected: entries, of: "values" });
+        }
+        if self.starts.is_empty() || self.start(0)? != 0 || self.start(columns)? != entries {
+            let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
+            return Err(Error::Pattern { message });
+        }
+        let mut first = 0;
+        for column in 0..columns {
+            let end = self.start(column + 1)?;
+            let (Some(rows), Some(values)) = (self.rows.get(first..end), self.values.get(first..end)) else {
+                let message = format!("the column starts decrease after column {column} (indices from 0)");
+                return Err(Error::Pattern { message });
+            };
+            take(column, rows, values)?;
+            first = end;
+        }
+        Ok(())
+    }
+
+    fn start(&self, column: usize) -> Result<usize, Error> {
+        let start = self.starts.get(column).and_then(|&start| start.try_into().ok());
+        start.ok_or_else(|| Error::Pattern { message: format!("the start of column {column} is no index (from 0)") })
+    }
     /// The lower triangle.
     pub fn lower(self) -> Result<SparseMatrix, Error> {
-        self.walked(Taken::Lower)?.lower()
+        Ok(self.walked(Taken::Lower)?.0)
     }
 
     /// The transposed upper triangle; `None` if a negligible entry is on one side of the diagonal only.
     pub fn upper(self) -> Result<Option<SparseMatrix>, Error> {
-        let mut upper = self.walked(Taken::Upper)?;
-        upper.all_matched()?;
-        Ok((!upper.is_one_sided).then(|| upper.into_matrix()))
+        let (upper, is_one_sided) = self.walked(Taken::Upper)?;
+        Ok((!is_one_sided).then_some(upper))
     }
 
-    /// The entries on and below the diagonal, of the values of the triangle `taken`.
-    fn walked(self, taken: Taken) -> Result<SymmetricLines, Error> {
+    /// The entries on and below the diagonal, of the values of the triangle `taken`, and `true` if an entry has no
+    /// mirror image.
+    fn walked(self, taken: Taken) -> Result<(SparseMatrix, bool), Error> {
         let mut lines = SymmetricLines::new(self.starts.len().saturating_sub(1), self.values.len(), taken)?;
         self.each(|_, rows, values| lines.take(rows, values))?;
-        Ok(lines)
+        lines.matched()
+    }
+}
+
+impl Taken {
+    /// Checks that the indices of a line increase and lie inside a matrix of this shape, and that its values are
+    /// finite.
+    pub fn check<I: Copy + TryInto<usize>>(
+        self,
+        (rows, columns): (usize, usize),
+        number: usize,
+        indices: &[I],
+        values: &[f64],
+    ) -> Result<(), Error> {
+        // A walked line of the matrix is a row or a column; this names its entries in errors.
+        let [line, entry] = match self {
+            Taken::Lower => ["column", "row"],
+            Taken::Upper => ["row", "column"],
+        };
+        let mut before = None;
+        for (&index, &value) in indices.iter().zip(values) {
+            let Ok(index) = index.try_into() else {
+                let message = format!("a {entry} of {line} {number} is negative (indices from 0)");
+                return Err(Error::Pattern { message });
+            };
+            let place = self.place(index, number);
+            if index >= rows {
+                return Err(Error::IndexOutOfRange { row: place.0, column: place.1, rows, columns });
+            }
+            if let Some(before) = before.replace(index).filter(|&before| before >= index) {
+                let where_to = format!("{entry} {index} of {line} {number} does not lie beyond {entry} {before}");
+                return Err(Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") });
+            }
+            if !value.is_finite() {
+                let at = format!("{place:?}");
+                return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+            }
+        }
+        Ok(())
+    }
+
+    /// Row and column of an entry, or of a pair of mirrored entries, in a line that is walked as a column.
+    pub fn place<T>(self, row: T, column: T) -> (T, T) {
+        match self {
+            Taken::Lower => (row, column),
+            Taken::Upper => (column, row),
+        }
     }
 }
 
@@ -72,95 +161,65 @@ impl SymmetricLines {
     }
 
     /// The lower triangle; a negligible entry may be in one triangle only.
-    pub fn lower(mut self) -> Result<SparseMatrix, Error> {
-        self.all_matched()?;
-        Ok(self.into_matrix())
-    }
-
-    fn into_matrix(self) -> SparseMatrix {
-        SparseMatrix::from_parts(self.dim, self.starts, self.rows, self.values)
+    pub fn lower(self) -> Result<SparseMatrix, Error> {
+        Ok(self.matched()?.0)
     }
 
     /// Takes the next row or column: indices from 0, increasing, and values. Keeps what lies on and below the diagonal
     /// of a column, and compares what lies above.
     pub fn take<R: Copy + TryInto<usize>>(&mut self, rows: &[R], values: &[f64]) -> Result<(), Error> {
-        let column = self.cursor.len();
-        let (start, mut above, mut least) = (self.rows.len(), 0, 0);
-        for (&row, &value) in rows.iter().zip(values) {
-            let Ok(row) = row.try_into() else { break };
-            if !(least..column).contains(&row) || !value.is_finite() {
-                break;
-            }
-            if !self.is_mirrored(row, column, value) {
-                self.compare((row, column), value, || diagonal_of(column, rows, values))?;
-            }
-            (above, least) = (above + 1, row + 1);
+        let (column, start) = (self.cursor.len(), self.rows.len());
+        self.taken.check((self.dim, self.dim), column, rows, values)?;
+        let index = |row: &R| (*row).try_into().unwrap_or(usize::MAX);
+        let above = rows.partition_point(|row| index(row) < column);
+        let has_diagonal = rows.get(above).map(index) == Some(column);
+        let diagonal = if has_diagonal { values[above].abs() } else { 0.0 };
+        for (row, &value) in rows[..above].iter().zip(values) {
+            self.compare((index(row), column), value, diagonal)?;
         }
-        // All other entries are taken at once, and checked afterwards.
-        let of_rest = &values[above..];
-        let short = |row: R| row.try_into().ok().and_then(|row: usize| u32::try_from(row).ok()).unwrap_or(u32::MAX);
-        self.rows.extend(rows[above..].iter().map(|&row| short(row)));
-        self.values.extend_from_slice(of_rest);
-        let rest = &self.rows[start..];
-        let lies_below = rest.first().is_none_or(|&row| row as usize >= column)
-            && rest.last().is_none_or(|&row| (row as usize) < self.dim);
-        let increases = rest.windows(2).all(|pair| pair[0] < pair[1]);
-        if !(lies_below && increases && of_rest.iter().all(|value| value.is_finite())) {
-            return self.taken.check((self.dim, self.dim), column, rows, values);
-        }
+        self.rows.extend(rows[above..].iter().map(|row| index(row) as u32));
+        self.values.extend_from_slice(&values[above..]);
         self.starts.push(self.rows.len());
-        let has_diagonal = self.rows.get(start) == Some(&(column as u32));
         self.cursor.push(start + usize::from(has_diagonal));
         Ok(())
     }
 
-    /// Returns `true` if an entry above the diagonal equals its mirror image; the cursor then passes the mirror image.
-    fn is_mirrored(&mut self, row: usize, column: usize, value: f64) -> bool {
-        let place = self.cursor[row];
-        let is_next = place < self.starts[row + 1] && self.rows[place] as usize == column;
-        let is_same = is_next && self.values[place].to_bits() == value.to_bits();
-        self.cursor[row] += usize::from(is_same);
-        is_same
-    }
-
-    /// Compares an entry above the diagonal with its mirror image in column `row`.
-    fn compare(&mut self, (row, column): (usize, usize), value: f64, diagonal: impl Fn() -> f64) -> Result<(), Error> {
+    /// Compares an entry above the diagonal with its mirror image in column `row`, which the cursor then passes;
+    /// `diagonal` is the size of the diagonal entry of its column.
+    fn compare(&mut self, (row, column): (usize, usize), value: f64, diagonal: f64) -> Result<(), Error> {
         let end = self.starts[row + 1];
-        loop {
-            let place = self.cursor[row];
-            if place >= end || self.rows[place] as usize > column {
-                self.is_one_sided = true;
-                return self.alike((column, row), [0.0, value], diagonal());
-            }
-            self.cursor[row] += 1;
-            let below = self.values[place];
-            if self.rows[place] as usize == column {
-                if value.to_bits() == below.to_bits() {
-                    return Ok(());
-                }
-                if self.taken == Taken::Upper {
-                    self.values[place] = value;
-                }
-                return self.alike((column, row), [below, value], diagonal());
-            }
-            // A column before this one had no entry in that row.
-            self.alone(place, row)?;
+        // A column before this one had no entry in that row.
+        while self.cursor[row] < end && (self.rows[self.cursor[row]] as usize) < column {
+            self.alone(row)?;
         }
+        let place = self.cursor[row];
+        if place == end || self.rows[place] as usize != column {
+            self.is_one_sided = true;
+            return self.alike((column, row), [0.0, value], diagonal);
+        }
+        self.cursor[row] += 1;
+        let below = self.values[place];
+        if self.taken == Taken::Upper {
+            self.values[place] = value;
+        }
+        if below == value { Ok(()) } else { self.alike((column, row), [below, value], diagonal) }
     }
 
-    /// Entries without a mirror image must be negligible.
-    fn all_matched(&mut self) -> Result<(), Error> {
+    /// The lower triangle, and `true` if an entry has no mirror image; such entries must be negligible.
+    fn matched(mut self) -> Result<(SparseMatrix, bool), Error> {
         for column in 0..self.cursor.len() {
-            for place in self.cursor[column]..self.starts[column + 1] {
-                self.alone(place, column)?;
+            while self.cursor[column] < self.starts[column + 1] {
+                self.alone(column)?;
             }
         }
-        Ok(())
+        Ok((SparseMatrix::from_parts(self.dim, self.starts, self.rows, self.values), self.is_one_sided))
     }
 
-    /// An entry below the diagonal of `column` that has no mirror image.
-    fn alone(&mut self, place: usize, column: usize) -> Result<(), Error> {
+    /// The next entry below the diagonal of `column` has no mirror image.
+    fn alone(&mut self, column: usize) -> Result<(), Error> {
         self.is_one_sided = true;
+        let place = self.cursor[column];
+        self.cursor[column] += 1;
         let row = self.rows[place] as usize;
         self.alike((row, column), [self.values[place], 0.0], self.diagonal(row))
     }
@@ -186,8 +245,25 @@ impl SymmetricLines {
     }
 }
 
-/// The size of the diagonal entry of a column that is being walked.
-fn diagonal_of<I: Copy + TryInto<usize>>(column: usize, rows: &[I], values: &[f64]) -> f64 {
-    let place = rows.iter().position(|&row| row.try_into().ok() == Some(column));
-    place.map_or(0.0, |place| values[place].abs())
+impl SymmetricMatrix {
+    /// Number of entries in each row, both triangles.
+    pub fn row_lengths(&self) -> Vec<u32> {
+        let mut lengths: Vec<u32> = (0..self.dim()).map(|row| self.lower().column_rows(row).len() as u32).collect();
+        self.lower().triplets().filter(|entry| entry.0 != entry.1).for_each(|(row, _, _)| lengths[row] += 1);
+        lengths
+    }
+
+    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order.
+    ///
+    /// # Errors
+    /// Those of `take`.
+    pub fn each_row<E>(&self, mut take: impl FnMut(&[u32], &[f64]) -> Result<(), E>) -> Result<(), E> {
+        let upper = self.upper();
+        (0..self.dim()).try_for_each(|row| {
+            let left = upper.column(row).take_while(|entry| entry.0 < row);
+            let entries = left.chain(self.lower().column(row)).map(|(column, value)| (column as u32, value));
+            let (columns, values): (Vec<u32>, Vec<f64>) = entries.unzip();
+            take(&columns, &values)
+        })
+    }
 }

@@ -189,14 +189,7 @@ impl Analysis {
             }
         }
         let triangle = dense_factor::factorise(dim, values, self.threads)?;
-        let (mut smallest_pivot, mut finite) = (f64::INFINITY, true);
-        for pivot in (0..dim).map(|column| triangle.diagonal(column)) {
-            smallest_pivot = smallest_pivot.min(pivot * pivot);
-            finite &= pivot.is_finite();
-        }
-        if !finite {
-            return Err(FactorError::NotPositiveDefinite);
-        }
+        let smallest_pivot = factor::smallest_pivot((0..dim).map(|column| triangle.diagonal(column)))?;
         Ok(Cholesky { analysis: self.clone(), values: Values::Dense(triangle), smallest_pivot })
     }
 
@@ -251,7 +244,7 @@ impl Cholesky {
     /// # Errors
     /// [`Error::NotConvex`] for a matrix that is not positive definite, [`Error::Numerical`] for a lack of memory.
     pub fn of(matrix: &SymmetricMatrix) -> Result<Self, Error> {
-        Ok(Cholesky::factorised(matrix)?)
+        Self::on(matrix, 1)
     }
 
     /// The same with this number of threads.
@@ -260,11 +253,6 @@ impl Cholesky {
     /// As [`Cholesky::of`].
     pub fn on(matrix: &SymmetricMatrix, threads: usize) -> Result<Self, Error> {
         Ok(Analysis::of(matrix)?.with_threads(threads).factor(matrix)?)
-    }
-
-    /// The same with an error that names the pivot.
-    pub(crate) fn factorised(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
-        Analysis::of(matrix)?.factor(matrix)
     }
 
     /// Number of rows and columns of the factorised matrix.
@@ -297,27 +285,38 @@ impl Cholesky {
     /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
     /// were put last.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
-        let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
-        match &self.values {
-            Values::Dense(_) if b.len() != self.dim() => vec![f64::NAN; self.dim()],
-            Values::Dense(triangle) => triangle.forward(ordered),
-            Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::forward(own, &ordered)),
-        }
+        let entry = |&column: &usize| if b.len() == self.dim() { b[column] } else { f64::NAN };
+        self.forward_all(self.order().iter().map(entry).collect())
     }
 
     /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
     pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
-        let ordered = match &self.values {
-            Values::Dense(_) if y.len() != self.dim() => vec![f64::NAN; self.dim()],
-            Values::Dense(triangle) => triangle.backward(y),
-            Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::backward(own, &y)),
-        };
+        let ordered = self.backward_all(if y.len() == self.dim() { y } else { vec![f64::NAN; self.dim()] });
         if self.order().is_sorted() {
             return ordered;
         }
         let mut x = vec![0.0; ordered.len()];
         self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
         x
+    }
+
+    /// L^-1 X of columns X, one after the other, both in the order of elimination.
+    pub fn forward_all(&self, columns: Vec<f64>) -> Vec<f64> {
+        match &self.values {
+            Values::Dense(triangle) => dense_factor::forward_all(triangle, columns),
+            Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::forward(own, columns)),
+        }
+    }
+
+    /// L'^-1 X of columns X, one after the other, both in the order of elimination.
+    pub fn backward_all(&self, mut columns: Vec<f64>) -> Vec<f64> {
+        match &self.values {
+            Values::Dense(triangle) => {
+                columns.chunks_mut(self.dim()).for_each(|column| triangle.sweep(column, true));
+                columns
+            }
+            Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::backward(own, columns)),
+        }
     }
 
     /// The trailing block of L that belongs to the columns put last, m x m. Its product with its transpose is their
@@ -333,13 +332,8 @@ impl Cholesky {
 
     /// The factor in block columns; `None` for a whole triangle, and for a matrix without columns.
     fn in_columns(&self) -> Option<Factor<'_>> {
-        self.block_columns().map(|(nodes, values)| Factor::new(nodes, values))
-    }
-
-    /// Structure and values of a factor in block columns.
-    pub(crate) fn block_columns(&self) -> Option<(&supernodal::SymbolicSupernodalCholesky<usize>, &[f64])> {
         match &self.values {
-            Values::InColumns(values) => Some((self.supernodes()?, values)),
+            Values::InColumns(values) => Some(Factor::new(self.supernodes()?, values)),
             Values::Dense(_) => None,
         }
     }

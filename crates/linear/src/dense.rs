@@ -120,18 +120,18 @@ impl LowerTriangle {
 
     /// `L^-1 b`.
     pub fn forward(&self, mut b: Vec<f64>) -> Vec<f64> {
-        self.sweep(&mut b);
+        self.sweep(&mut b, false);
         b
     }
 
-    /// Replaces b by `L^-1 b`, from its first entry that is not zero.
-    pub(super) fn sweep(&self, b: &mut [f64]) {
-        Arch::new().dispatch(Sweep { triangle: self, vector: b, is_backward: false });
+    /// Replaces b by `L^-1 b`, from its first entry that is not zero, or by `L'^-1 b`.
+    pub(super) fn sweep(&self, b: &mut [f64], is_backward: bool) {
+        Arch::new().dispatch(Sweep { triangle: self, vector: b, is_backward });
     }
 
     /// `L'^-1 y`.
     pub fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
-        Arch::new().dispatch(Sweep { triangle: self, vector: &mut y, is_backward: true });
+        self.sweep(&mut y, true);
         y
     }
 

@@ -93,7 +93,7 @@ pub fn forward_all(triangle: &LowerTriangle, mut columns: Vec<f64>) -> Vec<f64> 
     let size = triangle.size();
     let count = columns.len().checked_div(size).unwrap_or(0);
     if count <= FEW_COLUMNS {
-        columns.chunks_mut(size.max(1)).for_each(|column| triangle.sweep(column));
+        columns.chunks_mut(size.max(1)).for_each(|column| triangle.sweep(column, false));
         return columns;
     }
     let done = call(|| {

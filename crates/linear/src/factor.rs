@@ -90,50 +90,44 @@ pub(super) fn factorise(
         Default::default(),
     )
     .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
-    let (smallest_pivot, finite) = pivots(supernodes, &values);
-    if finite { Ok((values, smallest_pivot)) } else { Err(FactorError::NotPositiveDefinite) }
+    let of_node = |node: usize| {
+        let block = Factor::new(supernodes, &values).supernode(node).val();
+        (0..block.ncols()).map(move |j| block[(j, j)])
+    };
+    let smallest_pivot = smallest_pivot((0..supernodes.n_supernodes()).flat_map(of_node))?;
+    Ok((values, smallest_pivot))
 }
 
-/// The smallest pivot, and `true` if all entries are finite: every entry enters the pivot of its row.
-fn pivots(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[f64]) -> (f64, bool) {
-    let (mut smallest, mut finite) = (f64::INFINITY, true);
-    let factor = Factor::new(supernodes, values);
-    for node in 0..supernodes.n_supernodes() {
-        let block = factor.supernode(node).val();
-        for j in 0..block.ncols() {
-            let entry = block[(j, j)];
-            smallest = smallest.min(entry * entry);
-            finite &= entry.is_finite();
-        }
-    }
-    (smallest, finite)
+/// The smallest pivot, from the diagonal of the factor; an error unless all its entries are finite: every entry of the
+/// factor enters the pivot of its row.
+pub(super) fn smallest_pivot(mut diagonal: impl Iterator<Item = f64>) -> Result<f64, FactorError> {
+    let smallest = diagonal.try_fold(f64::INFINITY, |least, entry| entry.is_finite().then(|| least.min(entry * entry)));
+    smallest.ok_or(FactorError::NotPositiveDefinite)
 }
 
-/// A vector swept through a factor. If the sweep fails or the vector does not fit, every entry is NaN.
-fn swept(factor: Factor, load: &[f64], sweep: impl FnOnce(MatMut<f64>, &mut MemStack)) -> Vec<f64> {
-    if load.len() != factor.symbolic().nrows() {
-        return vec![f64::NAN; load.len()];
-    }
-    let mut x = load.to_vec();
-    let scratch = factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq);
+/// Columns swept through a factor. If the sweep fails, every entry is NaN.
+fn swept(factor: Factor, mut columns: Vec<f64>, sweep: impl FnOnce(MatMut<f64>, &mut MemStack)) -> Vec<f64> {
+    let dim = factor.symbolic().nrows();
+    let count = columns.len() / dim;
+    let scratch = factor.symbolic().solve_in_place_scratch::<f64>(count, Par::Seq);
     let done = call(|| {
         let mut buffer = memory(scratch)?;
-        sweep(MatMut::from_column_major_slice_mut(&mut x, load.len(), 1), MemStack::new(&mut buffer));
+        sweep(MatMut::from_column_major_slice_mut(&mut columns, dim, count), MemStack::new(&mut buffer));
         Ok(())
     });
-    match done {
-        Ok(()) => x,
-        Err(_) => vec![f64::NAN; load.len()],
+    if done.is_err() {
+        columns.fill(f64::NAN);
     }
+    columns
 }
 
-/// The solution of L y = b, both in the order of elimination.
-pub(super) fn forward(factor: Factor, b: &[f64]) -> Vec<f64> {
+/// The solutions of L Y = B, both in the order of elimination.
+pub(super) fn forward(factor: Factor, b: Vec<f64>) -> Vec<f64> {
     swept(factor, b, |y, stack| factor.l_solve_with_conj(Conj::No, y, Par::Seq, stack))
 }
 
-/// The solution of L' x = y, both in the order of elimination.
-pub(super) fn backward(factor: Factor, y: &[f64]) -> Vec<f64> {
+/// The solutions of L' X = Y, both in the order of elimination.
+pub(super) fn backward(factor: Factor, y: Vec<f64>) -> Vec<f64> {
     swept(factor, y, |x, stack| factor.l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack))
 }
 

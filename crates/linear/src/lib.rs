@@ -18,11 +18,9 @@
     reason = "what users see of it has them; the rest is for the crates of this workspace"
 )]
 
-mod accumulator;
 mod augmented;
 mod both_triangles;
 mod cholesky;
-mod columns;
 mod compliance;
 mod conjugate_gradients;
 mod dense;
@@ -31,7 +29,6 @@ mod dependence;
 pub mod eigen;
 pub mod equations;
 mod error;
-mod exact_sum;
 mod factor;
 pub mod file;
 mod forest;
@@ -51,7 +48,6 @@ mod power_iteration;
 mod power_of_two;
 mod quotient;
 mod real;
-mod rows;
 pub mod selected_inverse;
 mod spare;
 mod symmetric;
@@ -59,7 +55,6 @@ mod threads;
 pub mod twice;
 pub mod watch;
 
-pub use accumulator::Accumulator;
 pub use augmented::{Augmented, AugmentedMatrix};
 pub use both_triangles::SymmetricLines;
 pub use cholesky::{Analysis, Cholesky};
@@ -70,7 +65,6 @@ pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, 
 pub use dense_factor::{forward_all, par, products};
 pub use dependence::Dependence;
 pub use error::Error;
-pub use exact_sum::ExactSum;
 pub use factor::{FactorError, call, if_definite};
 pub use forest::Forest;
 pub use multigrid::Width;
@@ -82,13 +76,13 @@ pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use spare::Spare;
 pub use symmetric::SymmetricMatrix;
 pub use threads::{in_order, threads_of_machine};
-pub use twice::Twice;
+pub use twice::{Accumulator, ExactSum, Twice};
 
 use std::sync::Arc;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use columns::{Columns, Taken};
+use both_triangles::{Columns, Taken};
 use grouped::group_starts;
 
 /// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.

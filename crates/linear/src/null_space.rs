@@ -293,7 +293,7 @@ impl SymmetricMatrix {
     /// The matrix with many shifts, from its `analysis`.
     pub fn shifts(&self, analysis: Analysis) -> Result<AugmentedMatrix, FactorError> {
         let no_rows = SparseMatrix::from_parts(0, vec![0; self.dim() + 1], Vec::new(), Vec::new());
-        AugmentedMatrix::with_analysis(self, &no_rows, analysis)
+        AugmentedMatrix::new(self, &no_rows, Some(&analysis))
     }
 }
 

@@ -170,7 +170,7 @@ mod tests {
         }
         let lower = SparseMatrix::from_triplets(n * n, n * n, &entries).unwrap();
         let matrix = SymmetricMatrix::from_lower(lower).unwrap();
-        let cholesky = Cholesky::factorised(&matrix).unwrap();
+        let cholesky = Cholesky::of(&matrix).unwrap();
         let inverse = cholesky.selected_inverse().unwrap();
         let mut seen = 0;
         for a in (0..n * n).step_by(7) {

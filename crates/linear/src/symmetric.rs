@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::columns::Columns;
+use super::both_triangles::Columns;
 use super::dense::wide_product;
 use super::threads::{SharedRows, in_order};
 use super::{Spare, SparseMatrix};
@@ -263,6 +263,11 @@ impl SymmetricMatrix {
     /// The product A x, length `dim`; `x` has length `dim`.
     pub fn mul(&self, x: &[f64]) -> Vec<f64> {
         self.product(0..self.dim(), x, |value| value)
+    }
+
+    /// The products of A with columns, one after the other.
+    pub fn mul_all(&self, columns: &[f64]) -> Vec<f64> {
+        columns.chunks(self.dim().max(1)).flat_map(|column| self.mul(column)).collect()
     }
 
     /// The product A x, length `dim`, on this number of threads; `x` has length `dim`. The sums run over parts of the

@@ -4,6 +4,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::Spare;
+use super::real::Real;
+
 /// Blocks below which a second thread costs more than it saves.
 const LEAST_BLOCKS: usize = 20_000;
 
@@ -21,6 +24,28 @@ pub fn in_order<P: Send, R: Send>(parts: Vec<P>, work: impl Fn(P) -> R + Sync) -
         // No thread is started.
         1 => parts.into_iter().map(work).collect(),
         _ => parts.into_par_iter().map(&work).collect(),
+    }
+}
+
+/// Adds to y what `work` makes of each part: the first works on y itself, each other on zeros as many as `length` says,
+/// which are added in the order of the parts. If the parts depend on the matrix alone, so does the sum.
+pub fn add_parts<T: Real>(
+    parts: &[Range<usize>],
+    y: &mut [T],
+    (threads, spare): (usize, &Spare<T>),
+    length: impl Fn(&Range<usize>) -> usize,
+    work: impl Fn(Range<usize>, &mut [T]) + Sync,
+) {
+    let mut sums: Vec<Vec<T>> = parts[1..].iter().map(|part| spare.zeros(length(part))).collect();
+    let vectors = [&mut *y].into_iter().chain(sums.iter_mut().map(Vec::as_mut_slice));
+    let mut parts: Vec<(Range<usize>, &mut [T])> = parts.iter().cloned().zip(vectors).collect();
+    let of_thread = parts.len().div_ceil(threads);
+    in_order(parts.chunks_mut(of_thread).collect(), |share| {
+        share.iter_mut().for_each(|(part, sums)| work(part.clone(), sums));
+    });
+    for sum in sums {
+        y.iter_mut().zip(&sum).for_each(|(y, &sum)| *y += sum);
+        spare.give(sum);
     }
 }
 
@@ -65,14 +90,8 @@ impl SharedRows<'_> {
         self.with_parts(ys, |rows| rows.len() * height, work);
     }
 
-    /// Runs `work` on runs of rows, each with the values of its blocks, `size` for each.
-    pub fn with_blocks<T: Send>(&self, size: usize, values: &mut [T], work: impl Fn(Range<usize>, &mut [T]) + Sync) {
-        let length = |rows: &Range<usize>| (self.starts[rows.end] - self.starts[rows.start]) * size;
-        self.with_parts([values], length, |rows, [part]| work(rows, part));
-    }
-
     /// Runs `work` on runs of rows, each with the next entries of the vectors `ys`, as many as the `length` of the run.
-    fn with_parts<T: Send, const N: usize>(
+    pub fn with_parts<T: Send, const N: usize>(
         &self,
         mut ys: [&mut [T]; N],
         length: impl Fn(&Range<usize>) -> usize,
@@ -115,7 +134,8 @@ mod tests {
             let shared = SharedRows { starts: &starts, threads };
             let of_rows = guarded(|| shared.map(broken));
             let in_place = guarded(|| shared.with_vectors(1, [&mut [0.0; ROWS][..]], |rows, _| broken(rows)));
-            let in_blocks = guarded(|| shared.with_blocks(1, &mut values, |rows, _| broken(rows)));
+            let length = |rows: &Range<usize>| starts[rows.end] - starts[rows.start];
+            let in_blocks = guarded(|| shared.with_parts([&mut values[..]], length, |rows, _| broken(rows)));
             for ended in [of_rows.map(drop), in_place, in_blocks] {
                 assert_eq!(ended, Err("it panicked: row 50 is broken".to_string()));
             }

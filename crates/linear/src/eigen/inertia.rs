@@ -72,18 +72,15 @@ pub fn negative_eigenvalues(
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::SparseMatrix;
-    use super::super::lanes::Lanes;
     use super::*;
+    use crate::SparseMatrix;
 
     #[test]
-    fn a_factor_without_block_columns_counts_nothing_and_solves_nothing() {
+    fn a_factor_without_block_columns_counts_nothing() {
         let entry = |row: usize, column: usize| if row == column { 2.0 } else { 1.0 };
         let entries: Vec<_> = (0..8).flat_map(|row| (0..=row).map(move |at| (row, at, entry(row, at)))).collect();
         let matrix = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(8, 8, &entries).unwrap()).unwrap();
         let analysis = Analysis::of(&matrix).unwrap();
         assert_eq!(negative_eigenvalues(&analysis, &matrix, 1).unwrap(), None);
-        let swept = Lanes::of(&[1.0; 8], 8).forward(&analysis.factor(&matrix).unwrap()).into_columns();
-        assert!(swept.iter().all(|value| value.is_nan()), "{swept:?}");
     }
 }

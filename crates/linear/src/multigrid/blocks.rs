@@ -6,7 +6,7 @@ use super::firsts::Firsts;
 use crate::Spare;
 use crate::grouped::group_starts;
 use crate::real::Real;
-use crate::threads::{SharedRows, in_order};
+use crate::threads::{SharedRows, add_parts};
 
 /// Largest number of parts of a product with the transposed matrix: each has its own vector.
 const MOST_PARTS: usize = 8;
@@ -35,26 +35,6 @@ pub struct BlockMatrix<T> {
     pub shifts: Vec<u32>,
     /// `true` if only the blocks up to the diagonal of a symmetric matrix are stored: see [`BlockMatrix::keep_half`].
     pub is_half: bool,
-}
-
-/// What a product does to the vector that it is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Product {
-    /// The vector becomes the product: `y = A x`.
-    Replaces,
-    /// `y -= A x`.
-    IsSubtracted,
-}
-
-impl Product {
-    /// Brings one of the products into the vector.
-    #[inline(always)]
-    pub fn put<T: Real>(self, y: &mut T, product: T) {
-        match self {
-            Product::Replaces => *y = product,
-            Product::IsSubtracted => *y -= product,
-        }
-    }
 }
 
 /// Calls a function with the block size as constants if it is one of the sizes of bodies.
@@ -140,23 +120,30 @@ impl<T: Real> BlockMatrix<T> {
         SharedRows { starts: &self.starts, threads }
     }
 
-    /// Writes `A x` into y.
-    pub fn mul_into(&self, x: &[T], y: &mut [T], threads: usize) {
-        self.multiply(x, y, Product::Replaces, threads);
-    }
-
-    /// `A x`, as `product` says.
-    pub fn multiply(&self, x: &[T], y: &mut [T], product: Product, threads: usize) {
+    /// `y += sign A x`.
+    pub fn add_product(&self, sign: f64, x: &[T], y: &mut [T], threads: usize) {
+        let sign = T::of(sign);
         self.shared(threads).with_vectors(self.height, [y], |rows, [y]| {
-            with_block_size!(multiply_rows, (self.height, self.width), (self, x, rows, (product, y)));
+            let put = |row: usize, sums: &[T]| {
+                let own = &mut y[row * sums.len()..(row + 1) * sums.len()];
+                own.iter_mut().zip(sums).for_each(|(y, &sum)| *y += sign * sum);
+            };
+            with_block_size!(each_product, (self.height, self.width), (self, x, rows, put));
         });
     }
 
     /// `step = keep step + gain A r`, then `x += step`.
     pub fn step(&self, r: &[T], (keep, gain): (f64, f64), [step, x]: [&mut [T]; 2], threads: usize) {
-        let weights = [T::of(keep), T::of(gain)];
-        self.shared(threads).with_vectors(self.height, [step, x], |rows, vectors| {
-            with_block_size!(step_rows, (self.height, self.width), (self, r, rows, (weights, vectors)));
+        let (keep, gain) = (T::of(keep), T::of(gain));
+        self.shared(threads).with_vectors(self.height, [step, x], |rows, [step, x]| {
+            let put = |row: usize, sums: &[T]| {
+                let own = row * sums.len()..(row + 1) * sums.len();
+                for ((step, x), &sum) in step[own.clone()].iter_mut().zip(&mut x[own]).zip(sums) {
+                    *step = keep * *step + gain * sum;
+                    *x += *step;
+                }
+            };
+            with_block_size!(each_product, (self.height, self.width), (self, r, rows, put));
         });
     }
 
@@ -277,29 +264,25 @@ impl<T: Real> BlockMatrix<T> {
     }
 
     pub fn without_zeros(&self) -> Self {
+        self.filtered(|_, _, block| block.iter().any(|&value| value != T::default()))
+    }
+
+    /// The entries between rows in which `other` has entries.
+    pub fn within(&self, other: &Self) -> Self {
+        let is_filled = |row: usize| other.starts[row] < other.starts[row + 1];
+        self.filtered(|row, column, _| is_filled(row) && is_filled(column))
+    }
+
+    fn filtered(&self, is_kept: impl Fn(usize, usize, &[T]) -> bool) -> Self {
         let mut kept = Self::empty(0, self.columns, (self.height, self.width));
         for row in 0..self.rows() {
-            for (column, block) in self.row(row).filter(|entry| entry.1.iter().any(|&value| value != T::default())) {
+            for (column, block) in self.row(row).filter(|&(column, block)| is_kept(row, column, block)) {
                 kept.indices.push(column as u32);
                 kept.values.extend_from_slice(block);
             }
             kept.starts.push(kept.indices.len());
         }
         kept
-    }
-
-    /// The entries between rows in which `other` has entries.
-    pub fn within(&self, other: &Self) -> Self {
-        let is_filled = |row: usize| other.starts[row] < other.starts[row + 1];
-        let mut part = Self::empty(0, self.columns, (self.height, self.width));
-        for row in 0..self.rows() {
-            for (column, block) in self.row(row).filter(|entry| is_filled(row) && is_filled(entry.0)) {
-                part.indices.push(column as u32);
-                part.values.extend_from_slice(block);
-            }
-            part.starts.push(part.indices.len());
-        }
-        part
     }
 
     pub fn transposed(&self) -> Self {
@@ -353,71 +336,39 @@ impl<T: Real> BlockMatrix<T> {
         BlockMatrix { starts, indices: relative, shared_rows, shifts, ..transposed }
     }
 
-    /// `y = A' x`. The sums run over parts of the rows that depend on the matrix alone, so that the result does not
-    /// depend on the threads.
+    /// `A' x`.
     pub fn transposed_mul(&self, x: &[T], threads: usize, spare: &Spare<T>) -> Vec<T> {
-        let parts = SharedRows { starts: &self.starts, threads: MOST_PARTS }.runs();
-        let of_part = |rows: Range<usize>| {
-            let mut y = spare.zeros(self.columns * self.width);
-            with_block_size!(add_transposed_product, (self.height, self.width), (self, x, rows, &mut y));
-            y
-        };
-        let of_run = |run: &[Range<usize>]| run.iter().cloned().map(of_part).collect::<Vec<_>>();
-        let runs = parts.chunks(parts.len().div_ceil(threads)).collect();
-        let mut sums = in_order(runs, of_run).into_iter().flatten();
-        let mut y = sums.next().unwrap_or_default();
-        for sum in sums {
-            y.iter_mut().zip(&sum).for_each(|(y, &sum)| *y += sum);
-            spare.give(sum);
-        }
+        let (parts, mut y) = (self.shared(MOST_PARTS).runs(), spare.zeros(self.columns * self.width));
+        let length = y.len();
+        add_parts(
+            &parts,
+            &mut y,
+            (threads, spare),
+            |_| length,
+            |rows, y| {
+                with_block_size!(add_transposed_product, (self.height, self.width), (self, x, rows, y));
+            },
+        );
         y
     }
 }
 
-fn multiply_rows<T: Real, const H: usize, const W: usize>(
+/// Calls `put(place, row)` with some rows of `A x`, numbered from 0.
+fn each_product<T: Real, const H: usize, const W: usize>(
     matrix: &BlockMatrix<T>,
     x: &[T],
     rows: Range<usize>,
-    (product, y): (Product, &mut [T]),
+    mut put: impl FnMut(usize, &[T]),
 ) {
-    if H == 0 {
-        let mut sums = vec![T::default(); matrix.height];
-        for (row, y) in rows.zip(y.chunks_exact_mut(matrix.height)) {
+    let mut sums = vec![T::default(); if H == 0 { matrix.height } else { 0 }];
+    for (place, row) in rows.enumerate() {
+        if H > 0 {
+            put(place, &matrix.row_product::<H, W>(row, x));
+        } else {
             sums.fill(T::default());
             matrix.add_row_product(row, x, &mut sums);
-            y.iter_mut().zip(&sums).for_each(|(y, &sum)| product.put(y, sum));
+            put(place, &sums);
         }
-        return;
-    }
-    for (row, y) in rows.zip(y.as_chunks_mut::<H>().0) {
-        let sums = matrix.row_product::<H, W>(row, x);
-        (0..H).for_each(|i| product.put(&mut y[i], sums[i]));
-    }
-}
-
-fn step_rows<T: Real, const H: usize, const W: usize>(
-    matrix: &BlockMatrix<T>,
-    r: &[T],
-    rows: Range<usize>,
-    ([keep, gain], [step, x]): ([T; 2], [&mut [T]; 2]),
-) {
-    let put = |step: &mut T, x: &mut T, sum: T| {
-        *step = keep * *step + gain * sum;
-        *x += *step;
-    };
-    if H == 0 {
-        let mut sums = vec![T::default(); matrix.height];
-        let nodes = step.chunks_exact_mut(matrix.height).zip(x.chunks_exact_mut(matrix.height));
-        for (row, (step, x)) in rows.zip(nodes) {
-            sums.fill(T::default());
-            matrix.add_row_product(row, r, &mut sums);
-            step.iter_mut().zip(x).zip(&sums).for_each(|((step, x), &sum)| put(step, x, sum));
-        }
-        return;
-    }
-    for (row, (step, x)) in rows.zip(step.as_chunks_mut::<H>().0.iter_mut().zip(x.as_chunks_mut::<H>().0)) {
-        let sums = matrix.row_product::<H, W>(row, r);
-        (0..H).for_each(|i| put(&mut step[i], &mut x[i], sums[i]));
     }
 }
 

@@ -75,7 +75,7 @@ impl<T: Real> Chebyshev<T> {
             // The sum x is brought into the face at the end.
             operator.project(&mut step);
             if k < self.degree {
-                operator.subtract_product(&step, rest);
+                operator.add_product(-1.0, &step, rest);
             }
         }
         operator.project(x);
@@ -90,7 +90,8 @@ impl<T: Real> Chebyshev<T> {
 
     /// `D^-1 r`, in the face.
     fn precondition(&self, operator: &Operator<T>, r: &[T], result: &mut [T]) {
-        self.inverse.mul_into(r, result, operator.threads);
+        result.fill(T::default());
+        self.inverse.add_product(1.0, r, result, operator.threads);
         operator.project(result);
     }
 

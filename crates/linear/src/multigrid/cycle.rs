@@ -64,16 +64,16 @@ impl<T: Real> Hierarchy<T> {
         let smoother = face.and_then(|face| face.smoother(depth)).unwrap_or(&level.smoother);
         let mut x = self.spare.zeros(rest.len());
         let step = smoother.smooth(&operator, &mut x, &mut rest);
-        operator.subtract_product(&step, &mut rest);
+        operator.add_product(-1.0, &step, &mut rest);
         self.spare.give(step);
         let restricted = level.prolongator.transposed_mul(&rest, self.threads, &self.spare);
         let correction = self.descend(depth + 1, restricted, face);
-        let mut moved = self.spare.take(rest.len());
-        level.prolongator.mul_into(&correction, &mut moved, self.threads);
+        let mut moved = self.spare.zeros(rest.len());
+        level.prolongator.add_product(1.0, &correction, &mut moved, self.threads);
         self.spare.give(correction);
         operator.project(&mut moved);
         operator.add(&moved, &mut x);
-        operator.subtract_product(&moved, &mut rest);
+        operator.add_product(-1.0, &moved, &mut rest);
         let step = smoother.smooth(&operator, &mut x, &mut rest);
         [moved, rest, step].into_iter().for_each(|vector| self.spare.give(vector));
         x

@@ -4,10 +4,10 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use super::blocks::{BlockMatrix, Product};
+use super::blocks::BlockMatrix;
 use crate::Spare;
 use crate::real::Real;
-use crate::threads::{SharedRows, in_order};
+use crate::threads::add_parts;
 
 /// Largest number of parts of a product: each has its own vector.
 const MOST_PARTS: usize = 4;
@@ -68,48 +68,24 @@ impl<T: Real> BlockMatrix<T> {
     }
 }
 
-/// `A x`, as `product` says, for a matrix of which half is stored. The sums run over parts of the rows that depend on
-/// the matrix alone, so that the result does not depend on the threads.
-pub fn multiply<T: Real>(
+/// `y += sign A x` for a matrix of which half is stored.
+pub fn add_product<T: Real>(
     matrix: &BlockMatrix<T>,
+    sign: f64,
     x: &[T],
     y: &mut [T],
-    product: Product,
     threads: usize,
     spare: &Spare<T>,
 ) {
-    let runs = SharedRows { starts: &matrix.starts, threads: MOST_PARTS }.runs();
-    // What a part adds ends with its last row.
-    let before = &runs[..runs.len() - 1];
-    let mut sums: Vec<Vec<T>> = before.iter().map(|rows| spare.zeros(rows.end * matrix.height)).collect();
-    let sign = match product {
-        Product::Replaces => {
-            y.fill(T::default());
-            T::of(1.0)
-        }
-        Product::IsSubtracted => T::of(-1.0),
-    };
-    let mut parts: Vec<(Range<usize>, &mut [T])> = Vec::with_capacity(runs.len());
-    parts.extend(runs.iter().cloned().zip(sums.iter_mut().map(Vec::as_mut_slice).chain([&mut *y])));
-    let of_thread = runs.len().div_ceil(threads);
-    let mut shares = Vec::with_capacity(threads);
-    while !parts.is_empty() {
-        let rest = parts.split_off(of_thread.min(parts.len()));
-        shares.push(std::mem::replace(&mut parts, rest));
-    }
-    in_order(shares, |share| {
-        for (rows, sums) in share {
-            match matrix.height {
-                1 => add_products::<T, 1>(matrix, x, sign, rows, sums),
-                2 => add_products::<T, 2>(matrix, x, sign, rows, sums),
-                _ => add_products::<T, 3>(matrix, x, sign, rows, sums),
-            }
-        }
+    let (mut parts, sign) = (matrix.shared(MOST_PARTS).runs(), T::of(sign));
+    // What a part adds ends with its last row: that of all rows comes first.
+    parts.rotate_right(1);
+    let end = |rows: &Range<usize>| rows.end * matrix.height;
+    add_parts(&parts, y, (threads, spare), end, |rows, sums| match matrix.height {
+        1 => add_products::<T, 1>(matrix, x, sign, rows, sums),
+        2 => add_products::<T, 2>(matrix, x, sign, rows, sums),
+        _ => add_products::<T, 3>(matrix, x, sign, rows, sums),
     });
-    for sum in sums {
-        y.iter_mut().zip(&sum).for_each(|(y, &sum)| *y += sum);
-        spare.give(sum);
-    }
 }
 
 /// Adds what the stored blocks of some rows, and those that mirror them, add to `sign A x`.
@@ -184,13 +160,13 @@ mod tests {
         assert!(half.values.len() < whole.values.len() * 2 / 3);
         let x: Vec<f64> = (0..H * count).map(|index| (index as f64 * 0.37).sin()).collect();
         let mut expected = vec![0.0; x.len()];
-        whole.mul_into(&x, &mut expected, 1);
+        whole.add_product(1.0, &x, &mut expected, 1);
         let product = |threads: usize| {
-            let mut y = vec![1.0; x.len()];
-            multiply(&half, &x, &mut y, Product::Replaces, threads, &Spare::default());
+            let mut y = vec![0.0; x.len()];
+            add_product(&half, 1.0, &x, &mut y, threads, &Spare::default());
             // What is subtracted from itself leaves the rounding of as many terms.
             let mut rest = y.clone();
-            multiply(&half, &x, &mut rest, Product::IsSubtracted, threads, &Spare::default());
+            add_product(&half, -1.0, &x, &mut rest, threads, &Spare::default());
             assert!(rest.iter().all(|rest| rest.abs() <= 4.0 * f64::EPSILON * (9 * H) as f64));
             y
         };

@@ -48,21 +48,19 @@ impl<T: Real> Held<T> {
     /// The projection of `holds`.
     pub fn of(nodes: &Nodes, holds: &[Hold]) -> Self {
         let matrix = sum(nodes, holds.iter().map(|hold| (&hold.way, &hold.row)));
-        let units = holds.iter().map(|hold| hold.unit().map(|dof| nodes.place[dof] as usize)).collect::<Option<_>>();
-        match units {
-            Some(units) => Self::symmetric(matrix, Some(units)),
-            None => Self::with(matrix, sum(nodes, holds.iter().map(|hold| (&hold.row, &hold.way)))),
-        }
+        let units =
+            holds.iter().map(|hold| hold.unit().map(|dof| nodes.place[dof] as usize)).collect::<Option<Vec<_>>>();
+        // A single dof gives way along itself.
+        let transposed = match units {
+            Some(_) => matrix.clone(),
+            None => sum(nodes, holds.iter().map(|hold| (&hold.row, &hold.way))),
+        };
+        Self::with(matrix, transposed, units)
     }
 
-    fn with(matrix: BlockMatrix<T>, transposed: BlockMatrix<T>) -> Self {
+    fn with(matrix: BlockMatrix<T>, transposed: BlockMatrix<T>, units: Option<Vec<usize>>) -> Self {
         let rows = [&matrix, &transposed].map(|matrix| matrix.filled_rows().collect());
-        Held { matrix, transposed, rows, units: None }
-    }
-
-    fn symmetric(matrix: BlockMatrix<T>, units: Option<Vec<usize>>) -> Self {
-        let rows: Vec<usize> = matrix.filled_rows().collect();
-        Held { transposed: matrix.clone(), matrix, rows: [rows.clone(), rows], units }
+        Held { matrix, transposed, rows, units }
     }
 
     /// Takes out what `matrix` N or N' holds.
@@ -86,11 +84,7 @@ impl<T: Real> Held<T> {
     /// What is held beyond `last`.
     pub fn beyond(&self, last: &Self) -> Self {
         let minus = |own: &BlockMatrix<T>, last: &BlockMatrix<T>| own.plus(-1.0, last).without_zeros();
-        let matrix = minus(&self.matrix, &last.matrix);
-        match self.units.is_some() && last.units.is_some() {
-            true => Self::symmetric(matrix, None),
-            false => Self::with(matrix, minus(&self.transposed, &last.transposed)),
-        }
+        Self::with(minus(&self.matrix, &last.matrix), minus(&self.transposed, &last.transposed), None)
     }
 
     /// `N' A`.

@@ -39,14 +39,8 @@ pub struct Units {
 impl Units {
     /// The nodes by the pattern of `matrix` alone, all with one unit.
     pub fn by_pattern(matrix: &SymmetricMatrix) -> Self {
-        let graph = Quotient::of(matrix.lower());
-        let (size, mut groups, mut count) = (usual_dofs(&graph), vec![0; matrix.dim()], 0);
-        for group in 0..graph.count() as u32 {
-            for part in graph.members(group).chunks(size) {
-                part.iter().for_each(|&dof| groups[dof] = count);
-                count += 1;
-            }
-        }
+        let (size, place, _) = places(&Quotient::of(matrix.lower()), matrix.dim());
+        let groups = place.iter().map(|&place| place / size as u32).collect();
         Units { groups, exponents: vec![0; matrix.dim()] }
     }
 
@@ -64,19 +58,8 @@ impl Nodes {
         threads: usize,
     ) -> (Self, BlockMatrix<T>, Option<BlockMatrix<f64>>, i32) {
         let graph = Quotient::of(matrix.lower());
-        let groups = graph.count() as u32;
-        let size = usual_dofs(&graph);
-        let mut first_node = Vec::with_capacity(groups as usize + 1);
-        let mut place = vec![0; matrix.dim()];
-        let mut count = 0;
-        for group in 0..groups {
-            first_node.push(count as u32);
-            for part in graph.members(group).chunks(size) {
-                part.iter().enumerate().for_each(|(component, &dof)| place[dof] = (size * count + component) as u32);
-                count += 1;
-            }
-        }
-        first_node.push(count as u32);
+        let (size, place, first_node) = places(&graph, matrix.dim());
+        let count = first_node[graph.count()] as usize;
         let (exponents, shift) = units(&matrix.diagonal(), |dof| place[dof] as usize / size, count);
         let filling = Filling { matrix, graph: &graph, first_node: &first_node, size, exponents: &exponents, shift };
         let (blocks, exact) = filling.blocks(threads);
@@ -90,13 +73,8 @@ impl Nodes {
 
     /// Number of dofs of a node, and the component of each dof.
     pub fn components(matrix: &SymmetricMatrix) -> (usize, Vec<usize>) {
-        let graph = Quotient::of(matrix.lower());
-        let mut components = vec![0; matrix.dim()];
-        let size = usual_dofs(&graph);
-        for group in 0..graph.count() as u32 {
-            graph.members(group).iter().enumerate().for_each(|(place, &dof)| components[dof] = place % size);
-        }
-        (size, components)
+        let (size, place, _) = places(&Quotient::of(matrix.lower()), matrix.dim());
+        (size, place.into_iter().map(|place| place as usize % size).collect())
     }
 
     /// The node of each dof, and the exponent of its unit.
@@ -129,6 +107,21 @@ impl Nodes {
             *displacement = ldexp(gathered[place as usize].double(), exponent + self.exponent(place));
         }
     }
+}
+
+/// Number of places of a node, the place of each dof, which is `size * node + component`, and the first node of each
+/// group, with the number of nodes at the end.
+fn places(graph: &Quotient, dofs: usize) -> (usize, Vec<u32>, Vec<u32>) {
+    let (size, mut place, mut first_node) = (usual_dofs(graph), vec![0; dofs], vec![0]);
+    let mut count = 0;
+    for group in 0..graph.count() as u32 {
+        for part in graph.members(group).chunks(size) {
+            part.iter().enumerate().for_each(|(component, &dof)| place[dof] = (size * count + component) as u32);
+            count += 1;
+        }
+        first_node.push(count as u32);
+    }
+    (size, place, first_node)
 }
 
 /// The exponent of the unit of each of `count` nodes, from the largest diagonal entry there, and the exponent that then

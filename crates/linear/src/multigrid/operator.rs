@@ -1,6 +1,6 @@
 //! The matrix of a level, in all dofs or in a face.
 
-use super::blocks::{BlockMatrix, Product};
+use super::blocks::BlockMatrix;
 use super::half;
 use super::held::Held;
 use super::repeated;
@@ -36,24 +36,21 @@ impl<'a, T: Real> Operator<'a, T> {
 
     /// The force of an `x` in the face.
     pub fn mul_into(&self, x: &[T], y: &mut [T]) {
-        self.multiply(x, y, Product::Replaces);
+        y.fill(T::default());
+        self.add_product(1.0, x, y);
     }
 
-    /// `y -= A x` for forces `y` and an `x` in the face.
-    pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
-        self.multiply(x, y, Product::IsSubtracted);
-    }
-
-    fn multiply(&self, x: &[T], y: &mut [T], product: Product) {
+    /// `y += sign A x` for forces `y` and an `x` in the face.
+    pub fn add_product(&self, sign: f64, x: &[T], y: &mut [T]) {
         if self.matrix.is_half {
-            half::multiply(self.matrix, x, y, product, self.threads, self.spare);
+            half::add_product(self.matrix, sign, x, y, self.threads, self.spare);
         } else if !self.matrix.is_shared() {
-            self.matrix.multiply(x, y, product, self.threads);
+            self.matrix.add_product(sign, x, y, self.threads);
         } else {
-            repeated::multiply(self.matrix, x, y, product, self.threads, self.spare);
+            repeated::add_product(self.matrix, sign, x, y, self.threads, self.spare);
         }
         if let Some(change) = self.change {
-            change.add_few_products(x, y, if product == Product::Replaces { -1.0 } else { 1.0 });
+            change.add_few_products(x, y, -sign);
         }
         if let Some(held) = self.held {
             held.project_force(y);

@@ -1,6 +1,7 @@
 //! The prolongator of a level: near-null vectors cut into aggregates, made orthonormal, smoothed.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
@@ -185,7 +186,8 @@ pub fn smoothed<T: Real>(
         return moved;
     }
     let BlockMatrix { starts, indices, values, .. } = &mut moved;
-    SharedRows { starts, threads }.with_blocks(size, values, |rows, mut values| {
+    let length = |rows: &Range<usize>| (starts[rows.end] - starts[rows.start]) * size;
+    SharedRows { starts, threads }.with_parts([&mut values[..]], length, |rows, [mut values]| {
         let mut column = vec![T::default(); height];
         for node in rows {
             let places = starts[node]..starts[node + 1];

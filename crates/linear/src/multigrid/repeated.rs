@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::blocks::{BlockMatrix, Product};
+use super::blocks::BlockMatrix;
 use crate::Spare;
 use crate::real::Real;
 
@@ -128,27 +128,27 @@ fn hash<T: Real>(indices: impl Iterator<Item = u32>, values: &[T]) -> u64 {
     words.fold(0, |hash: u64, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95))
 }
 
-/// `A x`, as `product` says, for a matrix with shared rows.
-pub fn multiply<T: Real>(
+/// `y += sign A x` for a matrix with shared rows.
+pub fn add_product<T: Real>(
     matrix: &BlockMatrix<T>,
+    sign: f64,
     x: &[T],
     y: &mut [T],
-    product: Product,
     threads: usize,
     spare: &Spare<T>,
 ) {
     match matrix.height {
-        1 => multiply_in::<T, 1>(matrix, x, y, product, threads, spare),
-        2 => multiply_in::<T, 2>(matrix, x, y, product, threads, spare),
-        _ => multiply_in::<T, 3>(matrix, x, y, product, threads, spare),
+        1 => add_product_in::<T, 1>(matrix, T::of(sign), x, y, threads, spare),
+        2 => add_product_in::<T, 2>(matrix, T::of(sign), x, y, threads, spare),
+        _ => add_product_in::<T, 3>(matrix, T::of(sign), x, y, threads, spare),
     }
 }
 
-fn multiply_in<T: Real, const H: usize>(
+fn add_product_in<T: Real, const H: usize>(
     matrix: &BlockMatrix<T>,
+    sign: T,
     x: &[T],
     y: &mut [T],
-    product: Product,
     threads: usize,
     spare: &Spare<T>,
 ) {
@@ -174,10 +174,10 @@ fn multiply_in<T: Real, const H: usize>(
                 true => {
                     for (row, y) in run.clone().zip(sums) {
                         let sums = matrix.row_product::<H, H>(row, x);
-                        (0..H).for_each(|i| product.put(&mut y[i], sums[i]));
+                        (0..H).for_each(|i| y[i] += sign * sums[i]);
                     }
                 }
-                false => arch.dispatch(RepeatedRows { matrix, components, rows: run.clone(), sums, product }),
+                false => arch.dispatch(RepeatedRows { matrix, components, rows: run.clone(), sums, sign }),
             }
             row = run.end;
         }
@@ -191,7 +191,7 @@ struct RepeatedRows<'a, T, const H: usize> {
     components: [&'a [T]; H],
     rows: Range<usize>,
     sums: &'a mut [[T; H]],
-    product: Product,
+    sign: T,
 }
 
 impl<T: Real, const H: usize> WithSimd for RepeatedRows<'_, T, H> {
@@ -199,7 +199,7 @@ impl<T: Real, const H: usize> WithSimd for RepeatedRows<'_, T, H> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let RepeatedRows { matrix, components, rows, sums, product } = self;
+        let RepeatedRows { matrix, components, rows, sums, sign } = self;
         let first = matrix.shared_rows[rows.start] as usize;
         let places = first..first + matrix.starts[rows.start + 1] - matrix.starts[rows.start];
         let blocks = matrix.values[places.start * H * H..places.end * H * H].as_chunks::<H>().0;
@@ -221,7 +221,7 @@ impl<T: Real, const H: usize> WithSimd for RepeatedRows<'_, T, H> {
             }
             let of_nodes: [[T; H]; TILE] = std::array::from_fn(|node| std::array::from_fn(|i| of_tile[i][node]));
             for (y, of_node) in sums[start - rows.start..][..TILE].iter_mut().zip(&of_nodes).skip(done - start) {
-                (0..H).for_each(|i| product.put(&mut y[i], of_node[i]));
+                (0..H).for_each(|i| y[i] += sign * of_node[i]);
             }
             if start + TILE == rows.end {
                 return;
@@ -273,16 +273,16 @@ mod tests {
         }
         let x: Vec<f32> = (0..3 * rows.len()).map(|index| (index as f32 * 0.37).sin()).collect();
         let mut expected = vec![0.0; x.len()];
-        plain.mul_into(&x, &mut expected, 1);
+        plain.add_product(1.0, &x, &mut expected, 1);
         for threads in [1, 2, 3] {
-            let mut y = vec![1.0; x.len()];
-            let multiply = |product, y: &mut [f32]| match is_shared {
-                true => multiply(&found, &x, y, product, threads, &Spare::default()),
-                false => found.multiply(&x, y, product, threads),
+            let mut y = vec![0.0; x.len()];
+            let add = |sign, y: &mut [f32]| match is_shared {
+                true => add_product(&found, sign, &x, y, threads, &Spare::default()),
+                false => found.add_product(sign, &x, y, threads),
             };
-            multiply(Product::Replaces, &mut y);
+            add(1.0, &mut y);
             assert_eq!(y, expected, "{threads} threads");
-            multiply(Product::IsSubtracted, &mut y);
+            add(-1.0, &mut y);
             assert!(y.iter().all(|&rest| rest == 0.0), "{threads} threads");
         }
     }

@@ -15,7 +15,7 @@ mod bonded;
 use std::f64::consts::SQRT_2;
 
 use crate::error::Error;
-use crate::linear::eigen::{Krylov, LANES, Lanes, Pairs, negative_eigenvalues};
+use crate::linear::eigen::{Krylov, Pairs, negative_eigenvalues};
 use crate::linear::watch::Watch;
 use crate::linear::{Analysis, Cholesky, Equilibration, SymmetricMatrix, dot, if_definite, in_order, ldexp, norm, par};
 use crate::problem::ContactProblem;
@@ -46,6 +46,9 @@ const SHARES: [f64; 4] = [0.5, 0.38, 0.66, 0.27];
 
 /// An eigenvalue is zero if its energy `x'K x` is below this share of that of its entries, each alone.
 const ZERO: f64 = 1e-13;
+
+/// Columns that a thread sweeps at a time.
+const TOGETHER: usize = 4;
 
 /// Searches of one space, each with more directions, before it is left unproven.
 const MOST_SEARCHES: usize = 8;
@@ -306,11 +309,11 @@ impl Shifted<'_> {
         let (dim, order, diagonal) = (ordered.dim(), analysis.order(), stiffness.diagonal());
         self.in_parts(vectors, |part| {
             let mut x = vec![0.0; part.len()];
-            let swept = Lanes::of(part, dim).backward(&self.factor).into_columns();
+            let swept = self.factor.backward_all(part.to_vec());
             for (x, swept) in x.chunks_mut(dim).zip(swept.chunks(dim)) {
                 order.iter().zip(swept).for_each(|(&unknown, &value)| x[unknown] = value);
             }
-            let [elastic, inertia] = [stiffness, mass].map(|matrix| Lanes::of(&x, dim).times(matrix).into_columns());
+            let [elastic, inertia] = [stiffness, mass].map(|matrix| matrix.mul_all(&x));
             let products = elastic.chunks(dim).zip(inertia.chunks(dim));
             let (mut values, mut rests) = (Vec::new(), Vec::with_capacity(x.len()));
             for (x, (elastic, inertia)) in x.chunks_mut(dim).zip(products) {
@@ -322,7 +325,7 @@ impl Shifted<'_> {
                 x.iter_mut().for_each(|entry| *entry /= length);
                 values.push(value);
             }
-            let rests = Lanes::of(&rests, dim).forward(&self.factor).into_columns();
+            let rests = self.factor.forward_all(rests);
             let residual = |(value, rest): (&f64, &[f64])| norm(rest) / (value + self.shift).sqrt();
             let residuals = values.iter().zip(rests.chunks(dim)).map(residual).collect::<Vec<f64>>();
             let vectors = x.chunks(dim).map(<[f64]>::to_vec);
@@ -347,17 +350,15 @@ impl Shifted<'_> {
 
     fn apply(&self, columns: &[f64]) -> Vec<f64> {
         let Pencil { ordered, .. } = self.pencil;
-        let swept = |columns: &[f64]| {
-            let moved = Lanes::of(columns, ordered.dim()).backward(&self.factor);
-            moved.times(ordered).forward(&self.factor).into_columns()
-        };
-        self.in_parts(columns, swept)
+        self.in_parts(columns, |part| {
+            self.factor.forward_all(ordered.mul_all(&self.factor.backward_all(part.to_vec())))
+        })
     }
 
     /// The results of `work` on as many columns as are treated together, in their order.
     fn in_parts<T: Send>(&self, columns: &[f64], work: impl Fn(&[f64]) -> Vec<T> + Sync) -> Vec<T> {
         // Held rows may leave nothing that moves.
-        let parts: Vec<&[f64]> = columns.chunks((LANES * self.pencil.ordered.dim()).max(1)).collect();
+        let parts: Vec<&[f64]> = columns.chunks((TOGETHER * self.pencil.ordered.dim()).max(1)).collect();
         match self.pencil.threads {
             0 | 1 => parts.into_iter().flat_map(work).collect(),
             _ => in_order(parts, work).into_iter().flatten().collect(),
