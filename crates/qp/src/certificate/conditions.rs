@@ -5,12 +5,12 @@ use std::borrow::Cow;
 use super::EnergyNorm;
 use super::bound::{Answer, ErrorBound, Measured};
 use super::scales::{Balance, OfPart, Scales, larger, relative};
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::Accumulator;
 use crate::linear::multigrid::Multigrid;
+use crate::linear::watch::Watch;
 use crate::problem::ContactProblem;
 use crate::solution::{Cancellation, Certificate};
-use crate::watch::Watch;
 
 /// Rounding moves an entry of u or lambda by half a unit in the last place: once for the rounding and once for the
 /// arithmetic that made the entry, their sum is excused.
@@ -66,7 +66,7 @@ impl ContactProblem {
     /// definite or the rows that press hold the body.
     ///
     /// # Errors
-    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of
+    /// [`LinearError::Length`] for vectors that do not fit, [`LinearError::Numerical`] if the factorisation of K fails for lack of
     /// memory.
     pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
         Ok(self.examine(&Bounding::OwnFactor, displacement, multiplier)?.certificate)
@@ -251,7 +251,7 @@ impl ContactProblem {
     /// Checks that the vectors of an answer have the lengths of the problem.
     pub(crate) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
         let length = |name, found: usize, expected, of| {
-            if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
+            if found == expected { Ok(()) } else { Err(LinearError::Length { name, found, expected, of }.into()) }
         };
         length("displacement", displacement.len(), self.dofs(), "dofs")?;
         let (found, of) =

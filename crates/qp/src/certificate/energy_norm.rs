@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::linear::{
     Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, exponent,
     if_definite, ldexp,
 };
-use crate::watch::Watch;
 
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
 const LARGEST_SHARE: f64 = 0.25;
@@ -367,7 +367,7 @@ impl Springs {
             return Ok(None);
         }
         let weights: Vec<f64> = closed.iter().map(|&row| self.stiffness[row]).collect();
-        stiffness.plus_squares(&contact.select_rows(&closed), &weights).map(Some)
+        Ok(Some(stiffness.plus_squares(&contact.select_rows(&closed), &weights)?))
     }
 
     /// `f + B' lambda - K_D u + B_C' D g_C`: the `residual` with springs of an answer with this `violation`.

@@ -1,6 +1,6 @@
 //! Statements on a problem without a unique answer, rechecked in the problem itself with twice the working precision.
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::{NullSpace, Twice, largest, twice};
 use crate::problem::ContactProblem;
 
@@ -132,12 +132,13 @@ impl ContactProblem {
         let energy: f64 = forces.iter().zip(&p).map(|(force, p)| force * p).sum();
         let terms: f64 = self.stiffness.mul_abs(&p).iter().zip(&p).map(|(force, p)| force * p.abs()).sum();
         let dof = p.iter().position(|value| value.abs() == 1.0).unwrap_or(0);
-        (energy < -NEGATIVE * terms).then(|| Error::NotConvex {
-            evidence: format!(
+        let evidence = || {
+            format!(
                 "a direction p with largest entry one, at dof {dof} (indices from 0), has p'Kp = {energy:.3e}, beyond {NEGATIVE:.0e} \
                  of its terms, {terms:.3e}"
-            ),
-        })
+            )
+        };
+        (energy < -NEGATIVE * terms).then(|| LinearError::NotConvex { evidence: evidence() }.into())
     }
 }
 

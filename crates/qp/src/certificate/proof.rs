@@ -17,12 +17,12 @@ use super::energy_norm::{Boundary, ROUNDED_BOUND, RowsOnBoundary};
 use super::units::ldexp_root;
 use crate::error::Error;
 use crate::linear::multigrid::Multigrid;
+use crate::linear::watch::Watch;
 use crate::linear::{
     Dependence, SparseMatrix, dot, forward_all, inverse_lengths, inverse_lengths_by_products, ldexp, products,
 };
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
-use crate::watch::Watch;
 
 /// Accuracy of the solve for an M-matrix without a factor; its error widens the bounds.
 const ROUGH: f64 = 1e-2;

@@ -18,9 +18,9 @@ use super::EnergyNorm;
 use super::proof::ComplianceFactor;
 use crate::linear::multigrid::Multigrid;
 use crate::linear::selected_inverse::FACTORISATIONS;
+use crate::linear::watch::Watch;
 use crate::linear::{dot, largest};
 use crate::problem::ContactProblem;
-use crate::watch::Watch;
 
 /// Steps of power iteration for the largest eigenvalue of M D.
 const POWER_STEPS: usize = 3;

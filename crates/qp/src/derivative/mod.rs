@@ -34,6 +34,7 @@ use serde::{Serialize, Serializer};
 
 use crate::engine::{Engine, Factored};
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::linear::{check_vector, largest};
 use crate::method::Start;
 use crate::plan::WithFactor;
@@ -42,7 +43,6 @@ use crate::problem::ContactProblem;
 use crate::run::solved;
 use crate::settings::{Method, Settings};
 use crate::solution::{ContactSet, Solution};
-use crate::watch::Watch;
 use verdict::{RowStates, rows_of};
 
 /// A derivative together with the verdict of the proven rows: whether the exact answer is smooth there.
@@ -216,7 +216,7 @@ impl Derivatives {
     /// [`tangent`](Self::tangent) tells them apart.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit; [`Error::Numerical`] and
+    /// [`LinearError::Length`] and [`LinearError::NotFinite`] for vectors that do not fit; [`LinearError::Numerical`] and
     /// [`Error::Interrupted`] of the solve.
     pub fn adjoint(&self, by_displacement: &[f64], by_multiplier: &[f64]) -> Result<Derivative<Adjoint>, Error> {
         let (problem, rows) = (&self.problem, self.given_rows());
@@ -365,7 +365,7 @@ impl Prepared {
     /// prepared or of [`with_gap`](Self::with_gap). If the answer brings no proof of its rows, they are proven here.
     ///
     /// # Errors
-    /// [`Error::Length`] for an answer that does not fit, and those of the proof.
+    /// [`LinearError::Length`] for an answer that does not fit, and those of the proof.
     pub fn derivatives(&self, solution: &Solution) -> Result<Derivatives, Error> {
         let (problem, settings) = (&self.problem, self.settings.started()?);
         let engine: Arc<dyn Engine> = match &self.bench {

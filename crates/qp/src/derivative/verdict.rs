@@ -3,10 +3,10 @@
 use crate::certificate::{Bounding, WithEvidence};
 use crate::engine::Engine;
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::linear::{Dependence, ExactSum, largest};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet, Solution};
-use crate::watch::Watch;
 
 /// Corrections on the way to an answer that is exact in doubles.
 const MOST_CORRECTIONS: usize = 4;

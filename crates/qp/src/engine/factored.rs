@@ -8,7 +8,8 @@ use super::reduction::{Norm, Reduction};
 use super::step::ScaledStep;
 use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{bytes, check_time, seconds};
-use crate::error::Error;
+use crate::error::{Error, LinearError};
+use crate::linear::watch::Watch;
 use crate::linear::{Augmented, Equilibration, dot, ldexp};
 use crate::method::{Ending, Outcome, ScaledProblem, active_set};
 use crate::plan::{Means, Step, Tried};
@@ -16,7 +17,6 @@ use crate::problem::ContactProblem;
 use crate::settings::ByFactor;
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::transform::Condensation;
-use crate::watch::Watch;
 
 /// Factorisations for one step of a loop if K is not definite by itself.
 const SINGULAR: f64 = 3.0;
@@ -334,7 +334,8 @@ impl Factored {
             None => Ok(()),
             Some(row) => {
                 let allowed = "infinite in the same rows as when the problem was prepared";
-                Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value: gap[row], allowed })
+                Err(LinearError::NotFinite { name: "gap vector", at: format!("entry {row}"), value: gap[row], allowed }
+                    .into())
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::{SparseMatrix, SymmetricMatrix};
 
 /// What is left of a row below this share of its largest entry is rounding: the row follows from those before it.
@@ -40,7 +40,7 @@ impl Bonded {
         for &row in closed {
             if row >= rows.rows() {
                 let (rows, columns) = (rows.rows(), rows.columns());
-                return Err(Error::IndexOutOfRange { row, column: 0, rows, columns });
+                return Err(LinearError::IndexOutOfRange { row, column: 0, rows, columns }.into());
             }
             let given: Entries = by_row.column(row).filter(|entry| entry.1 != 0.0).collect();
             let size = given.iter().fold(0.0, |size: f64, entry| size.max(entry.1.abs()));
@@ -108,7 +108,7 @@ impl Bonded {
     pub fn reduced<'a>(&self, matrix: &'a SymmetricMatrix) -> Result<Cow<'a, SymmetricMatrix>, Error> {
         match self.is_free() && matrix.dim() == self.lift.columns() {
             true => Ok(Cow::Borrowed(matrix)),
-            false => matrix.congruent(&self.lift).map(Cow::Owned),
+            false => Ok(Cow::Owned(matrix.congruent(&self.lift)?)),
         }
     }
 

@@ -16,9 +16,9 @@ use std::f64::consts::SQRT_2;
 
 use crate::error::Error;
 use crate::linear::eigen::{Krylov, Pairs, negative_eigenvalues};
+use crate::linear::watch::Watch;
 use crate::linear::{Analysis, Cholesky, Equilibration, SymmetricMatrix, dot, if_definite, in_order, ldexp, norm, par};
 use crate::problem::ContactProblem;
-use crate::watch::Watch;
 use bonded::Bonded;
 
 /// A pivot of a matrix with a diagonal of order one below this is rounding: the matrix may be singular.
@@ -99,7 +99,7 @@ impl ContactProblem {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Shape`] if the sizes differ, [`Error::IndexOutOfRange`] for a row beyond the last; [`Error::NotConvex`]
+    /// [`LinearError::Shape`] if the sizes differ, [`LinearError::IndexOutOfRange`] for a row beyond the last; [`LinearError::NotConvex`]
     /// if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
     pub fn modes(
         &self,

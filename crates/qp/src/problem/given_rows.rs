@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::ContactProblem;
 use super::opposed::largest_finite;
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::equations::{FOLLOWS, Following};
 use crate::linear::{SparseMatrix, check_vector};
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
@@ -37,7 +37,7 @@ impl ContactProblem {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Shape`], [`Error::Length`], [`Error::NotFinite`] for numbers that do not fit.
+    /// [`LinearError::Shape`], [`LinearError::Length`], [`LinearError::NotFinite`] for numbers that do not fit.
     pub fn with_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
         let mut problem = self.with_all_equalities(rows, values.clone())?;
         let mut following = rows.following_rows(&values, FOLLOWS, MOST_TERMS);
@@ -55,7 +55,7 @@ impl ContactProblem {
     pub(crate) fn with_all_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
         if rows.columns() != self.dofs() {
             let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));
-            return Err(Error::Shape { name: "equality matrix", found, expected });
+            return Err(LinearError::Shape { name: "equality matrix", found, expected }.into());
         }
         check_vector("equality vector", &values, (rows.rows(), "equality rows"), f64::is_finite, "finite")?;
         let (inequalities, count) = (self.inequalities(), rows.rows());

@@ -13,7 +13,7 @@ use std::sync::{Arc, OnceLock};
 use opposed::{OpposedRows, settle, without_entries};
 use parts::Diagonal;
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::equations::Following;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_vector};
@@ -104,8 +104,8 @@ impl ContactProblem {
     /// [`warnings`](Self::warnings).
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
-    /// finite or a gap that is NaN or minus infinity, [`Error::NotConvex`] for a negative diagonal entry of K.
+    /// [`LinearError::Length`] and [`LinearError::Shape`] for sizes that do not fit, [`LinearError::NotFinite`] for a load that is not
+    /// finite or a gap that is NaN or minus infinity, [`LinearError::NotConvex`] for a negative diagonal entry of K.
     pub fn new(
         stiffness: SymmetricMatrix,
         load: Vec<f64>,
@@ -127,12 +127,15 @@ impl ContactProblem {
         let dofs = stiffness.dim();
         if contact.columns() != dofs {
             let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
-            return Err(Error::Shape { name: "contact matrix", found, expected });
+            return Err(LinearError::Shape { name: "contact matrix", found, expected }.into());
         }
         check_load(&load, dofs)?;
         check_gap(&gap, contact.rows())?;
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
-            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
+            return Err(LinearError::NotConvex {
+                evidence: format!("diagonal entry {dof} is {value:e}, indices from 0"),
+            }
+            .into());
         }
         let without_entries: Arc<[usize]> = without_entries(&contact).into();
         Ok(ContactProblem {
@@ -159,12 +162,12 @@ impl ContactProblem {
     /// the rigid-body modes.
     ///
     /// # Errors
-    /// [`Error::Length`] if they are for another number of dofs.
+    /// [`LinearError::Length`] if they are for another number of dofs.
     pub fn with_near_null(self, near_null: impl Into<Arc<NearNullSpace>>) -> Result<Self, Error> {
         let near_null = near_null.into();
         let (found, expected) = (near_null.dofs(), self.dofs());
         if found != expected {
-            return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
+            return Err(LinearError::Length { name: "near-null vector", found, expected, of: "dofs" }.into());
         }
         Ok(ContactProblem { near_null: Some(near_null), free_motions: FoundOnce::default(), ..self })
     }
@@ -371,13 +374,13 @@ impl ContactProblem {
 
 /// Checks that `load` has the right length and allowed values.
 pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
-    check_vector("load vector", load, (dofs, "dofs"), f64::is_finite, "finite")
+    Ok(check_vector("load vector", load, (dofs, "dofs"), f64::is_finite, "finite")?)
 }
 
 /// Checks that `gap` has the right length and allowed values.
 pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
     let allowed = "finite, or +inf for a row without obstacle";
-    check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)
+    Ok(check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)?)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::elimination::{self, KeptRest, Rest};
 use super::pieces;
 use crate::certificate::{Bounding, Examined};
 use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::existence::Existence;
 use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Means, Next, Record, Step, Tried};
@@ -107,7 +107,9 @@ impl<'a> Run<'a> {
             let mut record = Record::of(next, step);
             record.ended = match self.made_step(&next, attempt, &mut record) {
                 Ok(ended) => ended,
-                Err(error @ Error::NotConvex { .. }) if step == Step::Existence => Ended::Decided(error),
+                Err(error @ Error::Linear(LinearError::NotConvex { .. })) if step == Step::Existence => {
+                    Ended::Decided(error)
+                }
                 Err(error) => Ended::by(error),
             };
             record.seconds = clock.elapsed().as_secs_f64();

@@ -107,7 +107,7 @@ fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> 
 fn with_diagonal(stiffness: &SymmetricMatrix, added: &[f64]) -> Result<SymmetricMatrix, Error> {
     let diagonal = added.iter().enumerate().map(|(dof, &value)| (dof, dof, value));
     let entries: Vec<(usize, usize, f64)> = stiffness.lower().triplets().chain(diagonal).collect();
-    SymmetricMatrix::from_lower(SparseMatrix::from_triplets(added.len(), added.len(), &entries)?)
+    Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(added.len(), added.len(), &entries)?)?)
 }
 
 /// The answer of a step: unchanged, without forces that come from the added diagonal and the rounding of the
@@ -139,7 +139,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::watch::Watch;
+    use crate::linear::watch::Watch;
 
     /// Two dofs, each with its own row: `stiffness` on the diagonal.
     fn two(stiffness: [f64; 2], load: [f64; 2], gap: [f64; 2]) -> ContactProblem {

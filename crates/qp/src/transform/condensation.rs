@@ -11,7 +11,7 @@
 //! A body that only its contact rows hold has a singular K. In that case `K + B'B` is factorised; its Schur complement
 //! is `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::{Analysis, Cholesky, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
 
 /// If contact dofs exceed this share of all, condensing removes too little.
@@ -177,7 +177,7 @@ fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
     }
     if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
         let at = "the condensed stiffness".to_string();
-        return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+        return Err(LinearError::NotFinite { name: "matrix", at, value, allowed: "finite" }.into());
     }
     Ok(SparseMatrix::from_parts(size, starts, rows, values))
 }

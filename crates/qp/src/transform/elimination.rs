@@ -222,7 +222,7 @@ impl Elimination {
             }
             starts.push(rows.len());
         }
-        SymmetricMatrix::from_lower(SparseMatrix::from_csc(self.dofs.len(), starts, rows, values)?)
+        Ok(SymmetricMatrix::from_lower(SparseMatrix::from_csc(self.dofs.len(), starts, rows, values)?)?)
     }
 
     /// `Z'(f - K u_0)`.

@@ -5,9 +5,9 @@
 //! share a dof, S is diagonal and one step of the iteration is exact.
 
 use crate::certificate::conditions::Distances;
+use crate::linear::watch::Watch;
 use crate::linear::{SparseMatrix, dot, largest, norm};
 use crate::problem::ContactProblem;
-use crate::watch::Watch;
 
 /// Exchanges of the set of rows: violated rows join, rows that follow from tighter ones leave.
 const EXCHANGES: usize = 10;

@@ -19,9 +19,9 @@
 use super::{Answer, ErrorBound, Measured};
 use crate::certificate::energy_norm::ROUNDED_BOUND;
 use crate::linear::multigrid::Multigrid;
+use crate::linear::watch::Watch;
 use crate::linear::{Blocks, SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
-use crate::watch::Watch;
 
 impl ContactProblem {
     /// An upper bound on `|u - u*|_K`, as far as the cycles find the least eigenvalues; `None` if they find none, or if
