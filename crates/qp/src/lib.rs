@@ -69,7 +69,7 @@ pub use solution::{Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Sec
 use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use certificate::Bounding;
+use certificate::{Bounding, Examination};
 use cost::{Kept, check_memory};
 use engine::Engine;
 use linear::{Analysis, in_order, threads_of_machine};
@@ -229,6 +229,28 @@ impl ContactProblem {
         plan::Ladder::of(self, known, settings)?.in_words(self, settings)
     }
 
+    /// The certificate of an answer: displacement u (length n, in m) and multiplier lambda (length m, in N, `<= 0` in
+    /// compression; with equality rows followed by theirs, of either sign), with the energy bound if K is positive
+    /// definite or the rows that press hold the body.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of
+    /// memory.
+    pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
+        let examination = Examination::of(self, [displacement, multiplier], &Bounding::OwnFactor)?;
+        Ok(examination.certificate()?.certificate)
+    }
+
+    /// The rows for which an answer (u of length n, in m; lambda of length m, in N, `<= 0` in compression) proves, by
+    /// its distance and force, that they are open or closed in the exact answer; `None` if K is not positive definite
+    /// by itself, except for travels that forces drive against rows, and if no bound is known.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::certify`].
+    pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
+        Examination::of(self, [displacement, multiplier], &Bounding::OwnFactor)?.proof(None)
+    }
+
     /// The certificate of an answer (u, lambda), one entry per dof and per row of B and then of E, that came from
     /// elsewhere, within the memory of `settings`: with a factor if that is estimated to take at most `seconds`, else
     /// by multigrid.
@@ -243,7 +265,8 @@ impl ContactProblem {
         settings: &Settings,
     ) -> Result<Certificate, Error> {
         let (displacement, multiplier) = answer;
-        let examine = |by: &Bounding| Ok(self.examine(by, displacement, multiplier)?.certificate);
+        let examine =
+            |by: &Bounding| Ok(Examination::of(self, [displacement, multiplier], by)?.certificate()?.certificate);
         let certificate = if plan::is_bounded_by_factor(self, seconds, settings)? {
             examine(&Bounding::OwnFactor)
         } else {

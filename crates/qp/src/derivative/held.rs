@@ -1,7 +1,7 @@
 //! The linear system of the held rows, solved to the digits of doubles.
 
 use super::Derivatives;
-use crate::certificate::Bounding;
+use crate::certificate::{Bounding, Examination};
 use crate::error::Error;
 use crate::linear::largest;
 use crate::solution::ContactSet;
@@ -76,7 +76,7 @@ impl Derivatives {
         let linear = self.problem.without_rows()?.with_load(force.to_vec())?;
         let linear = linear.with_all_equalities(&self.problem.contact().select_rows(&rows), pick(distances))?;
         let by: Bounding = self.engine.bounding(&self.settings.watch);
-        Ok(linear.examine(&by, x, &pick(y))?.certificate.energy_error_bound)
+        Ok(Examination::of(&linear, [x, &pick(y)], &by)?.certificate()?.certificate.energy_error_bound)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The rows of an exact answer: pressing, with a gap, or neither.
 
-use crate::certificate::{Bounding, WithEvidence};
+use crate::certificate::{Bounding, Examination, norm_on_equalities};
 use crate::engine::Engine;
 use crate::error::Error;
 use crate::linear::watch::Watch;
@@ -82,20 +82,23 @@ fn proven_here(
     [displacement, multiplier]: [&[f64]; 2],
     watch: &Watch,
 ) -> Result<Option<ProvenSet>, Error> {
-    let answer = || WithEvidence { displacement, multiplier, evidence: None };
+    let answer = [displacement, multiplier];
     // Travels have no bound by the data of an engine.
     if engine.hierarchy().is_none() && !problem.without_stiffness().is_empty() {
-        return problem.prove_alone(answer());
+        return Examination::of(problem, answer, &Bounding::OwnFactor)?.proof(None);
     }
     let by = engine.bounding(watch);
     let (two_sided, of_rows) = problem.two_sided(multiplier);
-    let evidence = two_sided.examine(&by, displacement, &of_rows)?.evidence;
-    match problem.prove_by(&by, WithEvidence { evidence, ..answer() }) {
-        Some(proven) => Ok(Some(proven)),
-        None if engine.hierarchy().is_some() => Ok(None),
-        // Equalities may hold what the stiffness does not.
-        None => Ok(problem.norm_on_equalities()?.and_then(|norm| problem.prove_by(&Bounding::Factor(norm), answer()))),
+    let evidence = Examination::of(&two_sided, [displacement, &of_rows], &by)?.certificate()?.evidence;
+    // Without a norm at hand there is no factor of the stiffness alone.
+    let by_engine = !matches!(by, Bounding::OwnFactor);
+    let proven = if by_engine { Examination::of(problem, answer, &by)?.proof(evidence)? } else { None };
+    if proven.is_some() || engine.hierarchy().is_some() {
+        return Ok(proven);
     }
+    // Equalities may hold what the stiffness does not.
+    let Some(norm) = norm_on_equalities(problem)? else { return Ok(None) };
+    Examination::of(problem, answer, &Bounding::Factor(norm))?.proof(None)
 }
 
 /// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: every force is in

@@ -6,7 +6,7 @@ use super::interface::{Engine, Found, OnBoundary, Task, Walk};
 use super::loading::{Load, Loading};
 use super::reduction::{Norm, Reduction};
 use super::step::ScaledStep;
-use crate::certificate::{Bounding, EnergyNorm};
+use crate::certificate::{Bounding, EnergyNorm, Examination, repaired};
 use crate::cost::{bytes, check_time, seconds};
 use crate::error::{Error, LinearError};
 use crate::linear::watch::Watch;
@@ -190,7 +190,7 @@ impl Factored {
         let start = task.start.contact_set.as_ref().map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let by = self.condensed_bounding(&problem, &settings.watch);
-            let examined = problem.examine(&by, displacement, multiplier);
+            let examined = Examination::of(&problem, [displacement, multiplier], &by).and_then(|of| of.certificate());
             let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
             let of_whole = self.share_of_boundary(&loading, unit, on_boundary);
             examined.map_or(f64::INFINITY, |examined| examined.certificate.energy_error_bound * of_whole)
@@ -255,7 +255,7 @@ impl Factored {
             Norm::Kept(norm) => norm.watched(&task.settings.watch.finishing()),
             _ => return None,
         };
-        let (displacement, multiplier) = task.problem.repaired(&norm, &best.displacement, &best.multiplier)?;
+        let (displacement, multiplier) = repaired(task.problem, &norm, &best.displacement, &best.multiplier)?;
         let contact_set = multiplier.iter().map(|&force| force < 0.0).collect();
         let at_rest = Outcome::at_rest(task.problem, Ending::Settled);
         Some(Found { outcome: Outcome { displacement, multiplier, contact_set, ..at_rest }, factor_seconds: 0.0 })

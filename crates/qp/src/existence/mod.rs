@@ -21,7 +21,7 @@ use rigid::{is_rigid, place_of_largest};
 
 use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
-use crate::certificate::{NullMode, Rounding};
+use crate::certificate::{NullMode, Rounding, mode_along, not_convex_along};
 use crate::error::Error;
 use crate::linear::{
     Analysis, FactorError, NullSpace, SparseMatrix, SymmetricMatrix, Twice, generic, largest, subtract, twice,
@@ -128,7 +128,7 @@ impl Existence {
             Ok(None) => return Ok(None),
             Err(FactorError::NotPositiveDefinite) => {
                 let direction = scaled.stiffness().negative_direction(&shifts, &settings.watch)?;
-                return direction.and_then(|p| scaled.not_convex_along(&p)).map_or(Ok(None), Err);
+                return direction.and_then(|p| not_convex_along(&scaled, &p)).map_or(Ok(None), Err);
             }
             Err(error) => return Err(error.into()),
         };
@@ -297,7 +297,7 @@ impl Existence {
         for (&a, vector) in coordinates.iter().zip(&self.null.vectors) {
             direction.iter_mut().zip(vector).for_each(|(d, &value)| *d = *d + a * value);
         }
-        self.scaled.mode_along(&direction, self.rounding)
+        mode_along(&self.scaled, &direction, self.rounding)
     }
 }
 

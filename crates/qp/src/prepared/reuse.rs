@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::certificate::{Bounding, EnergyNorm};
+use crate::certificate::{Bounding, EnergyNorm, norm_on_equalities};
 use crate::engine::{Engine, Load, Task};
 use crate::error::Error;
 use crate::linear::multigrid::Multigrid;
@@ -125,7 +125,7 @@ impl Prepared {
         let rest = Self::for_gaps(&rest, gaps, &Settings { memory, ..settings.clone() }).ok()?;
         let norm = match bench.engine.bounding(&settings.watch) {
             Bounding::Factor(norm) => Some(norm),
-            Bounding::OwnFactor if !elimination.is_cut() => self.problem.norm_on_equalities().ok()?,
+            Bounding::OwnFactor if !elimination.is_cut() => norm_on_equalities(&self.problem).ok()?,
             _ => None,
         };
         let norm = norm.map(|norm| norm.keeping(self.problem.contact()));

@@ -370,6 +370,90 @@ impl ContactProblem {
         let terms: f64 = self.load.iter().zip(mode).map(|(f, d)| (f * d).abs()).sum();
         if terms > 0.0 { work.into_sums()[0] / terms } else { 0.0 }
     }
+
+    /// Checks that the vectors of an answer have the lengths of the problem.
+    pub(crate) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
+        let length = LinearError::check_length;
+        length("displacement", displacement.len(), self.dofs(), "dofs")?;
+        let (found, of) =
+            (multiplier.len(), if self.equality_rows() == 0 { "contact rows" } else { "contact and equality rows" });
+        if found == self.rows() {
+            Ok(())
+        } else {
+            Ok(length("multiplier", found, self.inequalities() + self.equality_rows(), of)?)
+        }
+    }
+
+    /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
+    pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+        self.accurate_residual_of(u, &[lambda])
+    }
+
+    /// The same for multipliers that are given as sums, which are not rounded.
+    pub(crate) fn accurate_residual_of(&self, u: &[f64], multipliers: &[&[f64]]) -> Vec<f64> {
+        self.accurate_balance(u, multipliers).residual
+    }
+
+    /// The same, with its terms.
+    pub(crate) fn accurate_balance(&self, u: &[f64], multipliers: &[&[f64]]) -> Balance {
+        // Summed with opposite sign, K u first: if a body moves far and bends little, its energy is so small that
+        // forces rounded first would leave nothing of that energy.
+        let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
+        let terms = sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
+        let strain = sums.products_by(u, |_| 0, 1)[0];
+        let elastic = sums.sums().map(f64::abs).collect();
+        self.load.iter().enumerate().for_each(|(dof, &load)| sums.add_product(dof, load, -1.0));
+        for lambda in multipliers {
+            let against: Vec<f64> = lambda.iter().map(|lambda| -lambda).collect();
+            sums.add_transposed(|dof| self.contact.column(dof), &against);
+        }
+        Balance { residual: sums.sums().map(|sum| -sum).collect(), elastic, strain, terms }
+    }
+
+    /// `B u - g` of the given doubles, with twice the working precision; `-inf` for a row without obstacle.
+    pub(crate) fn accurate_violation(&self, u: &[f64]) -> Vec<f64> {
+        Distances::of(self).moved(u)
+    }
+
+    /// The forces `K u` of the given doubles, with twice the working precision.
+    pub(crate) fn accurate_forces(&self, u: &[f64]) -> Accumulator {
+        let mut sums = Accumulator::new(&vec![0.0; u.len()]);
+        sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
+        sums
+    }
+}
+
+/// The forces on each dof at a displacement u, with twice the working precision.
+pub(crate) struct Balance {
+    /// `f + B' lambda - K u` at the displacement u, one entry per dof.
+    pub residual: Vec<f64>,
+    /// `|K u|`.
+    pub elastic: Vec<f64>,
+    /// `u' K u`.
+    pub strain: f64,
+    /// `|K| |u|`, the terms of the elastic forces and the scale of rounding in them.
+    pub terms: Vec<f64>,
+}
+
+/// The distances `B u - g` of a displacement that is a sum, which is not rounded.
+pub(crate) struct Distances<'a> {
+    problem: &'a ContactProblem,
+    sums: Accumulator,
+}
+
+impl<'a> Distances<'a> {
+    /// Those of no displacement.
+    pub fn of(problem: &'a ContactProblem) -> Self {
+        let start: Vec<f64> = problem.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
+        Distances { problem, sums: Accumulator::new(&start) }
+    }
+
+    /// Adds a displacement. Returns the distances, with twice the working precision; `-inf` for a row without obstacle.
+    pub fn moved(&mut self, by: &[f64]) -> Vec<f64> {
+        self.sums.add_columns(|dof| self.problem.contact.column(dof), by);
+        let with_obstacle = |(sum, gap): (f64, &f64)| if gap.is_finite() { sum } else { f64::NEG_INFINITY };
+        self.sums.sums().zip(&self.problem.gap).map(with_obstacle).collect()
+    }
 }
 
 /// Checks that `load` has the right length and allowed values.

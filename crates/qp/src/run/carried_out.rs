@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::elimination::{self, KeptRest, Rest};
 use super::pieces;
-use crate::certificate::{Bounding, Examined};
+use crate::certificate::{Bounding, Examination, Examined, at_rest, with_rounding};
 use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
 use crate::error::{Error, LinearError};
 use crate::existence::Existence;
@@ -227,10 +227,11 @@ impl<'a> Run<'a> {
     pub(super) fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
         let clock = Instant::now();
         let Solution { displacement, multiplier, .. } = &answer.solution;
-        let Examined { certificate, evidence, may_rest } = self.problem.examine(by, displacement, multiplier)?;
+        let examination = Examination::of(self.problem, [displacement, multiplier], by)?;
+        let Examined { certificate, evidence, may_rest } = examination.certificate()?;
         record.stages.certificate += clock.elapsed().as_secs_f64();
         let wants_best = answer.tried.is_none_or(|tried| tried.method.wants_best());
-        let at_rest = self.problem.at_rest(displacement, &may_rest).filter(|_| wants_best);
+        let at_rest = at_rest(self.problem, displacement, &may_rest).filter(|_| wants_best);
         let at_rest = at_rest.map(|displacement| Best {
             solution: Solution { displacement, ..answer.solution.clone() },
             ending: answer.ending.clone(),
@@ -279,7 +280,7 @@ impl<'a> Run<'a> {
             record.stages.factor += factor;
             record.stages.certificate += certificate;
             // An error has the same energy in the rest, but for the rounding of the displacement.
-            let of_rest = of_rest.map(|rest| [self.problem.with_rounding(rest, &answer.displacement)]);
+            let of_rest = of_rest.map(|rest| [with_rounding(self.problem, rest, &answer.displacement)]);
             self.is_cut = of_rest.is_some();
             let norm = self.rest.and_then(|kept| kept.norm.clone());
             let by_norm = || norm.map_or(Bounding::OwnFactor, Bounding::Factor);
