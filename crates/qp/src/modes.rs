@@ -10,16 +10,20 @@
 //! *A shifted block Lanczos algorithm for solving sparse symmetric generalized eigenproblems*, SIAM J. Matrix Anal.
 //! Appl. 15 (1994) 228-272.
 
-mod bonded;
-
+use std::borrow::Cow;
 use std::f64::consts::SQRT_2;
 
 use crate::error::Error;
 use crate::linear::eigen::{Krylov, LANES, Lanes, Pairs, negative_eigenvalues};
-use crate::linear::{Analysis, Cholesky, Equilibration, SymmetricMatrix, dot, if_definite, in_order, ldexp, norm, par};
+use crate::linear::equations::Solved;
+use crate::linear::{
+    Analysis, Cholesky, Equilibration, SymmetricMatrix, Twice, dot, if_definite, in_order, ldexp, norm, par,
+};
 use crate::problem::ContactProblem;
 use crate::watch::Watch;
-use bonded::Bonded;
+
+/// What is left of a row below this share of its largest entry is rounding: the row follows from those before it.
+const DEPENDENT: f64 = 1e-12;
 
 /// A pivot of a matrix with a diagonal of order one below this is rounding: the matrix may be singular.
 const SINGULAR: f64 = 1e-12;
@@ -110,18 +114,30 @@ impl ContactProblem {
         // Equalities that follow from the others are left out.
         let equalities = equalities.filter(|&row| self.gap()[row].is_finite());
         let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
-        let bonded = Bonded::of(self.contact(), &rows, first)?;
-        let reduced = [bonded.reduced(self.stiffness())?, bonded.reduced(mass)?];
+        let (dofs, of_contact) = (self.dofs(), self.contact());
+        if let Some(&row) = rows.iter().find(|&&row| row >= self.rows()) {
+            return Err(Error::IndexOutOfRange { row, column: 0, rows: self.rows(), columns: dofs });
+        }
+        if mass.dim() != dofs {
+            let found = (mass.dim(), mass.dim());
+            return Err(Error::Shape { name: "mass", found, expected: (dofs, dofs) });
+        }
+        // u = Z y: the rows vanish for any y.
+        let rank = |dof: usize| (!first.contains(&dof), of_contact.column(dof).count());
+        let solved = Solved::of_rows(of_contact, &rows, (DEPENDENT, rank));
+        let reduced = |matrix| match rows.is_empty() {
+            true => Ok(Cow::Borrowed(matrix)),
+            false => solved.congruent(matrix).map(Cow::Owned),
+        };
+        let reduced = [reduced(self.stiffness())?, reduced(mass)?];
         let LowestPairs { values, vectors, residuals, is_complete } =
             lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
-        let vectors: Vec<Vec<f64>> = vectors.iter().map(|reduced| bonded.lifted(reduced)).collect();
+        let lifted = |y: &Vec<f64>| solved.of_all(y, 0.0).map(Twice::rounded).collect();
+        let vectors: Vec<Vec<f64>> = vectors.iter().map(lifted).collect();
         let multiplier = |(x, value): (&Vec<f64>, &f64)| {
-            if bonded.is_free() {
-                return vec![0.0; self.inequalities()];
-            }
             let (elastic, inertia) = (self.stiffness().mul(x), mass.mul(x));
             let rest: Vec<f64> = elastic.iter().zip(inertia).map(|(k, m)| k - value * m).collect();
-            bonded.multiplier(self.inequalities(), &rest)
+            solved.balancing(&rest, self.inequalities())
         };
         let multipliers = vectors.iter().zip(&values).map(multiplier).collect();
         Ok(Modes { values, vectors, multipliers, residuals, is_complete })
