@@ -58,7 +58,7 @@ const MOST_SEARCHES: usize = 8;
 const MOST_COLUMNS: usize = 240;
 
 /// The lowest natural vibrations of a problem with some rows held.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Modes {
     /// Eigenvalues w = (2 pi f)^2, one for each mode, not decreasing, in one over time squared; exactly zero for a
     /// motion without energy.
@@ -77,80 +77,54 @@ pub struct Modes {
     pub is_complete: bool,
 }
 
-impl ContactProblem {
-    /// The `count` lowest pairs of `K x = w M x`, with the mass M (n x n, positive semidefinite), on the vectors on
-    /// which the rows `closed` and all equality rows vanish; fewer if M has a smaller rank. Unknowns of `first`, such
-    /// as those without stiffness, are eliminated where a row allows it.
-    ///
-    /// ```
-    /// use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, Watch};
-    ///
-    /// // Two masses of 1, each on a spring to the ground and with one between them, all of stiffness 1: w = 1 and 3.
-    /// let k = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)])?)?;
-    /// let m = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)])?)?;
-    /// let wall = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0)])?;
-    /// let problem = ContactProblem::new(k, vec![0.0; 2], wall, vec![1.0])?;
-    /// let found = problem.modes(&m, (&[], &[]), 2, 1, &Watch::default())?;
-    /// assert!((found.values[0] - 1.0).abs() < 1e-14 && (found.values[1] - 3.0).abs() < 1e-14 && found.is_complete);
-    ///
-    /// // With the first mass held at the wall, w = 2.
-    /// let held = problem.modes(&m, (&[0], &[]), 2, 1, &Watch::default())?;
-    /// assert!((held.values[0] - 2.0).abs() < 1e-14 && held.values.len() == 1);
-    /// # Ok::<(), signorini_qp::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`Error::Shape`] if the sizes differ, [`Error::IndexOutOfRange`] for a row beyond the last; [`Error::NotConvex`]
-    /// if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
-    pub fn modes(
-        &self,
-        mass: &SymmetricMatrix,
-        (closed, first): (&[usize], &[usize]),
-        count: usize,
-        threads: usize,
-        watch: &Watch,
-    ) -> Result<Modes, Error> {
-        let equalities = self.inequalities()..self.inequalities() + self.equality_rows();
-        // Equalities that follow from the others are left out.
-        let equalities = equalities.filter(|&row| self.gap()[row].is_finite());
-        let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
-        let (dofs, of_contact) = (self.dofs(), self.contact());
-        if let Some(&row) = rows.iter().find(|&&row| row >= self.rows()) {
-            return Err(Error::IndexOutOfRange { row, column: 0, rows: self.rows(), columns: dofs });
-        }
-        if mass.dim() != dofs {
-            let found = (mass.dim(), mass.dim());
-            return Err(Error::Shape { name: "mass", found, expected: (dofs, dofs) });
-        }
-        // u = Z y: the rows vanish for any y.
-        let rank = |dof: usize| (!first.contains(&dof), of_contact.column(dof).count());
-        let solved = Solved::of_rows(of_contact, &rows, (DEPENDENT, rank));
-        let reduced = |matrix| match rows.is_empty() {
-            true => Ok(Cow::Borrowed(matrix)),
-            false => solved.congruent(matrix).map(Cow::Owned),
-        };
-        let reduced = [reduced(self.stiffness())?, reduced(mass)?];
-        let LowestPairs { values, vectors, residuals, is_complete } =
-            lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
-        let lifted = |y: &Vec<f64>| solved.of_all(y, 0.0).map(Twice::rounded).collect();
-        let vectors: Vec<Vec<f64>> = vectors.iter().map(lifted).collect();
-        let multiplier = |(x, value): (&Vec<f64>, &f64)| {
-            let (elastic, inertia) = (self.stiffness().mul(x), mass.mul(x));
-            let rest: Vec<f64> = elastic.iter().zip(inertia).map(|(k, m)| k - value * m).collect();
-            solved.balancing(&rest, self.inequalities())
-        };
-        let multipliers = vectors.iter().zip(&values).map(multiplier).collect();
-        Ok(Modes { values, vectors, multipliers, residuals, is_complete })
+/// The lowest pairs of `K x = w M x` of a problem, with rows `closed` and unknowns that come `first`.
+pub fn modes(
+    problem: &ContactProblem,
+    mass: &SymmetricMatrix,
+    (closed, first): (&[usize], &[usize]),
+    count: usize,
+    threads: usize,
+    watch: &Watch,
+) -> Result<Modes, Error> {
+    let equalities = problem.inequalities()..problem.inequalities() + problem.equality_rows();
+    // Equalities that follow from the others are left out.
+    let equalities = equalities.filter(|&row| problem.gap()[row].is_finite());
+    let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
+    let (dofs, of_contact) = (problem.dofs(), problem.contact());
+    if let Some(&row) = rows.iter().find(|&&row| row >= problem.rows()) {
+        return Err(Error::IndexOutOfRange { row, column: 0, rows: problem.rows(), columns: dofs });
     }
+    if mass.dim() != dofs {
+        let found = (mass.dim(), mass.dim());
+        return Err(Error::Shape { name: "mass", found, expected: (dofs, dofs) });
+    }
+    // u = Z y: the rows vanish for any y.
+    let rank = |dof: usize| (!first.contains(&dof), of_contact.column(dof).count());
+    let solved = Solved::of_rows(of_contact, &rows, (DEPENDENT, rank));
+    let reduced = |matrix| match rows.is_empty() {
+        true => Ok(Cow::Borrowed(matrix)),
+        false => solved.congruent(matrix).map(Cow::Owned),
+    };
+    let reduced = [reduced(problem.stiffness())?, reduced(mass)?];
+    let mut found = lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
+    let lifted = |y: &Vec<f64>| solved.of_all(y, 0.0).map(Twice::rounded).collect();
+    found.vectors = found.vectors.iter().map(lifted).collect();
+    let multiplier = |(x, value): (&Vec<f64>, &f64)| {
+        let (elastic, inertia) = (problem.stiffness().mul(x), mass.mul(x));
+        let rest: Vec<f64> = elastic.iter().zip(inertia).map(|(k, m)| k - value * m).collect();
+        solved.balancing(&rest, problem.inequalities())
+    };
+    found.multipliers = found.vectors.iter().zip(&found.values).map(multiplier).collect();
+    Ok(found)
 }
 
-/// The lowest pairs of a stiffness and a mass.
+/// The lowest pairs of a stiffness and a mass, without multipliers.
 fn lowest(
     [stiffness, mass]: [&SymmetricMatrix; 2],
     count: usize,
     threads: usize,
     watch: &Watch,
-) -> Result<LowestPairs, Error> {
+) -> Result<Modes, Error> {
     // A diagonal of order one of the stiffness, by powers of two. Both matrices change alike: the eigenvalues stay.
     let scale = Equilibration::of(&stiffness.combined(1.0, 0.0, mass)?);
     let scaled = [stiffness, mass].map(|matrix| scale.apply(matrix));
@@ -173,7 +147,7 @@ fn lowest(
         vector.iter_mut().for_each(|value| *value *= largest.signum());
         vector
     };
-    Ok(LowestPairs { vectors: found.vectors.into_iter().map(unscaled).collect(), ..found })
+    Ok(Modes { vectors: found.vectors.into_iter().map(unscaled).collect(), ..found })
 }
 
 /// Both matrices with one pattern, analysed once.
@@ -240,13 +214,6 @@ fn with_mass(pairs: &Pairs, count: usize) -> usize {
     pairs.values.iter().take(count).take_while(|value| **value > least).count()
 }
 
-struct LowestPairs {
-    values: Vec<f64>,
-    vectors: Vec<Vec<f64>>,
-    residuals: Vec<f64>,
-    is_complete: bool,
-}
-
 impl Shifted<'_> {
     /// The space in which pairs are looked for the first time.
     fn space(&self, count: usize) -> Result<Krylov<impl Fn(&[f64]) -> Vec<f64>>, Error> {
@@ -267,7 +234,7 @@ impl Shifted<'_> {
     }
 
     /// The lowest pairs, with the space extended until they have converged.
-    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<LowestPairs, Error> {
+    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<Modes, Error> {
         let Pencil { ordered, watch, .. } = self.pencil;
         let count = count.min(ordered.dim());
         let most = 24 * count + MOST_COLUMNS;
@@ -305,7 +272,7 @@ impl Shifted<'_> {
         };
         pairs.values.truncate(with_mass(&pairs, count));
         let vectors = space.vectors(&pairs, pairs.values.len());
-        let mut found = LowestPairs { values: Vec::new(), vectors: Vec::new(), residuals: Vec::new(), is_complete };
+        let mut found = Modes { is_complete, ..Modes::default() };
         let mut all = self.pairs(&vectors);
         all.sort_by(|one, other| one.0.total_cmp(&other.0));
         for (value, residual, vector) in all {

@@ -6,7 +6,7 @@ use super::ContactProblem;
 use super::opposed::largest_finite;
 use crate::error::Error;
 use crate::linear::equations::{FOLLOWS, Following};
-use crate::linear::{SparseMatrix, check_vector};
+use crate::linear::{SparseMatrix, check_finite};
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
 
 /// Terms of sums by which rows are looked for that follow from others: a fraction of a second.
@@ -57,7 +57,7 @@ impl ContactProblem {
             let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));
             return Err(Error::Shape { name: "equality matrix", found, expected });
         }
-        check_vector("equality vector", &values, (rows.rows(), "equality rows"), f64::is_finite, "finite")?;
+        check_finite("equality vector", &values, (rows.rows(), "equality rows"))?;
         let (inequalities, count) = (self.inequalities(), rows.rows());
         let own = self.contact.triplets().filter(|entry| entry.0 < inequalities);
         let sides = |first: usize, sign: f64| rows.triplets().map(move |(row, dof, b)| (first + row, dof, sign * b));

@@ -14,7 +14,6 @@
 
 use crate::error::Error;
 use crate::linear::equations::{FOLLOWS, PIVOT, Pivot, Pivots, Remainder, Solved, Sparse, Sum, Sums, largest};
-use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, Twice, exponent, ldexp};
 use crate::problem::{ContactProblem, Equality};
 use crate::solution::{ContactSet, Iteration, Solution};
@@ -144,13 +143,7 @@ impl Elimination {
         }
         let contact = SparseMatrix::from_triplets(self.rows.len(), self.solved.stays.len(), &entries)?;
         let gap = self.gap(problem, &contact);
-        let reduced = ContactProblem::computed(stiffness, load, contact, gap)?;
-        let Some(modes) = problem.near_null() else { return Ok(reduced) };
-        let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
-        match NearNullSpace::of_modes(modes.vectors().iter().map(|mode| self.staying(mode)).filter(moves).collect()) {
-            Some(modes) => reduced.with_near_null(modes),
-            None => Ok(reduced),
-        }
+        ContactProblem::computed(stiffness, load, contact, gap)?.with_near_null_of(problem, |mode| self.staying(mode))
     }
 
     /// `g - B u_0` of the rows that stay; `contact` is the matrix of their rest.
