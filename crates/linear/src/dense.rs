@@ -74,6 +74,11 @@ pub fn check_vector(
     }
 }
 
+/// The same for a vector of any finite values.
+pub fn check_finite(name: &'static str, values: &[f64], of: (usize, &'static str)) -> Result<(), Error> {
+    check_vector(name, values, of, f64::is_finite, "finite")
+}
+
 /// A lower triangle L (n x n), such as the last block of a Cholesky factor. Clones share their memory.
 #[derive(Clone, Debug)]
 pub struct LowerTriangle {

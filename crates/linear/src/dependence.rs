@@ -4,6 +4,8 @@
 //! modulo a prime are independent. The converse fails if the prime divides a minor; this happens for about one minor in
 //! 2^61.
 
+use std::iter;
+
 use super::SparseMatrix;
 
 /// `2^61 - 1`, a prime: a power of two is a rotation of 61 bits.
@@ -87,23 +89,24 @@ fn power(base: u64, mut exponent: u64) -> u64 {
 
 /// `a + share b`, without zeros.
 fn plus(a: &Residues, share: u64, b: &Residues) -> Residues {
-    let mut sum = Vec::with_capacity(a.len() + b.len());
-    let (mut left, mut right) = (a.iter().copied().peekable(), b.iter().copied().peekable());
-    loop {
-        let place = match (left.peek(), right.peek()) {
-            (Some(l), Some(r)) => l.0.min(r.0),
-            (Some(l), None) => l.0,
-            (None, Some(r)) => r.0,
-            (None, None) => return sum,
-        };
-        let of_left = left.next_if(|entry| entry.0 == place).map_or(0, |entry| entry.1);
-        let of_right = right.next_if(|entry| entry.0 == place).map_or(0, |entry| times(entry.1, share));
-        let value = of_left + of_right;
-        let value = if value >= PRIME { value - PRIME } else { value };
-        if value != 0 {
-            sum.push((place, value));
-        }
-    }
+    let sum = |(place, a, b): (usize, Option<u64>, Option<u64>)| {
+        let value = a.unwrap_or(0) + b.map_or(0, |value| times(value, share));
+        (place, if value >= PRIME { value - PRIME } else { value })
+    };
+    merged(a.iter().copied(), b.iter().copied()).map(sum).filter(|entry| entry.1 != 0).collect()
+}
+
+/// The entries of two sparse vectors at the places of either; places increase.
+pub fn merged<T: Copy>(
+    a: impl Iterator<Item = (usize, T)>,
+    b: impl Iterator<Item = (usize, T)>,
+) -> impl Iterator<Item = (usize, Option<T>, Option<T>)> {
+    let (mut a, mut b) = (a.peekable(), b.peekable());
+    iter::from_fn(move || {
+        let place = a.peek().into_iter().chain(b.peek()).map(|entry| entry.0).min()?;
+        let [a, b] = [a.next_if(|entry| entry.0 == place), b.next_if(|entry| entry.0 == place)];
+        Some((place, a.map(|entry| entry.1), b.map(|entry| entry.1)))
+    })
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@
 
 use std::collections::HashMap;
 
-use super::{SparseMatrix, Twice};
+use super::{SparseMatrix, SymmetricMatrix, Twice};
+use crate::error::Error;
 
 /// A pivot has at least this share of the largest entry of its row.
 pub const PIVOT: f64 = 0.1;
@@ -135,8 +136,7 @@ impl SparseMatrix {
             if found.sums.terms > most_terms {
                 break;
             }
-            let entries: Sparse = of_row(row).map(|(dof, a)| (dof, a.into())).collect();
-            match found.reduced(&entries, values.get(row).copied().unwrap_or(0.0).into(), (row, accuracy)) {
+            match found.reduced(of_row(row), values.get(row).copied().unwrap_or(0.0).into(), (row, accuracy)) {
                 Remainder::Row(pivot) => {
                     if let Some(dof) = pivot.best(PIVOT, |dof| self.column(dof).count()) {
                         found.solve_for(dof, pivot);
@@ -185,7 +185,13 @@ pub struct Pivots {
 impl Pivots {
     /// The equality `entries u = right` of a number with the pivots put in; it follows from them if less than this
     /// share of it is left.
-    pub fn reduced(&mut self, entries: &Sparse, right: Twice, (number, follows): (usize, f64)) -> Remainder {
+    pub fn reduced(
+        &mut self,
+        entries: impl Iterator<Item = (usize, f64)>,
+        right: Twice,
+        (number, follows): (usize, f64),
+    ) -> Remainder {
+        let entries: Sparse = entries.map(|(dof, b)| (dof, b.into())).collect();
         let Pivots { pivots, by_dof, sums, .. } = self;
         let in_pivots: Vec<(&Pivot, Twice)> =
             entries.iter().filter_map(|&(dof, b)| Some((&pivots[*by_dof.get(&dof)?], b))).collect();
@@ -259,9 +265,139 @@ impl Pivots {
     }
 }
 
+/// Solved equations as a change of unknowns: `u = u_0 + Z y`, with the unknowns y that stay.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// The others of each pivot are numbers among those that stay.
+    pub pivots: Vec<Pivot>,
+    /// The number of each unknown among those that stay, or that of its pivot.
+    place: Vec<Result<usize, usize>>,
+    /// The unknowns that stay, in increasing order.
+    pub stays: Vec<usize>,
+}
+
+impl Solved {
+    /// The equations with these pivots, in this number of unknowns.
+    pub fn of(mut pivots: Vec<Pivot>, unknowns: usize) -> Self {
+        let mut place = vec![Ok(0); unknowns];
+        pivots.iter().enumerate().for_each(|(number, pivot)| place[pivot.dof] = Err(number));
+        let stays: Vec<usize> = (0..unknowns).filter(|&dof| place[dof].is_ok()).collect();
+        stays.iter().enumerate().for_each(|(number, &dof)| place[dof] = Ok(number));
+        // No pivot depends on another.
+        let others = pivots.iter_mut().flat_map(|pivot| &mut pivot.others);
+        others.for_each(|(other, _)| *other = place[*other].unwrap_or(0));
+        Solved { pivots, place, stays }
+    }
+
+    /// Some rows `b u = 0` of a matrix, each solved for the unknown of least rank; those that follow from the rows
+    /// before within this accuracy are left out. Their numbers are those of all rows.
+    pub fn of_rows<R: Ord>(
+        matrix: &SparseMatrix,
+        rows: &[usize],
+        (accuracy, rank): (f64, impl Fn(usize) -> R),
+    ) -> Self {
+        let (by_row, mut found) = (matrix.transposed(), Pivots::default());
+        for &row in rows {
+            let entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
+            if let Remainder::Row(pivot) = found.reduced(entries, Twice::ZERO, (row, accuracy))
+                && let Some(dof) = pivot.best(PIVOT, &rank)
+            {
+                found.solve_for(dof, pivot);
+            }
+        }
+        Self::of(found.pivots, matrix.columns())
+    }
+
+    /// A row of Z: what an unknown depends on.
+    pub fn row(&self, dof: usize) -> impl Iterator<Item = (usize, Twice)> + '_ {
+        let own = self.place[dof].ok().map(|place| (place, 1.0.into()));
+        let others = self.place[dof].err().map_or(&[][..], |pivot| &self.pivots[pivot].others);
+        own.into_iter().chain(others.iter().copied())
+    }
+
+    /// An entry of u_0.
+    pub fn constant(&self, dof: usize) -> Twice {
+        self.place[dof].err().map_or(Twice::ZERO, |pivot| self.pivots[pivot].constant)
+    }
+
+    /// `Z y`, and `u_0` this many times.
+    pub fn of_all(&self, y: &[f64], times: f64) -> impl Iterator<Item = Twice> {
+        self.place.iter().map(move |place| match *place {
+            Ok(place) => y[place].into(),
+            Err(pivot) => {
+                let Pivot { constant, others, .. } = &self.pivots[pivot];
+                others.iter().fold(*constant * times.into(), |sum, &(place, a)| sum + a * y[place].into())
+            }
+        })
+    }
+
+    /// `Z'K Z`, column by column, for a matrix of the first unknowns; entries between unknowns that no equation joins
+    /// stay bit by bit.
+    pub fn congruent(&self, matrix: &SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
+        let (lower, upper) = (matrix.lower(), matrix.upper());
+        let mut columns: Vec<Sparse> = vec![Sparse::new(); self.stays.len()];
+        for dof in 0..matrix.dim() {
+            self.row(dof).for_each(|(place, a)| columns[place].push((dof, a)));
+        }
+        let (mut forces, mut sums) = (Sums::default(), Sums::default());
+        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for (column, moved) in columns.into_iter().enumerate() {
+            // K z, then Z' times that.
+            for (dof, a) in moved {
+                let above = upper.column(dof).filter(|entry| entry.0 != dof);
+                lower.column(dof).chain(above).for_each(|(row, k)| forces.at(row).add(Twice::from(k) * a));
+            }
+            for (dof, force) in forces.taken() {
+                let below = self.row(dof).filter(|entry| entry.0 >= column);
+                below.for_each(|(place, a)| sums.at(place).add_share(a, force));
+            }
+            for (row, sum) in sums.taken() {
+                rows.push(row);
+                values.push(sum.settled().rounded());
+            }
+            starts.push(rows.len());
+        }
+        SymmetricMatrix::from_lower(SparseMatrix::from_csc(self.stays.len(), starts, rows, values)?)
+    }
+
+    /// The multipliers of the first `count` equations that balance these forces on the first unknowns: no force acts on
+    /// the others.
+    pub fn balancing(&self, force: &[f64], count: usize) -> Vec<f64> {
+        let mut multipliers = vec![Twice::ZERO; count];
+        for pivot in self.pivots.iter().filter(|pivot| pivot.dof < force.len()) {
+            for &(number, weight) in pivot.weights.iter().filter(|entry| entry.0 < count) {
+                multipliers[number] = multipliers[number] + weight * force[pivot.dof].into();
+            }
+        }
+        multipliers.into_iter().map(Twice::rounded).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_vanish_on_every_combination_of_what_stays_and_forces_are_sums_of_rows() {
+        // Chains of shared unknowns, and a row that follows from two others.
+        let rows = [
+            [1.0, -0.5, 0.0, 0.0, 0.0, 2.0],
+            [0.0, 1.0, -1.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.7, 0.3, 0.0, -1.0],
+            [1.0, 0.5, -1.0, 0.0, 0.0, 2.0],
+        ];
+        let matrix = SparseMatrix::from_table(4, 6, &rows.concat()).unwrap();
+        for first in [&[][..], &[5], &[2, 3]] {
+            let solved = Solved::of_rows(&matrix, &[0, 1, 2, 3], (1e-12, |dof| !first.contains(&dof)));
+            assert_eq!(solved.stays.len(), 3);
+            assert!(first.iter().take(1).all(|&unknown| solved.pivots.iter().any(|pivot| pivot.dof == unknown)));
+            let lifted: Vec<f64> = solved.of_all(&[0.3, -2.0, 1.1], 0.0).map(Twice::rounded).collect();
+            assert!(matrix.mul(&lifted).iter().all(|left| left.abs() < 1e-14), "{lifted:?}");
+            let force = matrix.mul_transposed(&[0.2, -1.0, 3.0, 0.4]);
+            let back = matrix.mul_transposed(&solved.balancing(&force, 4));
+            assert!(force.iter().zip(&back).all(|(a, b)| (a - b).abs() < 1e-13), "{force:?} {back:?}");
+        }
+    }
 
     #[test]
     fn rows_that_follow_within_an_accuracy_are_left_out_unless_they_contradict() {

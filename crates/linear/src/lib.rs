@@ -61,7 +61,9 @@ pub use cholesky::{Analysis, Cholesky};
 pub use compliance::Compliance;
 pub use conjugate_gradients::{Blocks, Iterate};
 use dense::wide_product;
-pub use dense::{LowerTriangle, UpperTriangle, check_vector, dot, largest, norm, subtract, take_out, turned};
+pub use dense::{
+    LowerTriangle, UpperTriangle, check_finite, check_vector, dot, largest, norm, subtract, take_out, turned,
+};
 pub use dense_factor::{forward_all, par, products};
 pub use dependence::Dependence;
 pub use error::Error;

@@ -274,12 +274,10 @@ impl SymmetricMatrix {
                 continue;
             };
             // With a shift close above the least eigenvalue, inverse iteration converges to its vector.
-            let mut vector = generic(self.dim(), 0);
-            for _ in 0..MOST_STEPS {
-                vector = factor.solve(&vector);
-                let size = largest(&vector);
-                vector.iter_mut().for_each(|value| *value /= size);
-            }
+            let vector = power_iteration(self.dim(), -0.5, MOST_STEPS, |x| {
+                *x = factor.solve(x);
+                true
+            });
             return Ok((dot(&vector, &self.mul(&vector)) < 0.0).then_some(vector));
         }
         Ok(None)

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::both_triangles::Columns;
 use super::dense::wide_product;
+use super::dependence::merged;
 use super::threads::{SharedRows, in_order};
 use super::{Spare, SparseMatrix};
 use crate::error::Error;
@@ -123,6 +124,12 @@ impl SymmetricMatrix {
         SymmetricMatrix { lower }
     }
 
+    /// The matrix with these numbers on its diagonal, and no others.
+    pub fn of_diagonal(values: Vec<f64>) -> Self {
+        let rows = (0..values.len() as u32).collect();
+        Self::from_sorted_lower(SparseMatrix::from_parts(values.len(), (0..=values.len()).collect(), rows, values))
+    }
+
     /// From the upper triangle alone (entries with row <= column).
     ///
     /// # Errors
@@ -190,19 +197,10 @@ impl SymmetricMatrix {
             (Vec::with_capacity(self.dim() + 1), Vec::with_capacity(places), Vec::with_capacity(places));
         starts.push(0);
         for column in 0..self.dim() {
-            let mut others = other.lower.column(column).peekable();
-            let mut push = |row: usize, value: f64| {
+            for (row, a, b) in merged(self.lower.column(column), other.lower.column(column)) {
                 rows.push(row as u32);
-                values.push(value);
-            };
-            for (row, value) in self.lower.column(column) {
-                while let Some((above, entry)) = others.next_if(|entry| entry.0 < row) {
-                    push(above, factor * entry);
-                }
-                let shared = others.next_if(|entry| entry.0 == row).map_or(0.0, |entry| factor * entry.1);
-                push(row, own * value + shared);
+                values.push(own * a.unwrap_or(0.0) + factor * b.unwrap_or(0.0));
             }
-            others.for_each(|(row, entry)| push(row, factor * entry));
             starts.push(rows.len());
         }
         let lower = SparseMatrix::from_parts(self.dim(), starts, rows, values).finite()?;

@@ -73,6 +73,7 @@ use certificate::{Bounding, Examination};
 use cost::{Kept, check_memory};
 use engine::Engine;
 use linear::{Analysis, in_order, threads_of_machine};
+use modes::Modes;
 use prepared::between;
 
 /// The reason against a folder without a stiffness.
@@ -279,9 +280,52 @@ impl ContactProblem {
         }?;
         // An answer that meets its rows shows that they can be met.
         if certificate.penetration > settings.goal().tolerance {
-            existence::check_rows(self, settings, run::solve_any)?;
+            run::check_rows(self, settings)?;
         }
         Ok(certificate)
+    }
+
+    /// The `count` lowest pairs of `K x = w M x`, with the mass M (n x n, positive semidefinite), on the vectors on
+    /// which the rows `closed` and all equality rows vanish; fewer if M has a smaller rank. Unknowns of `first`, such
+    /// as those without stiffness, are eliminated where a row allows it.
+    ///
+    /// ```
+    /// use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, Watch};
+    ///
+    /// // Two masses of 1, each on a spring to the ground and with one between them, all of stiffness 1: w = 1 and 3.
+    /// let k = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)])?)?;
+    /// let m = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)])?)?;
+    /// let wall = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0)])?;
+    /// let problem = ContactProblem::new(k, vec![0.0; 2], wall, vec![1.0])?;
+    /// let found = problem.modes(&m, (&[], &[]), 2, 1, &Watch::default())?;
+    /// assert!((found.values[0] - 1.0).abs() < 1e-14 && (found.values[1] - 3.0).abs() < 1e-14 && found.is_complete);
+    ///
+    /// // With the first mass held at the wall, w = 2.
+    /// let held = problem.modes(&m, (&[0], &[]), 2, 1, &Watch::default())?;
+    /// assert!((held.values[0] - 2.0).abs() < 1e-14 && held.values.len() == 1);
+    /// # Ok::<(), signorini_qp::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Shape`] if the sizes differ, [`Error::IndexOutOfRange`] for a row beyond the last; [`Error::NotConvex`]
+    /// if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
+    pub fn modes(
+        &self,
+        mass: &SymmetricMatrix,
+        (closed, first): (&[usize], &[usize]),
+        count: usize,
+        threads: usize,
+        watch: &Watch,
+    ) -> Result<Modes, Error> {
+        modes::modes(self, mass, (closed, first), count, threads, watch)
+    }
+
+    /// The derivatives of an answer of this problem, with a factor or a hierarchy of their own.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`] and [`Prepared::derivatives`].
+    pub fn derivatives(&self, solution: &Solution, settings: &Settings) -> Result<Derivatives, Error> {
+        derivative::derivatives(self, solution, settings)
     }
 
     /// The displacement `K^-1 f`, one entry per dof, in length: rows and equality rows are left out. It takes one

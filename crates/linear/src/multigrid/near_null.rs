@@ -2,7 +2,7 @@
 
 use super::nodes::Nodes;
 use crate::error::Error;
-use crate::{SymmetricMatrix, check_vector, largest, norm, take_out};
+use crate::{SymmetricMatrix, check_finite, largest, norm, take_out};
 
 /// A vector follows from those before it if less than this share of its length is left after their components are
 /// removed.
@@ -33,7 +33,7 @@ impl NearNullSpace {
             });
         }
         for vector in &vectors {
-            check_vector("near-null vector", vector, (dofs, "dofs"), f64::is_finite, "finite")?;
+            check_finite("near-null vector", vector, (dofs, "dofs"))?;
         }
         match first_dependent(&vectors) {
             Some(index) => Err(Error::Setting {

@@ -1,7 +1,7 @@
 //! Changes of the data, and what follows from them.
 
 use crate::error::{Error, LinearError};
-use crate::linear::{SparseMatrix, SymmetricMatrix, check_vector, dot};
+use crate::linear::{SparseMatrix, SymmetricMatrix, check_finite, dot};
 use crate::problem::ContactProblem;
 
 /// A change of the data per unit of a parameter p, as it acts on an answer (u, lambda): out of balance by `load`, and
@@ -68,14 +68,8 @@ impl Change {
     }
 
     pub(super) fn check(&self, dofs: usize, rows: usize) -> Result<(), LinearError> {
-        check_vector("change of the load", &self.load, (dofs, "dofs"), f64::is_finite, "finite")?;
-        check_vector(
-            "change of the gaps",
-            &self.distance,
-            (rows, "contact and equality rows"),
-            f64::is_finite,
-            "finite",
-        )
+        check_finite("change of the load", &self.load, (dofs, "dofs"))?;
+        check_finite("change of the gaps", &self.distance, (rows, "contact and equality rows"))
     }
 }
 

@@ -16,10 +16,9 @@ use crate::cost::{Kept, check_memory};
 use crate::error::{Error, LinearError};
 use crate::existence::Existence;
 use crate::linear::watch::Watch;
-use crate::linear::{SparseMatrix, SymmetricMatrix, check_vector, dot, subtract};
+use crate::linear::{SparseMatrix, SymmetricMatrix, check_finite, dot, subtract};
 use crate::memory;
 use crate::problem::ContactProblem;
-use crate::run::solve_any;
 use crate::settings::{Method, Settings};
 use crate::transform::{Elimination, RowSelection};
 
@@ -87,7 +86,7 @@ impl Prepared {
             _ => {
                 let failed = |reason| Error::from(LinearError::Numerical { step: "the Delassus operator", reason });
                 let many = || failed("the stiffness has more than 256 motions, or leaves the range of doubles".into());
-                let existence = Existence::of(&rest, settings, solve_any)?.ok_or_else(many)?;
+                let existence = Existence::of(&rest, settings)?.ok_or_else(many)?;
                 let springs = existence.springs();
                 let added = SparseMatrix::from_triplets(rest.dofs(), rest.dofs(), &springs)?;
                 let held = with(rest.stiffness().combined(1.0, 1.0, &SymmetricMatrix::from_lower(added)?)?)?;
@@ -174,7 +173,7 @@ impl Delassus {
     /// # Errors
     /// [`LinearError::Length`] and [`LinearError::NotFinite`] for an x that does not fit.
     pub fn displacement(&self, x: &[f64]) -> Result<Vec<f64>, Error> {
-        check_vector("unknowns x", x, (self.offset.len(), "rows of M"), f64::is_finite, "finite")?;
+        check_finite("unknowns x", x, (self.offset.len(), "rows of M"))?;
         let (z, a) = x.split_at(self.rows.len());
         let u = self.moved(self.held.load(), &z.iter().map(|z| -z).collect::<Vec<_>>())?;
         let mut u = self.elimination.as_ref().map_or_else(|| u.clone(), |elimination| elimination.displacement(&u));

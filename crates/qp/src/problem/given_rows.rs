@@ -7,7 +7,7 @@ use super::ContactProblem;
 use super::opposed::largest_finite;
 use crate::error::{Error, LinearError};
 use crate::linear::equations::{FOLLOWS, Following};
-use crate::linear::{Accumulator, SparseMatrix, check_vector, largest};
+use crate::linear::{Accumulator, SparseMatrix, check_finite, largest};
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
 
 /// Terms of sums by which rows are looked for that follow from others: a fraction of a second.
@@ -65,7 +65,7 @@ impl ContactProblem {
             let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));
             return Err(LinearError::Shape { name: "equality matrix", found, expected }.into());
         }
-        check_vector("equality vector", &values, (rows.rows(), "equality rows"), f64::is_finite, "finite")?;
+        check_finite("equality vector", &values, (rows.rows(), "equality rows"))?;
         let (inequalities, count) = (self.inequalities(), rows.rows());
         let own = self.contact.triplets().filter(|entry| entry.0 < inequalities);
         let sides = |first: usize, sign: f64| rows.triplets().map(move |(row, dof, b)| (first + row, dof, sign * b));

@@ -16,7 +16,7 @@ use parts::Diagonal;
 use crate::error::{Error, LinearError};
 use crate::linear::equations::Following;
 use crate::linear::multigrid::NearNullSpace;
-use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_vector};
+use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_finite, check_vector};
 
 /// Frictionless unilateral contact as a convex quadratic program:
 ///
@@ -170,6 +170,17 @@ impl ContactProblem {
             return Err(LinearError::Length { name: "near-null vector", found, expected, of: "dofs" }.into());
         }
         Ok(ContactProblem { near_null: Some(near_null), free_motions: FoundOnce::default(), ..self })
+    }
+
+    /// The same with the near-null space of another problem, each of its vectors made one `of` these dofs; those that
+    /// vanish are left out.
+    pub(crate) fn with_near_null_of(self, other: &Self, of: impl Fn(&[f64]) -> Vec<f64>) -> Result<Self, Error> {
+        let vectors = other.near_null().map_or(&[][..], |modes| modes.vectors()).iter().map(|mode| of(mode));
+        let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
+        match NearNullSpace::of_modes(vectors.filter(moves).collect()) {
+            Some(modes) => self.with_near_null(modes),
+            None => Ok(self),
+        }
     }
 
     /// The near-null space, if one was given.
@@ -360,9 +371,7 @@ impl ContactProblem {
         }
         violation
     }
-}
 
-impl ContactProblem {
     /// The work f'd of the load on a mode d, as a share of its terms `|f|'|d|`, between -1 and 1.
     pub(crate) fn share_of_work(&self, mode: &[f64]) -> f64 {
         let mut work = Accumulator::new(&[0.0]);
@@ -458,7 +467,7 @@ impl<'a> Distances<'a> {
 
 /// Checks that `load` has the right length and allowed values.
 pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
-    Ok(check_vector("load vector", load, (dofs, "dofs"), f64::is_finite, "finite")?)
+    Ok(check_finite("load vector", load, (dofs, "dofs"))?)
 }
 
 /// Checks that `gap` has the right length and allowed values.

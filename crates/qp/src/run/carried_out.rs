@@ -9,11 +9,13 @@ use crate::certificate::{Bounding, Examination, Examined, at_rest, with_rounding
 use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
 use crate::error::{Error, LinearError};
 use crate::existence::Existence;
+use crate::linear::SymmetricMatrix;
 use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Means, Next, Record, Step, Tried};
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
 use crate::solution::{Certificate, Seconds, Solution, Why};
+use crate::transform::Scaling;
 
 /// The answer of `problem` from a start, by the ladder of `settings`.
 pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
@@ -296,8 +298,11 @@ impl<'a> Run<'a> {
 
     /// Whether an answer exists.
     fn looked_at_existence(&mut self) -> Result<Ended, Error> {
-        let Some(existence) = Existence::of(self.problem, self.settings, solve_any)? else { return Ok(Ended::Empty) };
-        existence.check_bounded(self.problem, self.settings)?;
+        let Some(existence) = Existence::of(self.problem, self.settings)? else { return Ok(Ended::Empty) };
+        if let Some(unbounded) = existence.unbounded() {
+            check_rows(self.problem, self.settings)?;
+            return Err(unbounded);
+        }
         self.existence = Some(existence);
         Ok(Ended::MayExist)
     }
@@ -334,9 +339,19 @@ pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
     }
 }
 
-/// An answer for another problem, with a regular stiffness, that the question of existence gives rise to.
-pub(crate) fn solve_any(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    by(problem, &Start::default(), settings, Ladder::without_existence)
+/// Checks that some displacement meets all contact rows of `problem`: the nearest to rest, in units of equal stiffness.
+///
+/// # Errors
+/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
+pub(crate) fn check_rows(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+    problem.check_rows()?;
+    let (contact, rest) = (problem.contact().clone(), vec![0.0; problem.dofs()]);
+    let stiffness = SymmetricMatrix::of_diagonal(Scaling::of(problem.stiffness(), &contact)?.identity(0));
+    let nearest = ContactProblem::computed(stiffness, rest, contact, problem.gap().to_vec())?;
+    match by(&nearest, &Start::default(), &settings.of_question(), Ladder::without_existence) {
+        Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

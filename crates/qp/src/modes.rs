@@ -10,16 +10,20 @@
 //! *A shifted block Lanczos algorithm for solving sparse symmetric generalized eigenproblems*, SIAM J. Matrix Anal.
 //! Appl. 15 (1994) 228-272.
 
-mod bonded;
-
+use std::borrow::Cow;
 use std::f64::consts::SQRT_2;
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::eigen::{Krylov, Pairs, negative_eigenvalues};
+use crate::linear::equations::Solved;
 use crate::linear::watch::Watch;
-use crate::linear::{Analysis, Cholesky, Equilibration, SymmetricMatrix, dot, if_definite, in_order, ldexp, norm, par};
+use crate::linear::{
+    Analysis, Cholesky, Equilibration, SymmetricMatrix, Twice, dot, if_definite, in_order, ldexp, norm, par,
+};
 use crate::problem::ContactProblem;
-use bonded::Bonded;
+
+/// What is left of a row below this share of its largest entry is rounding: the row follows from those before it.
+const DEPENDENT: f64 = 1e-12;
 
 /// A pivot of a matrix with a diagonal of order one below this is rounding: the matrix may be singular.
 const SINGULAR: f64 = 1e-12;
@@ -57,7 +61,7 @@ const MOST_SEARCHES: usize = 8;
 const MOST_COLUMNS: usize = 240;
 
 /// The lowest natural vibrations of a problem with some rows held.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Modes {
     /// Eigenvalues w = (2 pi f)^2, one for each mode, not decreasing, in one over time squared; exactly zero for a
     /// motion without energy.
@@ -76,68 +80,54 @@ pub struct Modes {
     pub is_complete: bool,
 }
 
-impl ContactProblem {
-    /// The `count` lowest pairs of `K x = w M x`, with the mass M (n x n, positive semidefinite), on the vectors on
-    /// which the rows `closed` and all equality rows vanish; fewer if M has a smaller rank. Unknowns of `first`, such
-    /// as those without stiffness, are eliminated where a row allows it.
-    ///
-    /// ```
-    /// use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, Watch};
-    ///
-    /// // Two masses of 1, each on a spring to the ground and with one between them, all of stiffness 1: w = 1 and 3.
-    /// let k = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)])?)?;
-    /// let m = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)])?)?;
-    /// let wall = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0)])?;
-    /// let problem = ContactProblem::new(k, vec![0.0; 2], wall, vec![1.0])?;
-    /// let found = problem.modes(&m, (&[], &[]), 2, 1, &Watch::default())?;
-    /// assert!((found.values[0] - 1.0).abs() < 1e-14 && (found.values[1] - 3.0).abs() < 1e-14 && found.is_complete);
-    ///
-    /// // With the first mass held at the wall, w = 2.
-    /// let held = problem.modes(&m, (&[0], &[]), 2, 1, &Watch::default())?;
-    /// assert!((held.values[0] - 2.0).abs() < 1e-14 && held.values.len() == 1);
-    /// # Ok::<(), signorini_qp::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`LinearError::Shape`] if the sizes differ, [`LinearError::IndexOutOfRange`] for a row beyond the last; [`LinearError::NotConvex`]
-    /// if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
-    pub fn modes(
-        &self,
-        mass: &SymmetricMatrix,
-        (closed, first): (&[usize], &[usize]),
-        count: usize,
-        threads: usize,
-        watch: &Watch,
-    ) -> Result<Modes, Error> {
-        let equalities = self.inequalities()..self.inequalities() + self.equality_rows();
-        // Equalities that follow from the others are left out.
-        let equalities = equalities.filter(|&row| self.gap()[row].is_finite());
-        let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
-        let bonded = Bonded::of(self.contact(), &rows, first)?;
-        let reduced = [bonded.reduced(self.stiffness())?, bonded.reduced(mass)?];
-        let LowestPairs { values, vectors, residuals, is_complete } =
-            lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
-        let vectors: Vec<Vec<f64>> = vectors.iter().map(|reduced| bonded.lifted(reduced)).collect();
-        let multiplier = |(x, value): (&Vec<f64>, &f64)| {
-            if bonded.is_free() {
-                return vec![0.0; self.inequalities()];
-            }
-            let (elastic, inertia) = (self.stiffness().mul(x), mass.mul(x));
-            let rest: Vec<f64> = elastic.iter().zip(inertia).map(|(k, m)| k - value * m).collect();
-            bonded.multiplier(self.inequalities(), &rest)
-        };
-        let multipliers = vectors.iter().zip(&values).map(multiplier).collect();
-        Ok(Modes { values, vectors, multipliers, residuals, is_complete })
+/// The lowest pairs of `K x = w M x` of a problem, with rows `closed` and unknowns that come `first`.
+pub fn modes(
+    problem: &ContactProblem,
+    mass: &SymmetricMatrix,
+    (closed, first): (&[usize], &[usize]),
+    count: usize,
+    threads: usize,
+    watch: &Watch,
+) -> Result<Modes, Error> {
+    let equalities = problem.inequalities()..problem.inequalities() + problem.equality_rows();
+    // Equalities that follow from the others are left out.
+    let equalities = equalities.filter(|&row| problem.gap()[row].is_finite());
+    let rows: Vec<usize> = closed.iter().copied().chain(equalities).collect();
+    let (dofs, of_contact) = (problem.dofs(), problem.contact());
+    if let Some(&row) = rows.iter().find(|&&row| row >= problem.rows()) {
+        return Err(LinearError::IndexOutOfRange { row, column: 0, rows: problem.rows(), columns: dofs }.into());
     }
+    if mass.dim() != dofs {
+        let found = (mass.dim(), mass.dim());
+        return Err(LinearError::Shape { name: "mass", found, expected: (dofs, dofs) }.into());
+    }
+    // u = Z y: the rows vanish for any y.
+    let rank = |dof: usize| (!first.contains(&dof), of_contact.column(dof).count());
+    let solved = Solved::of_rows(of_contact, &rows, (DEPENDENT, rank));
+    let reduced = |matrix| match rows.is_empty() {
+        true => Ok(Cow::Borrowed(matrix)),
+        false => solved.congruent(matrix).map(Cow::Owned),
+    };
+    let reduced = [reduced(problem.stiffness())?, reduced(mass)?];
+    let mut found = lowest([&reduced[0], &reduced[1]], count, threads, watch)?;
+    let lifted = |y: &Vec<f64>| solved.of_all(y, 0.0).map(Twice::rounded).collect();
+    found.vectors = found.vectors.iter().map(lifted).collect();
+    let multiplier = |(x, value): (&Vec<f64>, &f64)| {
+        let (elastic, inertia) = (problem.stiffness().mul(x), mass.mul(x));
+        let rest: Vec<f64> = elastic.iter().zip(inertia).map(|(k, m)| k - value * m).collect();
+        solved.balancing(&rest, problem.inequalities())
+    };
+    found.multipliers = found.vectors.iter().zip(&found.values).map(multiplier).collect();
+    Ok(found)
 }
 
-/// The lowest pairs of a stiffness and a mass.
+/// The lowest pairs of a stiffness and a mass, without multipliers.
 fn lowest(
     [stiffness, mass]: [&SymmetricMatrix; 2],
     count: usize,
     threads: usize,
     watch: &Watch,
-) -> Result<LowestPairs, Error> {
+) -> Result<Modes, Error> {
     // A diagonal of order one of the stiffness, by powers of two. Both matrices change alike: the eigenvalues stay.
     let scale = Equilibration::of(&stiffness.combined(1.0, 0.0, mass)?);
     let scaled = [stiffness, mass].map(|matrix| scale.apply(matrix));
@@ -160,7 +150,7 @@ fn lowest(
         vector.iter_mut().for_each(|value| *value *= largest.signum());
         vector
     };
-    Ok(LowestPairs { vectors: found.vectors.into_iter().map(unscaled).collect(), ..found })
+    Ok(Modes { vectors: found.vectors.into_iter().map(unscaled).collect(), ..found })
 }
 
 /// Both matrices with one pattern, analysed once.
@@ -227,13 +217,6 @@ fn with_mass(pairs: &Pairs, count: usize) -> usize {
     pairs.values.iter().take(count).take_while(|value| **value > least).count()
 }
 
-struct LowestPairs {
-    values: Vec<f64>,
-    vectors: Vec<Vec<f64>>,
-    residuals: Vec<f64>,
-    is_complete: bool,
-}
-
 impl Shifted<'_> {
     /// The space in which pairs are looked for the first time.
     fn space(&self, count: usize) -> Result<Krylov<impl Fn(&[f64]) -> Vec<f64>>, Error> {
@@ -254,7 +237,7 @@ impl Shifted<'_> {
     }
 
     /// The lowest pairs, with the space extended until they have converged.
-    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<LowestPairs, Error> {
+    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<Modes, Error> {
         let Pencil { ordered, watch, .. } = self.pencil;
         let count = count.min(ordered.dim());
         let most = 24 * count + MOST_COLUMNS;
@@ -292,7 +275,7 @@ impl Shifted<'_> {
         };
         pairs.values.truncate(with_mass(&pairs, count));
         let vectors = space.vectors(&pairs, pairs.values.len());
-        let mut found = LowestPairs { values: Vec::new(), vectors: Vec::new(), residuals: Vec::new(), is_complete };
+        let mut found = Modes { is_complete, ..Modes::default() };
         let mut all = self.pairs(&vectors);
         all.sort_by(|one, other| one.0.total_cmp(&other.0));
         for (value, residual, vector) in all {
