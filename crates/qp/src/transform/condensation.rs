@@ -115,28 +115,6 @@ impl Condensation {
         self.trailing.backward(sweep[sweep.len() - size..].to_vec())
     }
 
-    /// The compliance B S^-1 B' of the contact rows (m x m, column by column), if K is definite.
-    pub fn compliance(&self) -> Vec<f64> {
-        let (rows, size) = (self.contact.rows(), self.contact_dofs.len());
-        let by_row = self.contact.transposed();
-        // The columns of L_tt^-1 B_t', one for each row.
-        let half = |row: usize| {
-            let mut half = vec![0.0; size];
-            by_row.column(row).for_each(|(dof, value)| half[dof] += value);
-            self.trailing.forward(half)
-        };
-        let halves: Vec<Vec<f64>> = (0..rows).map(half).collect();
-        let mut compliance = vec![0.0; rows * rows];
-        for i in 0..rows {
-            for j in 0..=i {
-                let value = dot(&halves[i], &halves[j]);
-                compliance[i * rows + j] = value;
-                compliance[j * rows + i] = value;
-            }
-        }
-        compliance
-    }
-
     /// The displacement of the whole body from that of the contact dofs.
     pub fn expand(&self, sweep: &[f64], displacement: &[f64]) -> Vec<f64> {
         let size = self.contact_dofs.len();
