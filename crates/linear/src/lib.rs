@@ -58,13 +58,13 @@ pub mod watch;
 pub use augmented::{Augmented, AugmentedMatrix};
 pub use both_triangles::SymmetricLines;
 pub use cholesky::{Analysis, Cholesky};
-pub use compliance::Compliance;
+pub use compliance::{AT_ONCE, Compliance};
 pub use conjugate_gradients::{Blocks, Iterate};
 use dense::wide_product;
 pub use dense::{
     LowerTriangle, UpperTriangle, check_finite, check_vector, dot, largest, norm, subtract, take_out, turned,
 };
-pub use dense_factor::{forward_all, par, products};
+pub use dense_factor::par;
 pub use dependence::Dependence;
 pub use error::Error;
 pub use factor::{FactorError, call, if_definite};

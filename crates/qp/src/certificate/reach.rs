@@ -20,9 +20,7 @@ use super::units::ldexp_root;
 use crate::linear::multigrid::Multigrid;
 use crate::linear::selected_inverse::FACTORISATIONS;
 use crate::linear::watch::Watch;
-use crate::linear::{
-    Dependence, SparseMatrix, dot, forward_all, inverse_lengths, inverse_lengths_by_products, largest, ldexp, products,
-};
+use crate::linear::{Dependence, SparseMatrix, dot, inverse_lengths, inverse_lengths_by_products, largest, ldexp};
 use crate::problem::ContactProblem;
 
 /// Steps of power iteration for the largest eigenvalue of M D.
@@ -36,9 +34,6 @@ const OF_TERM: f64 = 2.0 * f64::EPSILON;
 
 /// Number of multiplications of a blocked factorisation that take the time of one in a sweep.
 const BLOCKED: f64 = 4.0;
-
-/// Number of rows that a sweep of the proof takes at once.
-const AT_ONCE: usize = 128;
 
 /// Upper bounds on `sqrt(G_ii)` of every row, from one solve: `solve(s)` returns about `K^-1 s`. `None` if that
 /// does not show that K is an M-matrix.
@@ -110,7 +105,7 @@ pub fn within_reach(compliance: &ComplianceFactor, rows: &[(usize, f64)]) -> Vec
     let at_once = FACTORISATIONS * norm.cholesky.multiplications() / BLOCKED;
     let one_by_one = by_sweeps <= at_once || norm.is_over();
     let inverse = if one_by_one { None } else { norm.cholesky.selected_inverse() };
-    let inverse = inverse.map(|inverse| (inverse, norm.rows_in_body(compliance.contact)));
+    let inverse = inverse.map(|inverse| (inverse, norm.scaled_rows(compliance.contact)));
     let reach = |row: usize| {
         let square =
             inverse.as_ref().and_then(|(inverse, by_row)| inverse.product(&by_row.column(row).collect::<Vec<_>>()));
@@ -120,68 +115,22 @@ pub fn within_reach(compliance: &ComplianceFactor, rows: &[(usize, f64)]) -> Vec
     rows.iter().filter(|&&(row, limit)| reach(row) < limit).map(|&(row, _)| row).collect()
 }
 
-/// The columns of `L^-1 B'`; their products are the compliance of the rows.
+/// The compliance of the rows of a contact matrix: on the boundary if all rows are on it, and otherwise in the whole
+/// body.
 pub(super) struct ComplianceFactor<'a> {
     contact: &'a SparseMatrix,
     norm: &'a EnergyNorm,
-    /// The rows in the dofs that are swept: on the boundary, or in the whole body.
     rows: RowsOnBoundary,
     /// The boundary, if all rows are on it.
     boundary: Option<&'a Boundary>,
-    /// That of a sweep, relative.
-    rounding: f64,
 }
 
 impl<'a> ComplianceFactor<'a> {
     pub(super) fn of(problem: &'a ContactProblem, norm: &'a EnergyNorm) -> Self {
         let contact = &problem.contact;
-        let rounding = norm.rounding();
-        match norm.rows_on_boundary(contact, |_| true) {
-            Some(rows) => ComplianceFactor { contact, norm, rows, boundary: norm.boundary.as_deref(), rounding },
-            None => {
-                let rows = RowsOnBoundary::of(&norm.rows_in_body(contact));
-                ComplianceFactor { contact, norm, rows, boundary: None, rounding }
-            }
-        }
-    }
-
-    fn length(&self) -> usize {
-        self.boundary.map_or(self.norm.cholesky.dim(), |boundary| boundary.dofs.len())
-    }
-
-    fn column(&self, row: usize) -> Vec<f64> {
-        let mut column = vec![0.0; self.length()];
-        self.rows.by_row.column(row).for_each(|(place, b)| column[place] = b);
-        match self.boundary {
-            Some(boundary) => boundary.block.forward(column),
-            None => self.norm.cholesky.forward(&column),
-        }
-    }
-
-    /// The lower triangle of the products of the columns of these rows, column by column; `None` if there is no time,
-    /// or without a boundary.
-    fn products(&self, rows: &[usize]) -> Option<Vec<f64>> {
-        let count = rows.len();
-        if let Some(compliance) = &self.rows.compliance {
-            let of_column = |j: usize| {
-                rows.iter().enumerate().map(move |(i, &row)| if i < j { 0.0 } else { compliance.product(row, rows[j]) })
-            };
-            return Some((0..count).flat_map(of_column).collect());
-        }
-        let block = &self.boundary?.block;
-        let size = block.size();
-        let mut columns = Vec::with_capacity(count * size);
-        for some in rows.chunks(AT_ONCE) {
-            if self.norm.is_over() {
-                return None;
-            }
-            let mut forces = vec![0.0; some.len() * size];
-            for (column, &row) in forces.chunks_mut(size.max(1)).zip(some) {
-                self.rows.by_row.column(row).for_each(|(place, b)| column[place] = b);
-            }
-            columns.append(&mut forward_all(block, forces));
-        }
-        Some(products(size, &columns))
+        let on_boundary = norm.rows_on_boundary(contact, |_| true);
+        let boundary = on_boundary.as_ref().and(norm.boundary.as_deref());
+        ComplianceFactor { contact, norm, rows: on_boundary.unwrap_or_else(|| norm.rows_in_body(contact)), boundary }
     }
 
     /// `sqrt(G_ii)`, with the rounding of a sweep: the distance by which a displacement of unit energy norm moves the
@@ -190,25 +139,26 @@ impl<'a> ComplianceFactor<'a> {
         if self.norm.is_over() {
             return f64::INFINITY;
         }
-        let square = match &self.rows.compliance {
-            Some(compliance) => compliance.product(row, row),
-            None => {
-                let column = self.column(row);
+        let compliance = &self.rows.compliance;
+        let square = match compliance.is_kept() {
+            true => compliance.product(row, row),
+            false => {
+                let column = compliance.columns(&[row]);
                 dot(&column, &column)
             }
         };
-        ldexp(self.rounding * self.norm.length(square), -self.rows.shift[row])
+        ldexp(self.norm.rounding() * self.norm.length(square), -self.rows.shift[row])
     }
 
     /// The reach of all rows, if their compliance is known; otherwise upper bounds by one sweep, if the contact
     /// boundary is known: the length of a column is at most the sum of its magnitudes.
     pub(super) fn reach_at_once(&self) -> Option<Vec<f64>> {
         let all = 0..self.rows.shift.len();
-        if self.rows.compliance.is_some() {
+        if self.rows.compliance.is_kept() {
             return Some(all.map(|row| self.reach(row)).collect());
         }
-        let sums = self.rows.by_row.mul_abs_transposed(&self.boundary?.block.sums_of_inverse());
-        let reach = |row: usize| self.rounding * self.norm.length(sums[row].powi(2));
+        let sums = self.rows.compliance.by_row().mul_abs_transposed(&self.boundary?.block.sums_of_inverse());
+        let reach = |row: usize| self.norm.rounding() * self.norm.length(sums[row].powi(2));
         Some(all.map(|row| ldexp(reach(row), -self.rows.shift[row])).collect())
     }
 
@@ -221,17 +171,18 @@ impl<'a> ComplianceFactor<'a> {
     }
 
     pub fn work(&self, rows: usize) -> f64 {
-        (rows * rows) as f64 * (self.length() + rows) as f64
+        (rows * rows) as f64 * (self.rows.compliance.by_row().rows() + rows) as f64
     }
 
     /// `sqrt((G_CC^-1)_ii)` of the rows C; infinite for those that take part in a dependence.
     pub fn moved_together(&self, rows: &[usize]) -> Vec<f64> {
         let none = || vec![f64::INFINITY; rows.len()];
         let of_reciprocal = |row: usize, reciprocal: f64| {
-            self.rounding * ldexp_root(reciprocal, -self.norm.equilibration.factor, self.rows.shift[row])
+            self.norm.rounding() * ldexp_root(reciprocal, -self.norm.equilibration.factor, self.rows.shift[row])
         };
         if self.norm.is_sharp()
-            && let Some(products) = self.products(rows)
+            && self.boundary.is_some()
+            && let Some(products) = self.rows.compliance.products(rows, || self.norm.is_over())
             && let Some(reciprocals) = inverse_lengths_by_products(rows.len(), products)
         {
             return rows.iter().zip(reciprocals).map(|(&row, reciprocal)| of_reciprocal(row, reciprocal)).collect();
@@ -241,7 +192,9 @@ impl<'a> ComplianceFactor<'a> {
             return none();
         };
         let basis: Vec<usize> = (0..rows.len()).filter(|&index| independent[index]).collect();
-        let in_time = |&index: &usize| if self.norm.is_over() { None } else { Some(self.column(rows[index])) };
+        let in_time = |&index: &usize| {
+            if self.norm.is_over() { None } else { Some(self.rows.compliance.columns(&[rows[index]])) }
+        };
         let Some(columns) = basis.iter().map(in_time).collect::<Option<Vec<_>>>() else { return none() };
         let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
         let mut lengths = none();
@@ -401,10 +354,9 @@ mod tests {
         let rows: Vec<_> = (0..4).flat_map(|row| (0..dofs).map(move |dof| (row, dof, of_row(row, dof)))).collect();
         let problem = ContactProblem::of_entries(&entries, &vec![1.0; dofs], &rows, &[1.0; 4]);
         let alone = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-        let RowsOnBoundary { by_row, shift, .. } = alone.rows_on_boundary(problem.contact(), |_| true).unwrap();
-        let known = alone.clone().with_rows(problem.contact(), &by_row.transposed(), &shift);
+        let known = alone.clone().lending(problem.contact());
         let [alone, known] = [&alone, &known].map(|norm| ComplianceFactor::of(&problem, norm));
-        assert!(known.rows.compliance.is_some() && alone.rows.compliance.is_none());
+        assert!(known.rows.compliance.is_kept() && !alone.rows.compliance.is_kept());
         let all: Vec<usize> = (0..4).collect();
         let lengths = [&alone, &known].map(|of| of.moved_together(&all));
         let reach = known.reach_at_once().unwrap();

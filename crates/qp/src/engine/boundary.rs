@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::factored::{Factored, Reduced};
 use super::interface::{Body, Expansion, OnBoundary, Task, Walk};
-use crate::certificate::{Bounding, Examination};
+use crate::certificate::{Bounding, EnergyNorm, Examination};
 use crate::error::Error;
 use crate::linear::ldexp;
 use crate::method::parametric::ParametricLcp;
@@ -78,8 +78,11 @@ impl Factored {
     /// boundary that meets its goal.
     pub fn walk_to(self: Arc<Self>, from: &Task, to: &[f64]) -> Result<Option<Walk>, Error> {
         let reduction = &self.reduction;
-        let is_walkable = reduction.is_definite();
-        let Some(condensed) = reduction.condensation.as_ref().filter(|_| is_walkable) else {
+        let contact = reduction.selection.contact(self.problem.contact());
+        let norm = reduction.norm().map(|norm| norm.keeping(&contact));
+        let (Some(condensed), Some(compliance)) =
+            (&reduction.condensation, norm.as_ref().and_then(EnergyNorm::compliance))
+        else {
             return Err(Error::NotCondensed { step: "the exact path" });
         };
         self.check_gap(to)?;
@@ -90,8 +93,8 @@ impl Factored {
         let constant =
             free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
         let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
-        let compliance = ParametricLcp::new(condensed.compliance(), constant, slope);
-        let (pieces, mut events) = compliance.walk(&outcome.contact_set, &from.settings.watch)?;
+        let path = ParametricLcp::new(compliance.matrix(), constant, slope);
+        let (pieces, mut events) = path.walk(&outcome.contact_set, &from.settings.watch)?;
         events.iter_mut().for_each(|event| event.row = reduction.selection.kept()[event.row]);
         Ok(Some(Walk { pieces, events, to_rows: Arc::new(ToRows { unit: *unit, engine: self.clone() }) }))
     }

@@ -59,7 +59,7 @@ impl Factored {
             (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
             (Some(cholesky), _) => {
                 let norm = EnergyNorm::new(cholesky, scaling.equilibration().clone(), last);
-                Norm::Kept(norm.with_rows(&contact, scaling.contact(), scaling.row_exponents()))
+                Norm::Kept(norm.lending(&contact))
             }
         };
         let augmented = augmented(condensation.as_ref(), &scaling, analysis, threads.unwrap_or(1))?;

@@ -12,7 +12,7 @@
 //! is `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
 
 use crate::error::{Error, LinearError};
-use crate::linear::{Analysis, Cholesky, Compliance, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
+use crate::linear::{Analysis, Cholesky, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
 
 /// If contact dofs exceed this share of all, condensing removes too little.
 const LARGEST_SHARE: f64 = 0.25;
@@ -113,13 +113,6 @@ impl Condensation {
     pub fn free_displacement(&self, sweep: &[f64]) -> Vec<f64> {
         let size = self.contact_dofs.len();
         self.trailing.backward(sweep[sweep.len() - size..].to_vec())
-    }
-
-    /// The compliance B S^-1 B' of the contact rows (m x m, column by column), if K is definite.
-    pub fn compliance(&self) -> Vec<f64> {
-        let rows = self.contact.rows();
-        let compliance = Compliance::on(&self.cholesky, self.contact.transposed());
-        (0..rows * rows).map(|place| compliance.product(place / rows, place % rows)).collect()
     }
 
     /// The displacement of the whole body from that of the contact dofs.

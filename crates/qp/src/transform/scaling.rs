@@ -77,11 +77,6 @@ impl Scaling {
         &self.contact
     }
 
-    /// The exponent of each entry of R.
-    pub fn row_exponents(&self) -> &[i32] {
-        &self.rows
-    }
-
     /// The diagonal matrix, length n, that the scaling makes `2^exponent` times the identity.
     pub fn identity(&self, exponent: i32) -> Vec<f64> {
         let Equilibration { factor, diagonal } = &self.equilibration;
