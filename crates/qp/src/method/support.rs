@@ -39,7 +39,7 @@ impl ScaledProblem<'_> {
     /// semidefinite to the largest of the shifts.
     pub fn start(&self) -> Result<Option<ContactSet>, Error> {
         let (rows, nothing_closed) = (self.problem.rows(), ContactSet::open(self.problem.rows()));
-        if self.is_definite() {
+        if self.is_definite {
             return Ok(Some(nothing_closed));
         }
         if self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])?)?.is_none() {
@@ -56,7 +56,7 @@ impl ScaledProblem<'_> {
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Option<Cholesky>, Error> {
         let matrix = self.matrix(closed, weight, 0.0)?;
         // If K is definite by itself, this is not checked again.
-        let looked_at = (!self.is_definite()).then(|| matrix.clone());
+        let looked_at = (!self.is_definite).then(|| matrix.clone());
         let holds = |cholesky: &Cholesky| looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix));
         Ok(self.factor(matrix)?.filter(holds))
     }
@@ -77,7 +77,7 @@ impl ScaledProblem<'_> {
             if !mode.is_some_and(|mode| self.stop(&mode, displacement, closed)) {
                 return Ok(Err(Ending::Unheld));
             }
-            if self.watch().is_over() {
+            if self.watch.is_over() {
                 return Ok(Err(Ending::Unsettled));
             }
         }

@@ -89,15 +89,6 @@ pub struct Bounds {
     rows: usize,
 }
 
-/// The order in which reflections are applied.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Order {
-    /// The order of the product H.
-    Forward,
-    /// The reverse order, that of H'.
-    Backward,
-}
-
 impl Bounds {
     /// The rows that contradict a row of those left out, which is violated, with weights; `None` if one of the bounds
     /// on which it depends is open.
@@ -217,8 +208,8 @@ impl Bounds {
             holds.push(hold);
         }
         let back = |Hold { way, row }: Hold| match way == row {
-            true => Hold::of(self.reflected(row, Order::Backward)),
-            false => Hold { way: self.reflected(way, Order::Backward), row: self.reflected(row, Order::Backward) },
+            true => Hold::of(self.reflected(row, true)),
+            false => Hold { way: self.reflected(way, true), row: self.reflected(row, true) },
         };
         holds.into_iter().map(back).collect()
     }
