@@ -3,19 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::parse::{AllowedValues, Content, Quotes, parse};
-use super::write_columns;
-use super::{format_vector, write_entries};
+use super::parse::{Allowed, BOUNDS, Content, FINITE, GAPS, read};
+use super::{format_vector, write_columns, write_entries};
 use crate::error::Error;
 use crate::file::Streamed;
-use crate::file::open_capped;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
-
-/// Most bytes of a matrix in text, which is not held in memory: fifty million dofs of a body in space.
-const MOST_OF_MATRIX: u64 = 64 << 30;
 
 /// The file that makes a directory one of Matrix Market files.
 pub const STIFFNESS: &str = "K.mtx";
@@ -29,20 +24,12 @@ const MOST_EMPTY: usize = 1_000_000;
 /// [`Error::File`] and [`Error::FileSyntax`] for a file that is missing or malformed, and those of
 /// [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
-    let file = directory.join(STIFFNESS);
-    let stiffness = read(&file, AllowedValues::Finite)?;
-    check_filled(&file, &stiffness, stiffness.rows.max(stiffness.columns))?;
-    let (is_symmetric, stiffness) = (stiffness.symmetric, matrix(stiffness)?);
+    let (is_symmetric, stiffness) = matrix(&directory.join(STIFFNESS), None)?;
     let stiffness =
         if is_symmetric { SymmetricMatrix::from_lower(stiffness) } else { SymmetricMatrix::from_full(&stiffness) }?;
     let load = read_vector(&directory.join("f.mtx"))?;
-    let file = directory.join("B.mtx");
-    let contact = read(&file, AllowedValues::Finite)?;
-    // A body has many dofs without a contact row: B must have as many columns as the stiffness.
-    let empty = if contact.columns == load.len() { contact.rows } else { contact.rows.max(contact.columns) };
-    check_filled(&file, &contact, empty)?;
-    let contact = matrix(contact)?;
-    let gap = vector(&directory.join("g.mtx"), AllowedValues::FiniteOrInfinite)?;
+    let (_, contact) = matrix(&directory.join("B.mtx"), Some(load.len()))?;
+    let gap = vector(&directory.join("g.mtx"), GAPS)?;
     let problem = with_equalities(directory, ContactProblem::new(stiffness, load, contact, gap)?)?;
     match near_null(directory, problem.dofs())? {
         Some(near_null) => problem.with_near_null(near_null),
@@ -60,10 +47,8 @@ fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactP
         (false, true) => return missing(rows, "there is e.mtx: every value needs a row of E"),
         (true, true) => {}
     }
-    let content = read(&rows, AllowedValues::Finite)?;
-    let fits = content.columns == problem.dofs();
-    check_filled(&rows, &content, if fits { content.rows } else { content.rows.max(content.columns) })?;
-    problem.with_equalities(&matrix(content)?, read_vector(&values)?)
+    let (_, rows) = matrix(&rows, Some(problem.dofs()))?;
+    problem.with_equalities(&rows, read_vector(&values)?)
 }
 
 /// Reads the gaps in `g1.mtx` and the load in `f1.mtx` of a directory, as [`ContactProblem::read_other_end`] describes.
@@ -74,7 +59,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
             "it is missing, and so is f1.mtx: a sweep needs the gaps or the load of the other end".to_string();
         return Err(fault(gap_file, message));
     }
-    let end = |file: &Path, values: AllowedValues, own: &[f64], of: &str| {
+    let end = |file: &Path, values: Allowed, own: &[f64], of: &str| {
         if !file.exists() {
             return Ok(own.to_vec());
         }
@@ -84,8 +69,8 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
         }
         Err(fault(file.to_path_buf(), format!("it has length {}, but there are {} {of}", end.len(), own.len())))
     };
-    let gap = end(&gap_file, AllowedValues::FiniteOrInfinite, problem.inequalities_given().1, "contact rows")?;
-    let load = end(&load_file, AllowedValues::Finite, problem.load(), "dofs")?;
+    let gap = end(&gap_file, GAPS, problem.inequalities_given().1, "contact rows")?;
+    let load = end(&load_file, FINITE, problem.load(), "dofs")?;
     let last = problem.with(load, gap)?;
     let mut rows = problem.gap().iter().zip(last.gap()).enumerate();
     match rows.find(|(_, (first, last))| first.is_finite() != last.is_finite()) {
@@ -105,7 +90,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
 fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
     let file = directory.join("near_null.mtx");
     if file.exists() {
-        let content = read(&file, AllowedValues::Finite)?;
+        let content = read(&file, FINITE)?;
         if content.rows != dofs || content.columns == 0 {
             let found = format!("it is {} x {}", content.rows, content.columns);
             return Err(fault(
@@ -120,7 +105,7 @@ fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Err
     if !file.exists() {
         return Ok(None);
     }
-    let content = read(&file, AllowedValues::Finite)?;
+    let content = read(&file, FINITE)?;
     let (nodes, dimension) = (content.rows, content.columns);
     if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
         let message = format!(
@@ -172,27 +157,26 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
 /// # Errors
 /// [`Error::File`] and [`Error::FileSyntax`].
 pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
-    vector(file, AllowedValues::Finite)
+    vector(file, FINITE)
 }
 
 /// A vector, in the unit of its file, that may have the entries `-inf` and `inf`.
 pub fn read_bounds(file: &Path) -> Result<Vec<f64>, Error> {
-    vector(file, AllowedValues::Bounds)
+    vector(file, BOUNDS)
 }
 
 /// All entries of a file; if it is symmetric, it holds the lower triangle only.
 pub fn read_matrix(file: &Path) -> Result<SparseMatrix, Error> {
-    let mut content = read(file, AllowedValues::Finite)?;
-    check_filled(file, &content, content.rows.max(content.columns))?;
-    if content.symmetric {
-        let below = content.entries.iter().filter(|(row, column, _)| row != column);
-        let above: Vec<_> = below.map(|&(row, column, value)| (column, row, value)).collect();
-        content.entries.extend(above);
+    let (is_symmetric, lower) = matrix(file, None)?;
+    if !is_symmetric {
+        return Ok(lower);
     }
-    matrix(content)
+    let below = lower.triplets().filter(|(row, column, _)| row != column);
+    let above: Vec<_> = below.map(|(row, column, value)| (column, row, value)).collect();
+    SparseMatrix::from_triplets(lower.rows(), lower.columns(), &lower.triplets().chain(above).collect::<Vec<_>>())
 }
 
-fn vector(file: &Path, values: AllowedValues) -> Result<Vec<f64>, Error> {
+fn vector(file: &Path, values: Allowed) -> Result<Vec<f64>, Error> {
     let content = read(file, values)?;
     if content.columns != 1 && content.rows != 1 {
         let message = format!("a vector has one column, but this is {} x {}", content.rows, content.columns);
@@ -219,22 +203,6 @@ pub fn solution_files(solution: &Solution) -> Vec<(&'static str, String)> {
     vectors.into_iter().filter(is_there).map(|(name, values)| (name, format_vector(values))).collect()
 }
 
-fn read(file: &Path, values: AllowedValues) -> Result<Content, Error> {
-    parse(file, open_capped(file, MOST_OF_MATRIX)?, values, quotes(file))
-}
-
-/// If `file` is a link out of its folder, errors do not quote the content.
-fn quotes(file: &Path) -> Quotes {
-    let folder = match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    match (file.canonicalize(), folder.canonicalize()) {
-        (Ok(file), Ok(folder)) if file.starts_with(&folder) => Quotes::Allowed,
-        _ => Quotes::Withheld,
-    }
-}
-
 /// Refuses a number of rows or columns (`lines`) that is not credible for the entries of a file.
 fn check_filled(file: &Path, content: &Content, lines: usize) -> Result<(), Error> {
     let (rows, columns, entries) = (content.rows, content.columns, content.entries.len());
@@ -245,6 +213,12 @@ fn check_filled(file: &Path, content: &Content, lines: usize) -> Result<(), Erro
     Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message })
 }
 
-fn matrix(content: Content) -> Result<SparseMatrix, Error> {
-    SparseMatrix::from_triplets(content.rows, content.columns, &content.entries)
+/// A matrix, and whether the file holds its lower triangle only. A body has many dofs without a row: a matrix of rows
+/// must have as many columns as there are `dofs`, or else be credible by its entries.
+fn matrix(file: &Path, dofs: Option<usize>) -> Result<(bool, SparseMatrix), Error> {
+    let content = read(file, FINITE)?;
+    let fits = dofs == Some(content.columns);
+    check_filled(file, &content, if fits { content.rows } else { content.rows.max(content.columns) })?;
+    let matrix = SparseMatrix::from_triplets(content.rows, content.columns, &content.entries)?;
+    Ok((content.symmetric, matrix))
 }
