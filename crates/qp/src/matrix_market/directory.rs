@@ -19,10 +19,6 @@ pub const STIFFNESS: &str = "K.mtx";
 const MOST_EMPTY: usize = 1_000_000;
 
 /// Reads the problem of a directory.
-///
-/// # Errors
-/// [`Error::File`] and [`Error::FileSyntax`] for a file that is missing or malformed, and those of
-/// [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let (is_symmetric, stiffness) = matrix(&directory.join(STIFFNESS), None)?;
     let stiffness =

@@ -20,10 +20,6 @@ const MOST_OF_INFO: u64 = 1 << 16;
 const SUPPORTED: u32 = u32::MAX;
 
 /// Reads the problem of a directory of PETSc files: the small ones first, then the stiffness row by row.
-///
-/// # Errors
-/// [`Error::File`] and [`Error::FileBytes`] for a file that is missing or malformed, [`Error::FileSyntax`] for
-/// `K.petsc.info`, and those of [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let stiffness = RowReader::open(&directory.join(STIFFNESS))?;
     let (size, columns) = stiffness.shape;

@@ -58,15 +58,13 @@ impl Polyhedron {
         if (of.rows() * factor.entries()) as f64 > MOST_WORK {
             return Ok(None);
         }
-        let dofs: Vec<f64> = equilibration.diagonal.iter().map(|&d| ldexp(1.0, d)).collect();
-        let contact = of.contact().scaled(&vec![1.0; of.rows()], &dofs);
-        let by_row = contact.transposed();
+        let of_dof = |dof: usize| equilibration.diagonal[dof];
+        let by_row = of.contact().times_powers(&vec![0; of.rows()], of_dof).transposed();
         let length = |row: usize| norm(&swept(&by_row, &factor, row));
         let lengths: Vec<f64> = (0..of.rows()).map(length).collect();
         let scales: Vec<i32> = lengths.iter().map(|&length| -exponent(length)).collect();
         let lengths = lengths.iter().zip(&scales).map(|(&length, &scale)| ldexp(length, scale)).collect();
-        let rows: Vec<f64> = scales.iter().map(|&scale| ldexp(1.0, scale)).collect();
-        let contact = contact.scaled(&rows, &vec![1.0; of.dofs()]);
+        let contact = of.contact().times_powers(&scales, of_dof);
         let by_row = contact.transposed();
         let load = of.load().iter().zip(&equilibration.diagonal);
         let load: Vec<f64> = load.map(|(&f, &d)| ldexp(f, d + equilibration.factor)).collect();
