@@ -186,7 +186,7 @@ impl Factored {
         let method = self.chosen(task.method);
         let watch = self.watch_of_loop(method, &settings.watch)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let scaled = self.scaled_problem(&problem).watched(&watch);
+        let scaled = self.scaled_problem(&problem, watch);
         let start = task.start.contact_set.as_ref().map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let by = self.condensed_bounding(&problem, &settings.watch);
@@ -199,13 +199,13 @@ impl Factored {
         let most_iterations = settings.max_iterations.min(task.limits.most_sets(self.set_seconds));
         let made = ScaledStep { scaled: &scaled, start, method, accuracy, most_iterations, bound: &bound };
         let outcome = made.outcome(step)?;
-        let factor_seconds = scaled.factor_seconds();
+        let factor_seconds = scaled.factor_seconds.get();
         Ok(outcome.map(|outcome| Reduced { loading, problem, unit, outcome, factor_seconds }))
     }
 
-    fn scaled_problem<'a>(&'a self, problem: &'a ContactProblem) -> ScaledProblem<'a> {
-        let scaled = ScaledProblem::new(problem, &self.augmented, self.reduction.is_definite());
-        scaled.with_compliance(self.reduction.compliance())
+    fn scaled_problem<'a>(&'a self, problem: &'a ContactProblem, watch: Watch) -> ScaledProblem<'a> {
+        let (is_definite, compliance) = (self.reduction.is_definite(), self.reduction.compliance());
+        ScaledProblem::new(problem, &self.augmented, is_definite, compliance, watch)
     }
 
     /// The means of a certificate of the problem that the methods work on.
@@ -317,7 +317,7 @@ impl Factored {
     pub(crate) fn balanced(&self, closed: &ContactSet, load: Vec<f64>, gap: &[f64]) -> Option<[Vec<f64>; 2]> {
         let loading = Loading::of(&self.reduction, &load, &self.reduction.selection.gap(gap));
         let (problem, unit) = self.scaled(&loading, gap).ok()?;
-        let task = self.scaled_problem(&problem);
+        let task = self.scaled_problem(&problem, Watch::default());
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed)).ok()??;
         Some([self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)])
     }

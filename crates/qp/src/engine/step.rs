@@ -1,11 +1,9 @@
 //! The steps of an attempt on a scaled problem: each by one method, or by one that starts another.
 
 use crate::error::Error;
-use crate::method::active_set::ActiveSet;
-use crate::method::dual_active_set::DualActiveSet;
-use crate::method::interior_point::{Barrier, InteriorPoint};
-use crate::method::penalty::{self, Penalty, PenaltyLoop};
-use crate::method::{Ending, Outcome, ScaledProblem, Solver, Start};
+use crate::method::interior_point::{self, InteriorPoint};
+use crate::method::penalty::{self, Penalty};
+use crate::method::{Ending, Outcome, ScaledProblem, active_set, dual_active_set};
 use crate::plan::{PATIENCE, Step};
 use crate::settings::ByFactor;
 use crate::solution::ContactSet;
@@ -33,7 +31,7 @@ impl ScaledStep<'_> {
                 Ok(Some(Outcome { variant, ..found }))
             }
             Step::Continuation => self.continued().map(Some),
-            Step::Dual => DualActiveSet::of(self.scaled)?.map(|method| method.solve(Start::default())).transpose(),
+            Step::Dual => dual_active_set::solve(self.scaled),
             _ => Ok(None),
         }
     }
@@ -41,9 +39,7 @@ impl ScaledStep<'_> {
     fn by_method(self) -> Result<Outcome, Error> {
         let ScaledStep { scaled, start, method, accuracy, most_iterations, bound } = self;
         let Some(cold) = scaled.start()? else { return Ok(Outcome::at_rest(scaled.problem, Ending::Unheld)) };
-        let by_sets = |start: ContactSet| {
-            ActiveSet { scaled, most_iterations: most_iterations.min(PATIENCE) }.solve(start.into())
-        };
+        let by_sets = |start: ContactSet| active_set::solve(scaled, start, most_iterations.min(PATIENCE));
         match method {
             ByFactor::Qp(InteriorPoint { polish: true, tolerance }) => match start {
                 Some(start) => {
@@ -51,18 +47,14 @@ impl ScaledStep<'_> {
                     Ok(Outcome { variant: if outcome.is_settled() { "-warm" } else { outcome.variant }, ..outcome })
                 }
                 None => {
-                    let found = Barrier { scaled, tolerance }.solve(Start::default())?;
+                    let found = interior_point::solve(scaled, tolerance)?;
                     // The multipliers become those of a linear solve.
                     Ok(Outcome { iterations: found.iterations, ..by_sets(found.contact_set)? })
                 }
             },
-            ByFactor::Qp(InteriorPoint { polish: false, tolerance }) => {
-                Barrier { scaled, tolerance }.solve(Start::default())
-            }
+            ByFactor::Qp(InteriorPoint { polish: false, tolerance }) => interior_point::solve(scaled, tolerance),
             ByFactor::Penalty(ladder) => {
-                let goal = accuracy.map(|accuracy| penalty::AccuracyGoal { accuracy, bound });
-                let climb = PenaltyLoop { scaled, ladder, goal, most_iterations };
-                climb.solve(start.unwrap_or(cold).into())
+                penalty::solve(scaled, ladder, start.unwrap_or(cold), most_iterations, accuracy, bound)
             }
             ByFactor::ActiveSet => by_sets(start.unwrap_or(cold)),
         }
@@ -82,13 +74,12 @@ impl ScaledStep<'_> {
         let ladder = Penalty { penetration_threshold: 0.0, ..Penalty::default() };
         let start = self.start.unwrap_or_else(|| ContactSet::open(scaled.problem.rows()));
         let most_on_ladder = most_iterations.min(PATIENCE.max(3 * scaled.problem.rows().isqrt()));
-        let climb = PenaltyLoop { scaled, ladder, goal: None, most_iterations: most_on_ladder };
-        let approach = climb.solve(start.into())?;
-        if scaled.watch().is_over() {
+        let approach = penalty::solve(scaled, ladder, start, most_on_ladder, None, self.bound)?;
+        if scaled.watch.is_over() {
             return Ok(Outcome { ending: Ending::Unsettled, variant: "-unsettled", ..approach });
         }
         let most_iterations = most_iterations.saturating_sub(approach.iterations).max(1);
-        let second = ActiveSet { scaled, most_iterations }.solve(approach.contact_set.clone().into())?;
+        let second = active_set::solve(scaled, approach.contact_set.clone(), most_iterations)?;
         let variant = if second.is_settled() { "-continuation" } else { second.variant };
         Ok(Outcome { variant, ..second.after(approach) })
     }

@@ -18,7 +18,7 @@ use std::cell::LazyCell;
 use std::collections::HashSet;
 
 use super::equilibrium::{Equilibrium, WEIGHT, by_compliance, equilibrium, reach};
-use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem};
 use crate::error::Error;
 use crate::linear::largest;
 use crate::solution::{ContactSet, Iteration};
@@ -38,59 +38,50 @@ const CLEARLY: f64 = 1e-6;
 /// Number of block exchanges that may fail to reduce the number of violations before a single pivot.
 const PATIENCE: usize = 3;
 
-/// The active-set loop on a scaled problem.
-#[derive(Clone, Copy)]
-pub struct ActiveSet<'a> {
-    pub scaled: &'a ScaledProblem<'a>,
-    /// Largest number of sets, each with a factorisation.
-    pub most_iterations: usize,
-}
-
-impl Solver for ActiveSet<'_> {
-    /// Runs the loop from the contact set of `start`.
-    fn solve(&self, start: Start) -> Result<Outcome, Error> {
-        let scaled = self.scaled;
-        let rows = scaled.problem.rows();
-        let mut closed = start.into_set(rows);
-        let (mut displacement, mut multiplier) = (vec![0.0; scaled.problem.dofs()], vec![0.0; rows]);
-        let mut history = Vec::new();
-        let mut seen = HashSet::new();
-        let mut rule = Rule::Exchange;
-        let mut ending = Ending::Unsettled;
-        let is_over = |done: usize| done > 0 && scaled.watch().is_over();
-        while ending == Ending::Unsettled && history.len() < self.most_iterations && !is_over(history.len()) {
-            scaled.watch().step("active set", history.len() + 1);
-            let balance = match balance(scaled, &mut closed, &displacement)? {
-                Ok(balance) => balance,
-                Err(without) => {
-                    ending = without;
-                    break;
-                }
-            };
-            history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
-            if !balance.consistent {
+/// Runs the loop on a scaled problem from the contact set `closed`, over at most `most_iterations` sets, each with a
+/// factorisation.
+pub fn solve(scaled: &ScaledProblem, mut closed: ContactSet, most_iterations: usize) -> Result<Outcome, Error> {
+    let (mut displacement, mut multiplier) = (vec![0.0; scaled.problem.dofs()], vec![0.0; scaled.problem.rows()]);
+    let (mut history, mut seen) = (Vec::new(), HashSet::new());
+    let (mut rule, mut ending) = (Rule::Exchange, Ending::Unsettled);
+    let is_over = |done: usize| done > 0 && scaled.watch.is_over();
+    while ending == Ending::Unsettled && history.len() < most_iterations && !is_over(history.len()) {
+        scaled.watch.step("active set", history.len() + 1);
+        let balance = match balance(scaled, &mut closed, &displacement)? {
+            Ok(balance) => balance,
+            Err(without) => {
+                ending = without;
                 break;
             }
-            let wrong: Vec<usize> = wrong_rows(scaled, &balance, &closed, SIGN_TOLERANCE).collect();
-            (displacement, multiplier) = (balance.displacement, balance.multiplier);
-            if wrong.is_empty() {
-                ending = Ending::Settled;
-            } else {
-                if !seen.insert((closed.clone(), rule)) {
-                    if matches!(rule, Rule::Pivoting { .. }) {
-                        // Pivoting returns to a set if rounding decides signs: it would then repeat without end.
-                        break;
-                    }
-                    rule = rule.pivoting(wrong.len());
-                }
-                rule.choose(&wrong).iter().for_each(|&row| closed.toggle(row));
-            }
+        };
+        history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
+        if !balance.consistent {
+            break;
         }
-        multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
-        let variant = if ending == Ending::Settled { rule.variant() } else { "-unsettled" };
-        let iterations = history.len();
-        Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, ending, variant })
+        let wrong: Vec<usize> = wrong_rows(scaled, &balance, &closed, SIGN_TOLERANCE).collect();
+        (displacement, multiplier) = (balance.displacement, balance.multiplier);
+        if wrong.is_empty() {
+            ending = Ending::Settled;
+        } else {
+            if !seen.insert((closed.clone(), rule)) {
+                if matches!(rule, Rule::Pivoting { .. }) {
+                    // Pivoting returns to a set if rounding decides signs: it would then repeat without end.
+                    break;
+                }
+                rule = Rule::Pivoting { fewest: wrong.len(), patience: 0, single: false };
+            }
+            rule.choose(&wrong).iter().for_each(|&row| closed.toggle(row));
+        }
     }
+    multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
+    let variant = match rule {
+        _ if ending != Ending::Settled => "-unsettled",
+        Rule::Exchange => "",
+        Rule::Pivoting { single: false, .. } => "-block-pivoting",
+        Rule::Pivoting { single: true, .. } => "-single-pivoting",
+    };
+    let iterations = history.len();
+    Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, ending, variant })
 }
 
 /// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the
@@ -102,8 +93,7 @@ fn balance(
     near: &[f64],
 ) -> Result<Result<Equilibrium, Ending>, Error> {
     let is_near = |balance: &Equilibrium| wrong_rows(scaled, balance, closed, CLEARLY).next().is_none();
-    let by_compliance = |compliance| by_compliance(scaled, compliance, closed, is_near);
-    if let Some(balance) = scaled.compliance.and_then(by_compliance) {
+    if let Some(balance) = by_compliance(scaled, closed, is_near) {
         return Ok(Ok(balance));
     }
     let cholesky = scaled.hold_with_more(closed, WEIGHT, near)?;
@@ -113,15 +103,11 @@ fn balance(
 /// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if
 /// they do not hold the body, or contradict each other.
 pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
-    let by_compliance = |compliance| by_compliance(scaled, compliance, closed, |_| true);
-    let balance = match scaled.compliance.and_then(by_compliance) {
-        Some(balance) => balance,
-        None => {
-            let Some(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
-            equilibrium(scaled.problem, &cholesky, closed)
-        }
+    let balance = match by_compliance(scaled, closed, |_| true) {
+        None => scaled.hold(closed, WEIGHT)?.map(|cholesky| equilibrium(scaled.problem, &cholesky, closed)),
+        balance => balance,
     };
-    Ok(Some(balance).filter(|balance| balance.consistent))
+    Ok(balance.filter(|balance| balance.consistent))
 }
 
 /// The rule by which the misclassified rows of a set give the next set.
@@ -134,22 +120,6 @@ enum Rule {
 }
 
 impl Rule {
-    fn pivoting(self, fewest: usize) -> Self {
-        match self {
-            Rule::Exchange => Rule::Pivoting { fewest, patience: 0, single: false },
-            pivoting => pivoting,
-        }
-    }
-
-    /// The suffix of a loop that this rule settled.
-    fn variant(self) -> &'static str {
-        match self {
-            Rule::Exchange => "",
-            Rule::Pivoting { single: false, .. } => "-block-pivoting",
-            Rule::Pivoting { single: true, .. } => "-single-pivoting",
-        }
-    }
-
     fn choose<'a>(&mut self, wrong: &'a [usize]) -> &'a [usize] {
         let Rule::Pivoting { fewest, patience, single } = self else { return wrong };
         if wrong.len() < *fewest {
@@ -183,7 +153,7 @@ fn wrong_rows(
     });
     // No entry of a definite matrix is larger than its largest diagonal entry. This bounds the forces without a product
     // of K: few rows pull so little that the forces themselves must be known.
-    let most = if scaled.is_definite() { MOST_ENTRY * sum_of(u) } else { f64::INFINITY };
+    let most = if scaled.is_definite { MOST_ENTRY * sum_of(u) } else { f64::INFINITY };
     let most_on_rows = MOST_OF_ROW * (u.len() as f64 * most + sum_of(problem.load()));
     let pulls = move |row: usize| {
         let is_beyond = |forces: f64| multiplier[row] > strongest + FORCE_ROUNDING * forces;

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::ScaledProblem;
-use crate::linear::{Cholesky, Compliance, largest};
+use crate::linear::{Cholesky, largest};
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
 
@@ -56,8 +56,7 @@ pub fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &Conta
         let dl = (0..distance.len()).map(on_row).collect();
         (du, dl)
     };
-    let is_near = |_: &Equilibrium| true;
-    corrected(problem, closed, Correcting { weight: WEIGHT, enough: f64::EPSILON, correct, is_near })
+    corrected(problem, closed, [WEIGHT, f64::EPSILON], correct, |_| true)
 }
 
 /// The same by the compliance of the rows, which solves the saddle-point system itself; `None` if closed rows follow
@@ -65,37 +64,29 @@ pub fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &Conta
 /// correction.
 pub fn by_compliance(
     scaled: &ScaledProblem,
-    compliance: &Compliance,
     closed: &ContactSet,
     is_near: impl Fn(&Equilibrium) -> bool,
 ) -> Option<Equilibrium> {
+    let compliance = scaled.compliance?;
     let held = compliance.held(closed.iter().collect())?;
     // The first force is the load.
     let first = Cell::new(Some(scaled.swept_load(compliance)));
     let correct =
         |force: &[f64], distance: &[f64]| held.solve(first.take().unwrap_or_else(|| compliance.swept(force)), distance);
-    let balance = corrected(scaled.problem, closed, Correcting { weight: 0.0, enough: SQUARED, correct, is_near });
+    let balance = corrected(scaled.problem, closed, [0.0, SQUARED], correct, is_near);
     balance.consistent.then_some(balance)
 }
 
-struct Correcting<C, N> {
-    /// The weight of the distances in the force that is left.
-    weight: f64,
-    /// A correction below this is the last.
-    enough: f64,
-    /// The correction of displacement and multiplier for a force that is left, and for distances of the closed rows.
-    correct: C,
-    /// Returns `true` for a balance that is worth another correction.
-    is_near: N,
-}
-
-/// The balance of the closed rows, corrected until a correction is small enough, or rounding.
-fn corrected<C, N>(problem: &ContactProblem, closed: &ContactSet, by: Correcting<C, N>) -> Equilibrium
-where
-    C: Fn(&[f64], &[f64]) -> (Vec<f64>, Vec<f64>),
-    N: Fn(&Equilibrium) -> bool,
-{
-    let Correcting { weight, enough, correct, is_near } = by;
+/// The balance of the closed rows. `correct` gives the correction of displacement and multiplier for a force that is
+/// left, which contains the distances of the closed rows by their `weight`, and for these distances. A correction that
+/// is small `enough`, or rounding, is the last, and so is one to a balance that `is_near` no answer.
+fn corrected(
+    problem: &ContactProblem,
+    closed: &ContactSet,
+    [weight, enough]: [f64; 2],
+    correct: impl Fn(&[f64], &[f64]) -> (Vec<f64>, Vec<f64>),
+    is_near: impl Fn(&Equilibrium) -> bool,
+) -> Equilibrium {
     let (contact, gap) = (problem.contact(), problem.gap());
     let (mut unbalanced, displacement) = (problem.load().to_vec(), vec![0.0; problem.dofs()]);
     let [multiplier, along_rows] = [(); 2].map(|()| vec![0.0; problem.rows()]);

@@ -15,5 +15,5 @@ mod start;
 mod support;
 
 pub(crate) use scaled::SIGN_TOLERANCE;
-pub use scaled::{Ending, Outcome, ScaledProblem, Solver};
+pub use scaled::{Ending, Outcome, ScaledProblem};
 pub use start::Start;

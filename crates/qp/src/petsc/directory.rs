@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use super::matrix::{MatrixRow, RowReader, dense_columns};
-use super::source::{INTEGER, REAL, indices, vector};
+use super::source::{INTEGER, REAL, RowReader, dense_columns, indices, vector};
 use super::{BLOCK_SIZE, CONTACT, COORDINATES, EQUALITIES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS, VALUES};
 use crate::error::{Error, LinearError};
 use crate::linear::file::read_text_capped;
@@ -21,10 +20,6 @@ const MOST_OF_INFO: u64 = 1 << 16;
 const SUPPORTED: u32 = u32::MAX;
 
 /// Reads the problem of a directory of PETSc files: the small ones first, then the stiffness row by row.
-///
-/// # Errors
-/// [`LinearError::File`] and [`LinearError::FileBytes`] for a file that is missing or malformed, [`LinearError::FileSyntax`] for
-/// `K.petsc.info`, and those of [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let stiffness = RowReader::open(&directory.join(STIFFNESS))?;
     let (size, columns) = stiffness.shape;
@@ -92,24 +87,25 @@ impl Places {
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }
 
-    /// Leaves out the columns of supported components, which must be zero.
-    fn leave_out(&self, rows: &RowReader, row: &mut MatrixRow) -> Result<(), Error> {
+    /// Leaves out the entries of supported components, which must be zero, in the last row, of the stiffness that of
+    /// place `own`; what stands on its diagonal has no meaning.
+    fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), Error> {
         let mut kept = 0;
-        for entry in 0..row.columns.len() {
-            let (column, value) = (row.columns[entry], row.values[entry]);
-            let dof = self.dof[column as usize];
-            if dof != SUPPORTED {
-                (row.columns[kept], row.values[kept]) = (dof, value);
+        for entry in 0..rows.columns.len() {
+            let (column, value) = (rows.columns[entry] as usize, rows.values[entry]);
+            let left = own.filter(|&own| self.dof[own] == SUPPORTED).unwrap_or(column);
+            if self.dof[left] != SUPPORTED {
+                (rows.columns[kept], rows.values[kept]) = (self.dof[column], value);
                 kept += 1;
-            } else if value != 0.0 {
+            } else if value != 0.0 && own != Some(column) {
                 let place = format!("entry ({}, {column}) is {value:e} (indices from 0)", rows.row());
                 return Err(rows
-                    .fault(entry, format!("{place}, but {FREE} does not name {column}: it must be 0"))
+                    .fault(entry, format!("{place}, but {FREE} does not name {left}: it must be 0"))
                     .into());
             }
         }
-        row.columns.truncate(kept);
-        row.values.truncate(kept);
+        rows.columns.truncate(kept);
+        rows.values.truncate(kept);
         Ok(())
     }
 
@@ -119,11 +115,10 @@ impl Places {
             return Err(rows.wrong_shape(found).into());
         }
         let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-        let mut row = MatrixRow::default();
-        while rows.read(&mut row)? {
-            self.leave_out(&rows, &mut row)?;
-            columns.extend(row.columns.iter().map(|&column| column as usize));
-            values.extend_from_slice(&row.values);
+        while rows.read()? {
+            self.leave_out(&mut rows, None)?;
+            columns.extend(rows.columns.iter().map(|&column| column as usize));
+            values.extend_from_slice(&rows.values);
             starts.push(columns.len());
         }
         Ok(SparseMatrix::from_csc(self.free.len(), starts, columns, values)?.transposed())
@@ -141,22 +136,12 @@ impl Places {
 
     fn stiffness(&self, mut rows: RowReader) -> Result<SymmetricMatrix, Error> {
         let mut matrix = SymmetricLines::of_rows(self.free.len(), rows.entries)?;
-        let mut row = MatrixRow::default();
-        while rows.read(&mut row)? {
+        while rows.read()? {
             let own = rows.row();
-            if self.dof[own] == SUPPORTED {
-                let beside = |entry: &usize| row.columns[*entry] as usize != own && row.values[*entry] != 0.0;
-                if let Some(entry) = (0..row.columns.len()).find(beside) {
-                    let (column, value) = (row.columns[entry], row.values[entry]);
-                    let place = format!("entry ({own}, {column}) is {value:e} (indices from 0)");
-                    return Err(rows
-                        .fault(entry, format!("{place}, but {FREE} does not name {own}: it must be 0"))
-                        .into());
-                }
-                continue;
+            self.leave_out(&mut rows, Some(own))?;
+            if self.dof[own] != SUPPORTED {
+                matrix.take(&rows.columns, &rows.values).map_err(|error| self.located(error, &rows))?;
             }
-            self.leave_out(&rows, &mut row)?;
-            matrix.take(&row.columns, &row.values).map_err(|error| self.located(error, &rows))?;
         }
         Ok(SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)?)
     }

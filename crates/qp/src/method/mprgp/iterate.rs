@@ -209,26 +209,22 @@ impl<'a> BoundedIterate<'a> {
         }
     }
 
-    fn free_gradient(&self) -> Vec<f64> {
-        let mut free = self.work.copy(&self.gradient);
-        self.keep_free(&mut free);
-        free
-    }
-
     /// What `read` finds in the gradient of the unknowns that may move; it is zero at all others.
     pub fn of_free_gradient<R>(&self, read: impl FnOnce(&[f64]) -> R) -> R {
-        let free = self.free_gradient();
+        let mut free = self.work.copy(&self.gradient);
+        self.keep_free(&mut free);
         let found = read(&free);
         self.work.give(free);
         found
     }
 
     pub fn keep_free(&self, values: &mut [f64]) {
-        for (bound, at) in self.bounds.bounds.iter().zip(&self.at) {
-            if *at != At::Free {
-                values[bound.unknown] = 0.0;
-            }
-        }
+        self.closed().for_each(|bound| values[bound.unknown] = 0.0);
+    }
+
+    /// The bounds that are met.
+    fn closed(&self) -> impl Iterator<Item = &'a Bound> {
+        self.bounds.bounds.iter().zip(&self.at).filter(|entry| *entry.1 != At::Free).map(|entry| entry.0)
     }
 
     /// A travel by one while the body stays at rest.
@@ -241,8 +237,7 @@ impl<'a> BoundedIterate<'a> {
 
     /// Returns `true` if a row of the travel is at its bound.
     pub fn is_held(&self, travel: usize) -> bool {
-        let of_bounds = self.bounds.bounds.iter().zip(&self.at);
-        of_bounds.into_iter().any(|(bound, at)| *at != At::Free && bound.travel.is_some_and(|own| own.0 == travel))
+        self.closed().any(|bound| bound.travel.is_some_and(|own| own.0 == travel))
     }
 
     /// The largest force that is out of balance or wrong-signed, relative to the largest of load and multipliers.
@@ -341,7 +336,8 @@ impl<'a> BoundedIterate<'a> {
             }
         }
         let share = 1.0 / self.largest_eigenvalue.get_or_init(|| self.largest_eigenvalue());
-        let mut free = self.free_gradient();
+        let mut free = self.work.copy(&self.gradient);
+        self.keep_free(&mut free);
         self.bounds.travels.iter().for_each(|&travel| free[travel] = 0.0);
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
             *x -= share * g / d;
@@ -380,8 +376,7 @@ impl<'a> BoundedIterate<'a> {
 
     /// What the closed bounds hold, in the units of the dofs.
     pub fn held(&self) -> Vec<Hold> {
-        let closed = self.bounds.bounds.iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
-        self.bounds.holds(closed.map(|entry| entry.0))
+        self.bounds.holds(self.closed())
     }
 
     /// One cycle in a face, in which nothing travels and no bound opens.
