@@ -35,7 +35,7 @@ pub(super) enum RowStates {
 /// The rows of the exact answer of `problem`, of which `solution` is the answer in doubles.
 pub(super) fn rows_of(
     problem: &ContactProblem,
-    engine: &dyn Engine,
+    engine: &Engine,
     solution: &Solution,
     watch: &Watch,
 ) -> Result<RowStates, Error> {
@@ -78,7 +78,7 @@ pub(super) fn rows_of(
 /// The proof by the data of the engine, or by a factor of the certificate.
 fn proven_here(
     problem: &ContactProblem,
-    engine: &dyn Engine,
+    engine: &Engine,
     [displacement, multiplier]: [&[f64]; 2],
     watch: &Watch,
 ) -> Result<Option<ProvenSet>, Error> {
@@ -103,7 +103,7 @@ fn proven_here(
 /// known.
 fn exact_answer(
     problem: &ContactProblem,
-    engine: &dyn Engine,
+    engine: &Engine,
     set: &ContactSet,
     [displacement, multiplier]: &[Vec<f64>; 2],
     watch: &Watch,

@@ -2,12 +2,10 @@
 //! and records them all.
 
 mod carried_out;
-mod elimination;
+mod door;
 mod ending;
-mod pieces;
 mod proximal;
 
 pub(super) use carried_out::solve_any;
 pub use carried_out::solved;
-pub(super) use carried_out::{Run, Workbench, engine_by};
-pub(super) use elimination::KeptRest;
+pub(super) use carried_out::{KeptRest, Run, Workbench, answered};
