@@ -368,6 +368,14 @@ fn every_link_and_every_named_source_file_exists() {
 }
 
 #[test]
+fn the_flow_of_a_solve_is_the_function_that_the_architecture_prints() {
+    let page = read("ARCHITECTURE.md");
+    let printed = page.split_once("```rust\n").and_then(|(_, rest)| rest.split_once("```")).unwrap().0;
+    assert!(read("crates/qp/src/run/carried_out.rs").contains(printed), "{printed}");
+    assert!(printed.lines().count() <= 20);
+}
+
+#[test]
 fn every_invariant_of_the_architecture_names_a_test_that_exists() {
     let tests: String = files_below("tests", ".rs").iter().map(|file| fs::read_to_string(file).unwrap()).collect();
     let text = read("ARCHITECTURE.md");

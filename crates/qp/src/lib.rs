@@ -71,7 +71,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use certificate::{Bounding, Examination};
 use cost::{Kept, check_memory};
-use engine::Engine;
 use linear::{Analysis, in_order, threads_of_machine};
 use modes::Modes;
 use prepared::between;
@@ -226,8 +225,7 @@ impl ContactProblem {
     /// of an analysis of the stiffness.
     pub fn plan(&self, start: &Start, settings: &Settings) -> Result<String, Error> {
         let settings = &settings.started()?;
-        let known = plan::Known { gaps: 1, is_whole: !start.is_unknown() };
-        plan::Ladder::of(self, known, settings)?.in_words(self, settings)
+        plan::Ladder::of(self, 1, !start.is_unknown(), settings)?.in_words(self, settings)
     }
 
     /// The certificate of an answer: displacement u (length n, in m) and multiplier lambda (length m, in N, `<= 0` in
@@ -272,7 +270,7 @@ impl ContactProblem {
             examine(&Bounding::OwnFactor)
         } else {
             match engine::Hierarchical::new(self, settings) {
-                Ok(hierarchical) => examine(&hierarchical.bounding(&settings.watch)),
+                Ok(levels) => examine(&Bounding::Cycles(&levels.multigrid, settings.watch.clone())),
                 // A dof without stiffness, or a direction of negative energy, has no hierarchy.
                 Err(error) if error.leaves_existence_open() => examine(&Bounding::Nothing),
                 Err(error) => Err(error),
@@ -356,10 +354,10 @@ impl ContactProblem {
     /// # Errors
     /// As [`Prepared::new`].
     pub fn with_contact_sets(&self) -> Result<impl Fn(&ContactSet) -> Option<[Vec<f64>; 2]>, Error> {
-        let factored = engine::Factored::new(self, &plan::WithFactor::BY_RULES, &Settings::default())?;
+        let factored = engine::factored(self, &Settings::default())?;
         Ok(move |closed: &ContactSet| {
             let held = self.with_equality_rows(closed);
-            let [displacement, multiplier] = factored.balanced(&held, self.load().to_vec(), self.gap())?;
+            let [displacement, multiplier] = engine::balanced(&factored, &held, self.load(), self.gap())?;
             Some([displacement, self.split(multiplier).concat()])
         })
     }

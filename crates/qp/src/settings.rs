@@ -61,23 +61,6 @@ impl Method {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum ByFactor {
-    ActiveSet,
-    Qp(InteriorPoint),
-    Penalty(Penalty),
-}
-
-impl From<ByFactor> for Method {
-    fn from(method: ByFactor) -> Self {
-        match method {
-            ByFactor::ActiveSet => Method::ActiveSet,
-            ByFactor::Qp(options) => Method::Qp(options),
-            ByFactor::Penalty(ladder) => Method::Penalty(ladder),
-        }
-    }
-}
-
 /// The rule for condensing the problem onto the dofs of its contact rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -214,6 +197,11 @@ impl Settings {
     /// proof.
     pub(crate) fn of_question(&self) -> Self {
         Settings { method: Method::ActiveSet, accuracy: None, prove: false, ..self.clone() }
+    }
+
+    /// The same with the method and the condensation that the program chooses.
+    pub(crate) fn by_rules(self) -> Self {
+        Settings { method: Method::Auto, condense: Condense::Auto, ..self }
     }
 
     /// The same with a tolerance of the certificate, relative.

@@ -32,12 +32,11 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use crate::certificate::{Bounding, Examination};
-use crate::engine::{Engine, Factored};
+use crate::engine::{Engine, factored};
 use crate::error::Error;
 use crate::linear::watch::Watch;
 use crate::linear::{check_finite, largest};
 use crate::method::Start;
-use crate::plan::WithFactor;
 use crate::prepared::Prepared;
 use crate::problem::ContactProblem;
 use crate::run::solved;
@@ -171,7 +170,7 @@ impl<T: Serialize> Serialize for Derivative<T> {
 #[derive(Clone, Debug)]
 pub struct Derivatives {
     problem: ContactProblem,
-    engine: Arc<dyn Engine>,
+    engine: Engine,
     settings: Settings,
     /// The displacement u of the answer, length n, and its multipliers, of the rows of B and of the equality rows.
     answer: [Vec<f64>; 2],
@@ -387,13 +386,13 @@ impl Prepared {
     /// [`LinearError::Length`] for an answer that does not fit, and those of the proof.
     pub fn derivatives(&self, solution: &Solution) -> Result<Derivatives, Error> {
         let (problem, settings) = (&self.problem, self.settings.started()?);
-        let engine: Arc<dyn Engine> = match &self.bench {
+        let engine = match &self.bench {
             Some(bench) => bench.engine.clone(),
-            None => Arc::new(Factored::new(problem, &WithFactor::BY_RULES, &settings)?),
+            None => Engine::Factor(Arc::new(factored(problem, &settings.clone().by_rules())?)),
         };
         let given = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
         let (displacement, multiplier) = (solution.displacement.clone(), problem.of_all_rows(&given).into_owned());
-        let rows = rows_of(problem, engine.as_ref(), solution, [&displacement, &multiplier], &settings.watch)?;
+        let rows = rows_of(problem, &engine, solution, [&displacement, &multiplier], &settings.watch)?;
         let answer = [displacement, problem.split(multiplier).concat()];
         Ok(Derivatives { problem: problem.clone(), engine, settings, answer, rows })
     }

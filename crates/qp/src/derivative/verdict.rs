@@ -32,7 +32,7 @@ pub(super) struct RowStates {
 /// all rows; or why nothing is known.
 pub(super) fn rows_of(
     problem: &ContactProblem,
-    engine: &dyn Engine,
+    engine: &Engine,
     solution: &Solution,
     answer: [&Vec<f64>; 2],
     watch: &Watch,
@@ -69,7 +69,7 @@ pub(super) fn rows_of(
 /// The proof by the data of the engine, or by a factor of the certificate.
 fn proven_here(
     problem: &ContactProblem,
-    engine: &dyn Engine,
+    engine: &Engine,
     [displacement, multiplier]: [&[f64]; 2],
     watch: &Watch,
 ) -> Result<Option<ProvenSet>, Error> {
@@ -97,7 +97,7 @@ fn proven_here(
 /// known.
 fn exact_answer(
     problem: &ContactProblem,
-    engine: &dyn Engine,
+    engine: &Engine,
     set: &ContactSet,
     [displacement, multiplier]: [&Vec<f64>; 2],
     watch: &Watch,

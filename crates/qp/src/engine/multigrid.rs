@@ -2,18 +2,18 @@
 
 use std::time::Instant;
 
-use super::interface::{Engine, Found, Task};
-use crate::certificate::Bounding;
+use super::step::Task;
 use crate::cost::{Kept, NEAR_CYCLES, bytes, check_memory, check_time, seconds};
 use crate::error::Error;
 use crate::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::linear::threads_of_machine;
 use crate::linear::watch::Watch;
+use crate::method::Outcome;
 use crate::method::Start;
 use crate::method::mprgp::{Limits, Mprgp, takes_travels};
-use crate::plan::{Means, Tried};
+use crate::plan::Tried;
 use crate::problem::ContactProblem;
-use crate::settings::{ByFactor, Method, Settings};
+use crate::settings::{Method, Settings};
 use crate::solution::{ContactSet, Seconds};
 
 /// With fewer dofs a second thread costs about what it saves.
@@ -35,8 +35,8 @@ const MOST_HELD_CYCLES: usize = 400;
 #[derive(Debug)]
 pub(crate) struct Hierarchical {
     problem: ContactProblem,
-    multigrid: Multigrid,
-    seconds: f64,
+    pub multigrid: Multigrid,
+    pub(super) seconds: Seconds,
 }
 
 impl Hierarchical {
@@ -62,37 +62,24 @@ impl Hierarchical {
             Some(near_null) => Multigrid::new(problem.stiffness(), near_null, threads),
             None => Multigrid::new(problem.stiffness(), &NearNullSpace::constants(problem.stiffness())?, threads),
         })?;
-        Ok(Hierarchical { problem: problem.clone(), multigrid, seconds: clock.elapsed().as_secs_f64() })
-    }
-}
-
-impl Engine for Hierarchical {
-    fn serves(&self, means: &Means) -> bool {
-        *means == Means::Multigrid
+        let of_all = clock.elapsed().as_secs_f64();
+        let seconds = Seconds { factor: of_all, solve: of_all, ..Seconds::default() };
+        Ok(Hierarchical { problem: problem.clone(), multigrid, seconds })
     }
 
-    fn seconds(&self) -> Seconds {
-        Seconds { factor: self.seconds, solve: self.seconds, ..Seconds::default() }
-    }
-
-    fn tried(&self, _: Option<ByFactor>) -> Tried {
+    pub(super) fn tried(&self) -> Tried {
         Tried { is_singular: self.multigrid.is_shifted(), ..Tried::on_all_dofs(Method::Mprgp) }
     }
 
-    fn make(&self, task: &Task) -> Result<Option<Found>, Error> {
+    pub(super) fn solve(&self, task: &Task) -> Result<Outcome, Error> {
         let Task { problem, limits, settings, .. } = *task;
         // Once the loop ends, its answer is still to be certified.
         let watch = &settings.watch.keeping(seconds::certificate(problem));
-        let mprgp = Mprgp { problem, multigrid: &self.multigrid, limits, watch };
-        Ok(Some(Found { outcome: mprgp.solve(task.start.clone())?, factor_seconds: 0.0 }))
+        Mprgp { problem, multigrid: &self.multigrid, limits, watch }.solve(task.start.clone())
     }
 
-    fn bounding(&self, watch: &Watch) -> Bounding<'_> {
-        Bounding::Cycles(&self.multigrid, watch.clone())
-    }
-
-    /// The held rows are pairs of opposed rows: bounds that are equal.
-    fn held(
+    /// As [`Engine::held`](super::Engine::held): the held rows are pairs of opposed rows, bounds that are equal.
+    pub(super) fn held(
         &self,
         closed: &ContactSet,
         load: &[f64],
@@ -114,16 +101,10 @@ impl Engine for Hierarchical {
         Ok(Some([outcome.displacement, multiplier]))
     }
 
-    fn bytes(&self) -> f64 {
+    pub(super) fn bytes(&self) -> f64 {
         bytes::of_hierarchy(self.problem.dofs() as f64, self.problem.stiffness().entries() as f64)
     }
 
-    fn hierarchy(&self) -> Option<&Multigrid> {
-        Some(&self.multigrid)
-    }
-}
-
-impl Hierarchical {
     /// A contact set near that of the answer; `None` if the method meets a difficulty that another method must treat.
     pub fn near(&self, watch: &Watch) -> Option<Start> {
         let most_cycles = NEAR_CYCLES as usize;

@@ -3,87 +3,92 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use super::factored::Factored;
-use super::reduction::{Norm, Reduction};
+use super::factored::{Factored, Norm};
 use crate::certificate::EnergyNorm;
 use crate::cost::{check_time, seconds};
 use crate::error::Error;
 use crate::linear::{Analysis, Augmented, AugmentedMatrix, Cholesky, FactorError, largest};
-use crate::plan::{Layout, WithFactor};
+use crate::plan::{Layout, Tried};
 use crate::problem::ContactProblem;
-use crate::settings::Settings;
+use crate::settings::{Method, Settings};
 use crate::solution::Seconds;
 use crate::transform::{Condensation, RowSelection, Scaling};
 
 /// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
-pub(super) const LOST_PIVOT: f64 = 1e-10;
+const LOST_PIVOT: f64 = 1e-10;
 
-impl Factored {
-    /// Scales, condenses and factorises `problem`.
-    pub fn new(problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<Self, Error> {
-        let Settings { threads, watch, .. } = settings;
-        let clock = Instant::now();
-        watch.step("ordering", 0);
-        seconds::learn(watch);
-        let selection = RowSelection::of(problem);
-        let contact = selection.contact(problem.contact());
-        let scaling = Scaling::of(problem.stiffness(), &contact)?;
-        let stiffest = largest(&problem.stiffness().diagonal());
-        let factor_clock = Instant::now();
-        let layout = Layout::within(problem, &scaling, with, settings)?;
-        let Layout { analysis, last, size, method, keeps_norm, .. } = layout;
-        if watch.acknowledge() {
-            return Err(Error::Interrupted);
-        }
-        watch.step("factorisation", 0);
-        let of_row = match last.len() as f64 {
-            0.0 => analysis.factor_entries() as f64,
-            boundary => boundary * boundary,
-        };
-        let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
-        let set_seconds = seconds::factorisation(&analysis);
-        let norm_seconds = seconds::ordering(problem) + set_seconds;
-        let (cholesky, least_pivot) = definite(problem, &scaling, (&analysis, size.is_condensed), settings)?;
-        // A factorisation does not notice a request to stop, and no answer is there yet.
-        if watch.acknowledge() {
-            return Err(Error::Interrupted);
-        }
-        // If no columns come last, the contact sets have the order of the stiffness.
-        let analysis = last.is_empty().then_some(analysis);
-        let condensation = match size.is_condensed {
-            true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
-            false => None,
-        };
-        let norm = match (cholesky, &analysis) {
-            (None, _) => Norm::Missing,
-            (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
-            (Some(cholesky), _) => {
-                let norm = EnergyNorm::new(cholesky, scaling.equilibration().clone(), last);
-                Norm::Kept(norm.lending(&contact))
-            }
-        };
-        let augmented = augmented(condensation.as_ref(), &scaling, analysis, threads.unwrap_or(1))?;
-        let reduction = Reduction { selection, scaling, stiffest, norm, condensation };
-        let by_factor = reduction.compliance().is_none();
-        if by_factor {
-            augmented.matrix()?;
-        }
-        let factor = factor_clock.elapsed().as_secs_f64();
-        Ok(Factored {
-            problem: problem.clone(),
-            reduction,
-            lost_pivot: (least_pivot < LOST_PIVOT).then_some(least_pivot),
-            augmented,
-            method,
-            is_chosen: with.method.is_none(),
-            multiplications: size.multiplications,
-            set_seconds: if by_factor && !size.is_condensed { set_seconds } else { 0.0 },
-            proof_seconds,
-            norm_seconds,
-            condensed_norm: OnceLock::new(),
-            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64(), ..Seconds::default() },
-        })
+/// Scales, condenses and factorises `problem`, for the method of an attempt.
+pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<Factored, Error> {
+    let Settings { threads, watch, .. } = settings;
+    let clock = Instant::now();
+    watch.step("ordering", 0);
+    seconds::learn(watch);
+    let selection = RowSelection::of(problem);
+    let contact = selection.contact(problem.contact());
+    let scaling = Scaling::of(problem.stiffness(), &contact)?;
+    let stiffest = largest(&problem.stiffness().diagonal());
+    let factor_clock = Instant::now();
+    let Layout { analysis, last, is_condensed, method, keeps_norm } = Layout::within(problem, &scaling, settings)?;
+    if watch.acknowledge() {
+        return Err(Error::Interrupted);
     }
+    watch.step("factorisation", 0);
+    let of_row = match last.len() as f64 {
+        0.0 => analysis.factor_entries() as f64,
+        boundary => boundary * boundary,
+    };
+    let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
+    let (multiplications, set_seconds) = (analysis.multiplications(), seconds::factorisation(&analysis));
+    let norm_seconds = seconds::ordering(problem) + set_seconds;
+    let (cholesky, least_pivot) = definite(problem, &scaling, (&analysis, is_condensed), settings)?;
+    // A factorisation does not notice a request to stop, and no answer is there yet.
+    if watch.acknowledge() {
+        return Err(Error::Interrupted);
+    }
+    // If no columns come last, the contact sets have the order of the stiffness.
+    let analysis = last.is_empty().then_some(analysis);
+    let condensation = match is_condensed {
+        true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
+        false => None,
+    };
+    let norm = match (cholesky, &analysis) {
+        (None, _) => Norm::Missing,
+        (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
+        (Some(cholesky), _) => {
+            let norm = EnergyNorm::new(cholesky, scaling.equilibration().clone(), last);
+            Norm::Kept(norm.lending(&contact))
+        }
+    };
+    let augmented = augmented(condensation.as_ref(), &scaling, analysis, threads.unwrap_or(1))?;
+    let by_compliance = matches!(&norm, Norm::Kept(norm) if norm.compliance().is_some());
+    if !by_compliance {
+        augmented.matrix()?;
+    }
+    let factor = factor_clock.elapsed().as_secs_f64();
+    let lost_pivot = (least_pivot < LOST_PIVOT).then_some(least_pivot);
+    let tried = Tried {
+        method,
+        condensed_dofs: condensation.as_ref().map(|condensed| condensed.stiffness().dim()),
+        is_shortcut: settings.method == Method::Auto && method != Method::ActiveSet,
+        lost_pivot,
+        is_singular: lost_pivot.is_some(),
+        multiplications,
+        set_seconds: if by_compliance || is_condensed { 0.0 } else { set_seconds },
+    };
+    Ok(Factored {
+        problem: problem.clone(),
+        selection,
+        scaling,
+        stiffest,
+        norm,
+        condensation,
+        augmented,
+        condensed_norm: OnceLock::new(),
+        tried,
+        proof_seconds,
+        norm_seconds,
+        seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64(), ..Seconds::default() },
+    })
 }
 
 /// The factor of a stiffness with an analysed pattern, `None` if it is not definite to working precision, and its

@@ -60,16 +60,17 @@ const FLOOR: f64 = 0.5;
 /// Solves on the last rung after the set has settled: in the second the shift is the displacement itself.
 const FINAL_SOLVES: usize = 2;
 
+/// A relative error in the energy norm, and the bound on that of an answer (displacement, multiplier).
+pub type AccuracyGoal<'a> = (f64, &'a dyn Fn(&[f64], &[f64]) -> f64);
+
 /// Climbs the ladder on a scaled problem from the contact set `closed`, by at most `most_iterations` factorisations on
-/// all rungs together. It ends at a relative error in the energy norm of `accuracy`, if any, by the `bound` of an
-/// answer (displacement, multiplier).
+/// all rungs together. It ends at its goal, if there is one.
 pub fn solve(
     scaled: &ScaledProblem,
     ladder: Penalty,
     closed: ContactSet,
     most_iterations: usize,
-    accuracy: Option<f64>,
-    bound: &dyn Fn(&[f64], &[f64]) -> f64,
+    goal: Option<AccuracyGoal>,
 ) -> Result<Outcome, Error> {
     let problem = scaled.problem;
     let (displacement, violation) = (vec![0.0; problem.dofs()], vec![f64::NEG_INFINITY; problem.rows()]);
@@ -78,7 +79,7 @@ pub fn solve(
     let multiplier = loop {
         climb.settle(scaled, penalty, most_iterations)?;
         let (multiplier, is_settled) = (climb.multiplier(penalty), climb.ending == Ending::Settled);
-        if let Some(accuracy) = accuracy.filter(|_| is_settled) {
+        if let Some((accuracy, bound)) = goal.filter(|_| is_settled) {
             let bound = bound(&climb.displacement, &multiplier);
             if bound <= accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
                 break multiplier;

@@ -124,10 +124,13 @@ impl Estimate {
         if multigrid > most_bytes {
             return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes, ended: None });
         }
-        let [of_multigrid, of_factor, allowed] = [multigrid, factor, most_bytes].map(written);
-        Ok(format!(
-            "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
-        ))
+        Ok(self.less_than_factor(factor, most_bytes))
+    }
+
+    /// The same, in words alone.
+    pub(super) fn less_than_factor(&self, factor: f64, most_bytes: f64) -> String {
+        let [multigrid, factor, allowed] = [self.multigrid_bytes, factor, most_bytes].map(written);
+        format!("by multigrid, of about {multigrid}: with a factor it would take about {factor}, {allowed} are allowed")
     }
 }
 

@@ -1,10 +1,100 @@
 //! What was tried and what came of it.
 
-use super::attempt::{Limits, Next, Place, Step, Tried};
 use crate::certificate::Evidence;
 use crate::error::{Error, LinearError};
 use crate::method::Ending;
+use crate::method::mprgp::Limits;
+use crate::settings::{Method, Settings};
 use crate::solution::{Certificate, Goal, Seconds, Solution};
+
+/// An answer shows which rows press only if its conditions hold to this, for every requested tolerance.
+const SURE_CONDITIONS: f64 = 1e-9;
+
+/// What a step works on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Means {
+    Problem,
+    /// A factor of the stiffness.
+    Factor,
+    /// A multigrid hierarchy of the stiffness, for MPRGP.
+    Multigrid,
+}
+
+/// What is done in an attempt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    Method,
+    /// The active set, from the set that the interior point reaches.
+    InteriorPoint,
+    /// The active set, from the set that a penalty ladder reaches.
+    Continuation,
+    Dual,
+    /// The best answer, refined by the answer for its residual.
+    Refinement,
+    /// The best answer, changed by the repair of its own bound.
+    Repair,
+    /// Whether the problem has an answer, from the problem alone.
+    Existence,
+    /// Steps with a regular stiffness in place of a singular one.
+    Proximal,
+    /// The check that the best answer is the only one.
+    Uniqueness,
+}
+
+/// The start of an attempt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum From {
+    /// The start that the caller gave, or none.
+    Given,
+    /// The start that the caller gave, or the set that a few cycles of multigrid find: contact is everywhere, and a
+    /// front of closed rows moves by one row of nodes with every set.
+    Cycles,
+    /// The best answer of the attempts so far.
+    Best,
+    Nothing,
+}
+
+/// The method of an attempt, once its data are prepared, with its number of unknowns if they are fewer than all.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tried {
+    pub method: Method,
+    pub condensed_dofs: Option<usize>,
+    /// `true` if the answer may fall short of a goal that a slower way would reach.
+    pub is_shortcut: bool,
+    /// The smallest pivot of the stiffness, for a diagonal of order one, if it is close to rounding.
+    pub lost_pivot: Option<f64>,
+    /// `true` if the stiffness is known to be singular to rounding.
+    pub is_singular: bool,
+    pub multiplications: f64,
+    /// Estimated seconds of a set of closed rows, if each has a factor of its own; zero if not.
+    pub set_seconds: f64,
+}
+
+impl Tried {
+    /// A method on all dofs that is no shortcut, without a factor.
+    pub fn on_all_dofs(method: Method) -> Self {
+        let (condensed_dofs, lost_pivot, [multiplications, set_seconds]) = (None, None, [0.0; 2]);
+        let [is_shortcut, is_singular] = [false; 2];
+        Tried { method, condensed_dofs, is_shortcut, lost_pivot, is_singular, multiplications, set_seconds }
+    }
+
+    /// The method and its unknowns in words, if the rules chose it.
+    pub(super) fn in_words(&self) -> String {
+        let on = match self.condensed_dofs {
+            Some(dofs) => format!("condensed to {dofs} dofs"),
+            None => "on all dofs".to_string(),
+        };
+        let (method, multiplications) = (self.method.name(), self.multiplications);
+        format!("of such methods {method}, {on}, for {multiplications:.1e} multiplications of a factor")
+    }
+}
+
+/// The place of a step in a ladder: its attempt, and its number there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub attempt: usize,
+    pub rung: usize,
+}
 
 /// What came of a step.
 #[derive(Debug)]
@@ -14,6 +104,8 @@ pub enum Ended {
     Empty,
     /// Existence: nothing speaks against an answer.
     MayExist,
+    /// The data are prepared, and nothing else is to be done.
+    Prepared,
     /// Memory or time do not allow it.
     Refused(Error),
     /// It failed; another step may do better.
@@ -52,11 +144,14 @@ impl Answered {
     }
 }
 
-/// A step that was made.
+/// A step: the next one, or one that was made.
 #[derive(Debug)]
 pub struct Record {
     pub place: Place,
+    pub means: Means,
     pub step: Step,
+    pub start: From,
+    /// The limits that the steps before leave for it.
     pub limits: Limits,
     /// The method, if the data of the attempt were prepared.
     pub tried: Option<Tried>,
@@ -70,13 +165,6 @@ pub struct Record {
 }
 
 impl Record {
-    /// A step that begins.
-    pub fn of(next: Next, step: Step) -> Self {
-        let Next { place, limits, .. } = next;
-        let (ended, stages) = (Ended::Empty, Seconds::default());
-        Record { place, step, limits, tried: None, ended, seconds: 0.0, stages, answer: None }
-    }
-
     /// The reason why this step did not give an answer that meets the goal, in a few words.
     pub fn shortfall(&self, goal: Goal) -> String {
         match (&self.ended, &self.answer) {
@@ -87,6 +175,11 @@ impl Record {
             },
             _ => String::new(),
         }
+    }
+
+    /// Returns `true` if the step gave the best answer of those up to it.
+    pub fn is_best(&self) -> bool {
+        matches!(self.ended, Ended::Answered(Answered { is_best: true, .. }))
     }
 
     /// Returns `true` for a step that improves the best answer.
@@ -116,22 +209,31 @@ impl Best {
 /// All steps that were made, and the best answer.
 #[derive(Debug)]
 pub struct History {
-    pub goal: Goal,
+    pub settings: Settings,
+    /// `true` if the program chooses the method, and the stiffness has all entries.
+    pub(super) is_dense: bool,
+    /// Estimated seconds of a multigrid hierarchy, if it was compared and fits into the memory.
+    pub(super) hierarchy_seconds: Option<f64>,
+    /// `true` if equalities are eliminated first.
+    pub(super) is_eliminated: bool,
     pub first: usize,
     pub records: Vec<Record>,
     pub best: Option<Best>,
 }
 
 impl History {
-    /// Nothing was tried yet.
-    pub fn new(goal: Goal) -> Self {
-        // Most runs end with their first step.
-        History { goal, first: 0, records: Vec::with_capacity(1), best: None }
-    }
-
     /// Returns `true` if an answer meets the goal.
     pub fn is_certified(&self) -> bool {
-        self.best.as_ref().is_some_and(|best| self.goal.is_met_by(&best.solution.certificate))
+        self.certificate().is_some_and(|best| self.settings.goal().is_met_by(best))
+    }
+
+    /// Returns `true` if no answer meets the goal.
+    pub fn falls_short(&self) -> bool {
+        !self.is_certified()
+    }
+
+    pub fn certificate(&self) -> Option<&Certificate> {
+        self.best.as_ref().map(|best| &best.solution.certificate)
     }
 
     /// Offers the answer of a step: it is kept if it is better than the best so far.
@@ -139,9 +241,8 @@ impl History {
         /// A clear gain leaves at most this share of the worst condition.
         const CLEAR: f64 = 0.5;
         let certificate = &answer.solution.certificate;
-        let gains = |share: f64| {
-            self.best.as_ref().is_none_or(|best| certificate.gains_on(&best.solution.certificate, self.goal, share))
-        };
+        let goal = self.settings.goal();
+        let gains = |share: f64| self.certificate().is_none_or(|best| certificate.gains_on(best, goal, share));
         let answered = Answered {
             is_settled: answer.ending == Ending::Settled,
             is_unheld: answer.ending == Ending::Unheld,
@@ -155,7 +256,7 @@ impl History {
         answered
     }
 
-    pub fn last_answer(&self) -> Option<&Answered> {
+    fn last_answer(&self) -> Option<&Answered> {
         let answers = self.records.iter().rev().filter_map(|record| match &record.ended {
             Ended::Answered(answered) if !record.improves() => Some(answered),
             _ => None,
@@ -163,9 +264,89 @@ impl History {
         { answers }.next()
     }
 
+    /// Returns `true` if the last method met a motion that no row stops, or a negative energy.
+    pub fn is_unheld(&self) -> bool {
+        self.last_answer().is_some_and(|answer| answer.is_unheld)
+    }
+
+    /// Returns `true` if the last method did not settle.
+    pub fn is_unsettled(&self) -> bool {
+        self.last_answer().is_some_and(|answer| !answer.is_settled)
+    }
+
+    /// Returns `true` if it did not settle for lack of sets.
+    pub fn is_slow(&self) -> bool {
+        self.is_unsettled() && !self.is_unheld()
+    }
+
     /// The last attempt with prepared data.
     pub fn last_tried(&self) -> Option<&Tried> {
         self.records.iter().rev().find_map(|record| record.tried.as_ref())
+    }
+
+    /// The last method.
+    pub fn method(&self) -> Method {
+        self.last_tried().map_or(self.settings.method, |tried| tried.method)
+    }
+
+    /// The steps of the last attempt.
+    pub fn in_attempt(&self) -> impl DoubleEndedIterator<Item = &Record> {
+        let last = self.records.last().map(|record| record.place.attempt);
+        self.records.iter().filter(move |record| Some(record.place.attempt) == last)
+    }
+
+    /// Returns `true` if a last resort may replace the best answer, by the value by which it misses the goal.
+    pub fn may_replace(&self) -> bool {
+        let goal = self.settings.goal();
+        let miss = self.certificate().map_or(f64::INFINITY, |best| best.decisive(goal.required()).1);
+        self.method().allows_last_resort(if miss.is_nan() { f64::INFINITY } else { miss })
+    }
+
+    /// Returns `true` if the last step that was no question leaves the best answer to be improved.
+    pub fn may_improve(&self, is_new: impl Fn(&Record) -> bool) -> bool {
+        let asks = self.certificate().is_some_and(|best| best.asks_for_more(self.settings.goal()));
+        let last = self.in_attempt().rfind(|record| record.step != Step::Existence);
+        asks && last.is_some_and(is_new) && self.method().wants_best()
+    }
+
+    /// Returns `true` if sets of this method that do not settle wander on a dense stiffness: the interior point follows
+    /// at once, so that a bound of where they ended is not worth its time.
+    pub fn wanders_by(&self, method: Method) -> bool {
+        self.is_dense && method == Method::ActiveSet
+    }
+
+    /// Returns `true` if nothing was done but to eliminate equalities, which left forces out of balance at a dof.
+    pub fn is_unbalanced(&self) -> bool {
+        let required = self.settings.goal().required();
+        self.is_eliminated && self.records.len() == 1 && self.certificate().is_some_and(|it| it.stationarity > required)
+    }
+
+    /// Estimated seconds of the sets of the last attempt so far, each with a factor of its own.
+    pub fn spent(&self) -> f64 {
+        let seconds = |record: &Record| match (&record.ended, record.tried) {
+            (Ended::Answered(answered), Some(tried)) => answered.iterations as f64 * tried.set_seconds,
+            _ => 0.0,
+        };
+        self.in_attempt().map(seconds).sum()
+    }
+
+    /// Returns `true` if the last attempt did not settle, and one more set would cost more than the other way.
+    pub fn is_outrun(&self) -> bool {
+        let (Some(first), Some(last)) = (self.in_attempt().next(), self.records.last()) else { return false };
+        let is_unsettled = matches!(last.ended, Ended::Answered(Answered { is_settled: false, is_unheld: false, .. }));
+        let next = last.tried.map_or(0.0, |tried| tried.set_seconds);
+        is_unsettled && self.spent() + next > first.limits.most_seconds
+    }
+
+    /// Returns `true` if multigrid fits, and the attempt before was refused for lack of memory or time, or its sets
+    /// cost more.
+    pub fn is_refused(&self) -> bool {
+        let Some(seconds) = self.hierarchy_seconds else { return false };
+        match self.records.last().map(|record| &record.ended) {
+            Some(Ended::Refused(Error::OutOfTime { .. })) => self.settings.watch.allows(seconds),
+            Some(Ended::Refused(_)) => true,
+            _ => self.is_outrun(),
+        }
     }
 
     /// The last refusal, if nothing else was found.
@@ -177,5 +358,31 @@ impl History {
     /// Returns `true` if existence was looked at.
     pub fn was_in_doubt(&self) -> bool {
         self.records.iter().any(|record| record.step == Step::Existence)
+    }
+
+    /// Returns `true` if nothing speaks against an answer.
+    pub fn may_exist(&self) -> bool {
+        self.records.iter().any(|record| matches!(record.ended, Ended::MayExist))
+    }
+
+    /// Returns `true` if it is open whether an answer exists, or whether it is the only one. An answer without a bound
+    /// leaves it open if its conditions hold, or if the stiffness is known to be singular; the bound itself does not
+    /// see dofs without stiffness.
+    pub fn is_doubtful(&self) -> bool {
+        let failed = |record: &Record| matches!(&record.ended, Ended::Failed(error) if error.leaves_existence_open());
+        let Some(best) = &self.best else { return self.records.iter().any(failed) };
+        let certificate = &best.solution.certificate;
+        match certificate.has_bound() {
+            true => certificate.loose_dofs > 0,
+            false => {
+                let is_singular = best.tried.is_some_and(|tried| tried.is_singular);
+                self.is_unheld() || is_singular || certificate.conditions_hold(self.settings.goal().tolerance)
+            }
+        }
+    }
+
+    /// The tolerance to which the conditions of an answer must hold if its rows are to tell whether it is the only one.
+    pub fn sure_tolerance(&self) -> f64 {
+        self.settings.goal().tolerance.min(SURE_CONDITIONS)
     }
 }

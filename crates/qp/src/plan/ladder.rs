@@ -1,20 +1,23 @@
-//! The ladder: all attempts for a problem, in order.
+//! The ladder: all attempts for a problem, in order, and the step that follows after what was found.
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::attempt::{
-    Arrangement, Attempt, BY_ELIMINATION, From, IN_PIECES, Limits, Means, OF_EXISTENCE, WITH_FACTOR, WITH_MULTIGRID,
-    When, WithFactor,
+    ALWAYS, Attempt, OF_EXISTENCE, REFUSED, SHORT, SHORT_OF_MULTIGRID, SHORT_OF_SHORTCUT, SHORT_OF_UNSETTLED,
+    SHORT_ON_CONDENSED, WITH_FACTOR, WITH_MULTIGRID,
 };
 use super::choice::Choice;
+use super::history::{Answered, Ended, From, History, Means, Place, Record, Step};
 use super::nearly_linear;
 use crate::cost::{Estimate, starts_near};
 use crate::error::Error;
 use crate::linear::Analysis;
 use crate::method::interior_point::InteriorPoint;
+use crate::method::mprgp::Limits;
 use crate::problem::ContactProblem;
-use crate::settings::{ByFactor, Condense, Method, Settings};
+use crate::settings::{Condense, Method, Settings};
+use crate::solution::Seconds;
 use crate::transform::Pieces;
 
 /// MPRGP ends at this share of the tolerance of the certificate, because the scales of the two differ.
@@ -23,25 +26,38 @@ const MARGIN: f64 = 0.1;
 /// If an accuracy is given, MPRGP first ends at this share of the accuracy: forces are less accurate than the energy.
 const FIRST: f64 = 0.1;
 
+/// Refinements of an answer, one after the other: each gains as many digits as the factor has left.
+const MOST_REFINEMENTS: usize = 6;
+
+/// Repairs of an answer, one after the other: the second removes the rounding of the first.
+const MOST_REPAIRS: usize = 8;
+
+/// If the certificate is not met, MPRGP continues to this share of the residual that it reached.
+const NEXT: f64 = 0.01;
+
+/// If the bound exceeds the accuracy, MPRGP next aims at this share of the accuracy.
+const AIM: f64 = 0.3;
+
+/// A relative imbalance of forces below this is rounding.
+const IMBALANCE_ROUNDING: f64 = 1e-15;
+
 /// A piece has at least this number of unknowns, if all parts together have twice as many: smaller parts are solved
 /// faster together.
 const PIECE: usize = 2000;
 
-/// What the caller of a ladder knows and keeps.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Known {
-    /// Number of gaps or loads that share the prepared data.
-    pub gaps: usize,
-    /// `true` if the problem stays in one piece, because a start is given, or because its data are kept.
-    pub is_whole: bool,
+/// What is taken out of a problem before all attempts, so that the rest is solved by a ladder of its own.
+#[derive(Clone, Debug)]
+pub(crate) enum Door {
+    Equalities,
+    Pieces(Arc<Pieces>),
 }
 
 /// Everything that may be tried, in order.
 #[derive(Clone, Debug)]
 pub(crate) struct Ladder {
+    /// The first has no steps if there is a door.
     pub attempts: Vec<Attempt>,
-    /// The pieces of the first attempt, if the problem is solved in pieces.
-    pub pieces: Option<Arc<Pieces>>,
+    pub door: Option<Door>,
     pub(super) settings: Settings,
     /// The comparison of factor and multigrid, if the program chooses.
     pub(super) choice: Option<(Estimate, Choice)>,
@@ -52,11 +68,12 @@ pub(crate) struct Ladder {
 }
 
 impl Ladder {
-    /// The ladder for `problem`.
-    pub fn of(problem: &ContactProblem, known: Known, settings: &Settings) -> Result<Self, Error> {
+    /// The ladder for `problem`, if this number of gaps or loads shares the prepared data. It stays in one piece if a
+    /// start is given, or if its data are kept.
+    pub fn of(problem: &ContactProblem, gaps: usize, is_whole: bool, settings: &Settings) -> Result<Self, Error> {
         let mut ladder = Ladder {
             attempts: Vec::with_capacity(8),
-            pieces: None,
+            door: None,
             settings: settings.clone(),
             choice: None,
             is_dense: settings.method == Method::Auto && Analysis::is_dense_for(problem.stiffness()),
@@ -66,29 +83,24 @@ impl Ladder {
         let equalities = problem.equalities().len();
         if equalities > 0 {
             let because = format!("{equalities} pair{} of rows leave no room", if equalities == 1 { "" } else { "s" });
-            ladder.add(Attempt { steps: BY_ELIMINATION, ..ladder.attempt(Means::Problem, because) });
-        } else if !known.is_whole
-            && let Some(pieces) = pieces_of(problem, settings)
-        {
+            ladder.add(Attempt { steps: &[], ..ladder.attempt(Means::Problem, because) });
+            ladder.door = Some(Door::Equalities);
+        } else if !is_whole && let Some(pieces) = pieces_of(problem, settings) {
             let because = format!("nothing couples its {} pieces", pieces.count());
-            ladder.add(Attempt { steps: IN_PIECES, ..ladder.attempt(Means::Problem, because) });
-            ladder.pieces = Some(Arc::new(pieces));
+            ladder.add(Attempt { steps: &[], ..ladder.attempt(Means::Problem, because) });
+            ladder.door = Some(Door::Pieces(Arc::new(pieces)));
         }
-        let near = !known.is_whole && starts_by_multigrid(problem, settings);
+        let near = !is_whole && starts_by_multigrid(problem, settings);
         let start = if near { From::Cycles } else { From::Given };
-        let by_name =
-            |ladder: &Self, method| Attempt { start, ..ladder.attempt(ladder.factor(Some(method)), REQUESTED) };
         match settings.method {
             Method::Auto => {
-                let estimate = Estimate::of(problem).for_accuracy(settings.accuracy).of_many(known.gaps);
+                let estimate = Estimate::of(problem).for_accuracy(settings.accuracy).of_many(gaps);
                 let choice = estimate.choose(settings.memory.unwrap_or(f64::INFINITY))?;
                 ladder.by_choice(&choice, start);
                 ladder.choice = Some((estimate, choice));
             }
             Method::Mprgp => ladder.add(ladder.attempt(Means::Multigrid, REQUESTED)),
-            Method::ActiveSet => ladder.with_factor(by_name(&ladder, ByFactor::ActiveSet)),
-            Method::Qp(options) => ladder.with_factor(by_name(&ladder, ByFactor::Qp(options))),
-            Method::Penalty(options) => ladder.with_factor(by_name(&ladder, ByFactor::Penalty(options))),
+            method => ladder.with_factor(Attempt { start, ..ladder.by_factor(method, REQUESTED) }),
         }
         // Its steps have their own conditions, also for an answer that meets the goal.
         ladder.attempts.push(Attempt { steps: OF_EXISTENCE, ..ladder.attempt(Means::Problem, "") });
@@ -112,7 +124,7 @@ impl Ladder {
     /// The same for a problem that the question of existence gives rise to: only a motion that no row stops raises it
     /// again, and the stiffness of such a problem is regular.
     pub fn without_existence(mut self) -> Self {
-        self.attempts.retain(|attempt| attempt.steps[0].step != OF_EXISTENCE[0].step);
+        self.attempts.pop();
         self
     }
 
@@ -120,25 +132,25 @@ impl Ladder {
     fn by_choice(&mut self, choice: &Choice, start: From) {
         let after = |ladder: &Self, method| {
             let because = "a factor may give the answer that the iteration does not";
-            Attempt { start, when: When::ShortOfMultigrid, ..ladder.attempt(ladder.factor(method), because) }
+            Attempt { start, when: SHORT_OF_MULTIGRID, ..ladder.by_factor(method, because) }
         };
         // The way stands before the colon.
         let because = |reason: &str| reason.split_once(": ").map_or(reason, |(_, because)| because).to_string();
         match choice {
             Choice::Factor { reason, most_seconds } => {
-                let mut first = Attempt { start, ..self.attempt(self.factor(None), because(reason)) };
+                let mut first = Attempt { start, ..self.by_factor(Method::Auto, because(reason)) };
                 first.limits.most_seconds = *most_seconds;
                 self.with_factor(first);
                 let refused = self.attempt(Means::Multigrid, "it takes less memory, and begins sooner");
-                self.add(Attempt { when: When::Refused, start: From::Best, ..refused });
+                self.add(Attempt { when: REFUSED, start: From::Best, ..refused });
                 // The refusal was of a faster method, which takes more memory than one factor at a time.
-                self.with_factor(after(self, Some(ByFactor::ActiveSet)));
+                self.with_factor(after(self, Method::ActiveSet));
             }
             Choice::Multigrid { reason, most_cycles } => {
                 let mut multigrid = self.attempt(Means::Multigrid, because(reason));
                 multigrid.limits.worth = *most_cycles;
                 self.add(multigrid);
-                self.with_factor(after(self, None));
+                self.with_factor(after(self, Method::Auto));
             }
         }
     }
@@ -150,53 +162,128 @@ impl Ladder {
 
     /// Adds an attempt; none but the first is made if an answer meets the goal.
     fn add(&mut self, attempt: Attempt) {
-        let when = if attempt.when == When::Always && !self.attempts.is_empty() { When::Short } else { attempt.when };
+        let has_condition = self.attempts.is_empty() || !attempt.when.words.is_empty();
+        let when = if has_condition { attempt.when } else { SHORT };
         self.attempts.push(Attempt { when, ..attempt });
-    }
-
-    /// A factor under the settings as they were given, with this method or that of the rules.
-    fn factor(&self, method: Option<ByFactor>) -> Means {
-        let arrangements: &[Arrangement] = match self.settings.condense {
-            Condense::Auto => &Arrangement::ALL,
-            Condense::Never => &Arrangement::ON_ALL_DOFS,
-        };
-        Means::Factor(WithFactor { method, arrangements })
     }
 
     /// An attempt by these means, from the start that was given.
     fn attempt(&self, means: Means, because: impl Into<Cow<'static, str>>) -> Attempt {
         let steps = if means == Means::Multigrid { WITH_MULTIGRID } else { WITH_FACTOR };
-        let (start, when, limits) = (From::Given, When::Always, limits(&self.settings));
-        Attempt { means, start, limits, when, because: because.into(), steps }
+        let method = if means == Means::Multigrid { Method::Mprgp } else { Method::Auto };
+        let (condense, start, when, limits) = (self.settings.condense, From::Given, ALWAYS, limits(&self.settings));
+        Attempt { means, method, condense, start, limits, when, because: because.into(), steps }
+    }
+
+    /// An attempt with a factor, by this method.
+    fn by_factor(&self, method: Method, because: impl Into<Cow<'static, str>>) -> Attempt {
+        Attempt { method, ..self.attempt(Means::Factor, because) }
     }
 
     /// Adds the attempts with a factor: the `first`; after a shortcut the active set; after a condensation on all dofs.
     fn with_factor(&mut self, first: Attempt) {
-        let means = first.means;
+        let method = first.method;
         self.add(first);
-        let Means::Factor(with) = means else { return };
-        if matches!(with.method, Some(ByFactor::Qp(InteriorPoint { polish: false, .. }))) {
-            let because = "the interior-point method did not reach its tolerance";
-            let polished = self.attempt(self.factor(Some(ByFactor::Qp(InteriorPoint::DEFAULT))), because);
-            self.add(Attempt { when: When::ShortOfUnsettled, ..polished });
+        if matches!(method, Method::Qp(InteriorPoint { polish: false, .. })) {
+            let polished = self.by_factor(Method::qp(), "the interior-point method did not reach its tolerance");
+            self.add(Attempt { when: SHORT_OF_UNSETTLED, ..polished });
         }
-        let method = Some(with.method.unwrap_or(ByFactor::ActiveSet));
-        let exact = WithFactor { method, ..with };
-        if with.method.is_none() {
-            let because = "the active set leaves out no digit";
-            let exact = self.attempt(Means::Factor(exact), because);
-            self.add(Attempt { when: When::ShortOfShortcut, start: From::Nothing, ..exact });
+        if method == Method::Auto {
+            let exact = self.by_factor(Method::ActiveSet, "the active set leaves out no digit");
+            self.add(Attempt { when: SHORT_OF_SHORTCUT, start: From::Nothing, ..exact });
         }
-        if with.arrangements.contains(&Arrangement::Condensed) {
+        if self.settings.condense == Condense::Auto {
             let because = "condensing loses digits if the contact boundary feels little of the stiffness of the body";
-            let whole = WithFactor { arrangements: &Arrangement::ON_ALL_DOFS, ..exact };
-            let whole = self.attempt(Means::Factor(whole), because);
-            self.add(Attempt { when: When::ShortOnCondensed, start: From::Best, ..whole });
+            let method = if method == Method::Auto { Method::ActiveSet } else { method };
+            let (condense, when) = (Condense::Never, SHORT_ON_CONDENSED);
+            self.add(Attempt { condense, when, start: From::Best, ..self.by_factor(method, because) });
+        }
+    }
+
+    /// Nothing was tried yet, under these settings.
+    pub fn history(&self, settings: &Settings) -> History {
+        let fits = |bytes: f64| bytes.is_finite() && bytes <= self.settings.memory.unwrap_or(f64::INFINITY);
+        let levels = self.choice.as_ref().filter(|(estimate, _)| fits(estimate.multigrid_bytes));
+        let hierarchy_seconds = levels.map(|(estimate, _)| estimate.hierarchy_seconds);
+        // Most runs end with their first step.
+        let (settings, is_dense, records) = (settings.clone(), self.is_dense, Vec::with_capacity(1));
+        let (first, is_eliminated) = (self.first_with_data(), matches!(self.door, Some(Door::Equalities)));
+        History { settings, is_dense, hierarchy_seconds, is_eliminated, first, records, best: None }
+    }
+
+    /// The next step; `None` if the goal is met and nothing more is to be gained, if nothing is left, if an error is
+    /// decided, or if the watch is over.
+    pub fn next(&self, history: &History) -> Option<Record> {
+        let Some(last) = history.records.last() else { return Some(self.step_at(history.first, 0)) };
+        if matches!(last.ended, Ended::Decided(_) | Ended::Prepared) || history.settings.watch.is_over() {
+            return None;
+        }
+        if let Some(limits) = self.again(last, history) {
+            return Some(Record { start: From::Best, limits, ..self.step_at(last.place.attempt, last.place.rung) });
+        }
+        let has_ended = matches!((&last.ended, last.step), (Ended::Refused(_) | Ended::Failed(_), Step::Method));
+        // A method that fails leaves its data to the next steps.
+        let is_prepared = (!has_ended || last.tried.is_some()) && !history.is_outrun();
+        let rest = if is_prepared { self.attempts[last.place.attempt].steps.len() } else { 0 };
+        let here = (last.place.rung + 1..rest).map(|rung| Place { attempt: last.place.attempt, rung });
+        let later = (last.place.attempt + 1..self.attempts.len())
+            .filter(|&attempt| (self.attempts[attempt].when.holds)(history))
+            .flat_map(|attempt| (0..self.attempts[attempt].steps.len()).map(move |rung| Place { attempt, rung }));
+        let is_due = |place: &Place| (self.attempts[place.attempt].steps[place.rung].when.holds)(history);
+        let place = here.chain(later).find(is_due)?;
+        let mut next = self.step_at(place.attempt, place.rung);
+        if place.rung > 0 {
+            next.start = From::Best;
+            next.limits.most_seconds -= history.spent();
+        }
+        Some(next)
+    }
+
+    /// The step that comes before all attempts.
+    pub fn at_the_door(&self) -> Record {
+        self.step_at(0, 0)
+    }
+
+    /// A step of an attempt that begins.
+    fn step_at(&self, attempt: usize, rung: usize) -> Record {
+        let Attempt { means, start, limits, steps, .. } = self.attempts[attempt];
+        let (place, step, ended, stages) = (
+            Place { attempt, rung },
+            steps.get(rung).map_or(Step::Method, |rung| rung.step),
+            Ended::Empty,
+            Seconds::default(),
+        );
+        Record { place, means, step, start, limits, tried: None, ended, seconds: 0.0, stages, answer: None }
+    }
+
+    /// The limits of the last step if it is made again.
+    fn again(&self, last: &Record, history: &History) -> Option<Limits> {
+        let Ended::Answered(answered) = &last.ended else { return None };
+        let in_a_row = history.records.iter().rev().take_while(|record| record.place == last.place).count();
+        let asks = history.certificate()?.asks_for_more(history.settings.goal());
+        match last.step {
+            Step::Refinement => (answered.gains && asks && in_a_row < MOST_REFINEMENTS).then_some(last.limits),
+            Step::Repair => (answered.is_best && asks && in_a_row < MOST_REPAIRS).then_some(last.limits),
+            Step::Method if last.means == Means::Multigrid => tighter(last, answered, history),
+            _ => None,
         }
     }
 }
 
 const REQUESTED: &str = "it was requested";
+
+/// The limits with which MPRGP goes on from a settled answer that falls short.
+fn tighter(last: &Record, answered: &Answered, history: &History) -> Option<Limits> {
+    let bound = history.certificate()?.energy_error_bound;
+    let share = match history.settings.accuracy {
+        Some(accuracy) if bound.is_finite() && bound > 0.0 => (AIM * accuracy / bound).clamp(NEXT, AIM),
+        _ => NEXT,
+    };
+    let tolerance = last.limits.tolerance * share;
+    let most_cycles = history.settings.max_iterations.saturating_sub(answered.iterations);
+    let goes_on = answered.is_settled && !history.is_certified() && tolerance >= IMBALANCE_ROUNDING && most_cycles > 0;
+    goes_on.then_some(Limits { tolerance, most_cycles, ..last.limits })
+}
 
 /// The first limits of MPRGP.
 fn limits(settings: &Settings) -> Limits {

@@ -1,22 +1,32 @@
-//! The layout of a factor: its arrangement, and the parts that are kept, within memory and time.
+//! The layout of a factor: its arrangement, the method on it, and the parts that are kept, within memory and time.
 
-use super::attempt::{Arrangement, WithFactor};
-use super::rules::{Size, is_crowded};
+use super::attempt::Arrangement;
 use crate::certificate::EnergyNorm;
 use crate::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
 use crate::error::Error;
 use crate::linear::Analysis;
 use crate::problem::ContactProblem;
-use crate::settings::{ByFactor, Method, Settings};
+use crate::settings::{Condense, Method, Settings};
 use crate::transform::{Condensation, Scaling};
+
+/// A factor with fewer multiplications for each row belongs to a chain. Along a chain of more than [`LONG`] rows a
+/// front of closed rows takes hundreds of sets; the interior point takes some twenty steps.
+const CHAIN: f64 = 200.0;
+
+/// Rows of a long chain.
+const LONG: usize = 1000;
+
+/// Rows with more entries than this in the mean are no rows of contact, which join a node to the few that face it.
+const LONG_ROWS: usize = 8;
 
 /// An order of elimination with its structure, and its kept parts.
 pub(crate) struct Layout {
     pub analysis: Analysis,
     /// The dofs that are eliminated last.
     pub last: Vec<usize>,
-    pub size: Size,
-    pub method: ByFactor,
+    /// `true` if the stiffness is condensed onto the contact dofs.
+    pub is_condensed: bool,
+    pub method: Method,
     /// `true` if the factor of the stiffness is kept beside those of the contact sets; if not, it is computed again for
     /// the certificate.
     pub keeps_norm: bool,
@@ -27,15 +37,10 @@ impl Layout {
     ///
     /// # Errors
     /// [`Error::TooLarge`] with the least memory that a layout needs, [`Error::OutOfTime`], [`Error::Interrupted`].
-    pub fn within(
-        problem: &ContactProblem,
-        scaling: &Scaling,
-        with: &WithFactor,
-        settings: &Settings,
-    ) -> Result<Self, Error> {
-        check_room_to_order(problem, with, settings)?;
+    pub fn within(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<Self, Error> {
+        check_room_to_order(problem, settings)?;
         let mut refused: Option<Error> = None;
-        for arrangement in with.arrangements {
+        for arrangement in Arrangement::under(settings.condense) {
             check_time(&settings.watch, seconds::ordering(problem))?;
             if settings.watch.acknowledge() {
                 return Err(Error::Interrupted);
@@ -65,10 +70,12 @@ impl Layout {
             };
             let Some(analysis) = analysis else { continue };
             let analysis = analysis.with_threads(settings.threads.unwrap_or(1));
-            let (multiplications, rows) = (analysis.multiplications(), problem.rows());
-            let size = Size { is_condensed, multiplications, rows, is_crowded: is_crowded(problem) };
-            let layout = Layout { analysis, last, size, method: with.chosen(size), keeps_norm: true };
-            match layout.fitting(problem, with, settings) {
+            let method = match settings.method {
+                Method::Auto => by_rules(problem, analysis.multiplications(), is_condensed),
+                given => given,
+            };
+            let layout = Layout { analysis, last, is_condensed, method, keeps_norm: true };
+            match layout.fitting(problem, settings) {
                 Err(error @ Error::TooLarge { .. }) => keep_least(&mut refused, error),
                 decided => return decided,
             }
@@ -77,14 +84,14 @@ impl Layout {
     }
 
     /// The layout with the method and the parts that fit into memory and time.
-    fn fitting(mut self, problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<Self, Error> {
+    fn fitting(mut self, problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let mut choices = vec![(self.method, true)];
         // The chosen method may take more memory than available, or too much time before its first step.
-        if with.method.is_none() && self.method != ByFactor::ActiveSet {
-            choices.push((ByFactor::ActiveSet, true));
+        if settings.method == Method::Auto && self.method != Method::ActiveSet {
+            choices.push((Method::ActiveSet, true));
         }
-        if !self.size.is_condensed && self.last.is_empty() && with.method == Some(ByFactor::ActiveSet) {
-            choices.push((ByFactor::ActiveSet, false));
+        if !self.is_condensed && self.last.is_empty() && settings.method == Method::ActiveSet {
+            choices.push((Method::ActiveSet, false));
         }
         let mut refused: Option<Error> = None;
         for choice in choices {
@@ -102,7 +109,7 @@ impl Layout {
     fn kept(&self) -> Kept {
         let (values, last) = (self.analysis.factor_entries(), self.last.len());
         let by_interior_point = self.is_by_interior_point();
-        match (self.size.is_condensed, self.keeps_norm) {
+        match (self.is_condensed, self.keeps_norm) {
             (true, _) => Kept::Condensed { values, contact_dofs: last, by_interior_point },
             (false, true) => Kept::Factors { values, last, by_interior_point },
             (false, false) => Kept::OneFactor { values },
@@ -110,14 +117,14 @@ impl Layout {
     }
 
     fn is_by_interior_point(&self) -> bool {
-        matches!(self.method, ByFactor::Qp(_))
+        matches!(self.method, Method::Qp(_))
     }
 
     /// Method and unknowns in words.
     pub fn in_words(&self) -> String {
-        let method = Method::from(self.method).name();
-        let (multiplications, entries) = (self.size.multiplications, self.analysis.factor_entries());
-        let on = match self.size.is_condensed {
+        let method = self.method.name();
+        let (multiplications, entries) = (self.analysis.multiplications(), self.analysis.factor_entries());
+        let on = match self.is_condensed {
             true => format!("condensed to {} dofs", self.last.len()),
             false => "on all dofs".to_string(),
         };
@@ -127,7 +134,7 @@ impl Layout {
     /// Seconds until the first set of contact rows is settled, or the first step of the interior point is done.
     fn seconds(&self) -> f64 {
         let first = seconds::factorisation(&self.analysis);
-        match (self.size.is_condensed, self.is_by_interior_point()) {
+        match (self.is_condensed, self.is_by_interior_point()) {
             (true, _) => first + seconds::dense(self.last.len()),
             (false, false) => 2.0 * first,
             (false, true) => first + 2.0 * seconds::interior_point(&self.analysis),
@@ -136,16 +143,16 @@ impl Layout {
 }
 
 /// Refuses a problem that is too large to be ordered, with a rough estimate of its factor.
-fn check_room_to_order(problem: &ContactProblem, with: &WithFactor, settings: &Settings) -> Result<(), Error> {
+fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
     match check_memory(problem, Kept::Nothing, settings.memory) {
         Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
             let factor_entries = Estimate::of(problem).factor_entries;
             let factor = bytes::of_factor(factor_entries);
             let contact_dofs = problem.contact().columns_with_entries().len() as f64;
-            let factors = match with.arrangements.contains(&Arrangement::Condensed) {
+            let factors = match settings.condense {
                 // Instead of large dense matrices one factor after the other is made.
-                true => (factor + bytes::of_dense(contact_dofs)).min(bytes::of_next_factor(factor_entries)),
-                false => FACTORS * factor,
+                Condense::Auto => (factor + bytes::of_dense(contact_dofs)).min(bytes::of_next_factor(factor_entries)),
+                Condense::Never => FACTORS * factor,
             };
             Err(Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes: bytes + factors, allowed })
         }
@@ -161,4 +168,24 @@ fn keep_least(refused: &mut Option<Error>, other: Error) {
         (None, _) => {}
     }
     *refused = Some(other);
+}
+
+/// Returns `true` if most sets of rows that may be closed are dependent, so that the loop of the active set wanders: if
+/// a problem has more long rows than dofs in them, or if most of its dofs have no stiffness, as in a linear program.
+/// Equalities are closed in every answer, and do not count.
+pub(super) fn is_crowded(problem: &ContactProblem) -> bool {
+    let mut bounded: Vec<bool> = problem.gap().iter().map(|gap| gap.is_finite()).collect();
+    problem.equalities().iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| bounded[row] = false);
+    let of_dof = |dof: usize| problem.contact().column(dof).filter(|&(row, b)| b != 0.0 && bounded[row]);
+    let dofs = (0..problem.dofs()).filter(|&dof| of_dof(dof).next().is_some()).count();
+    let rows = bounded.iter().filter(|bounded| **bounded).count();
+    let has_long_rows = rows > dofs && (0..problem.dofs()).flat_map(of_dof).count() > LONG_ROWS * rows;
+    has_long_rows || (rows > 0 && 2 * problem.without_stiffness().len() > problem.dofs())
+}
+
+/// The method for a factor of this size: the active set, but where its sets are many.
+pub(super) fn by_rules(problem: &ContactProblem, multiplications: f64, is_condensed: bool) -> Method {
+    let rows = problem.rows();
+    let is_long_chain = !is_condensed && rows > LONG && multiplications < CHAIN * rows as f64;
+    if is_long_chain || is_crowded(problem) { Method::qp() } else { Method::ActiveSet }
 }

@@ -12,8 +12,8 @@
 //! ```
 //!
 //! [`Method::Auto`] chooses between factor and multigrid by the estimates of `cost` (`choice`); the other one follows
-//! if the first is refused or falls short. The layout of a factor (`layout`) and the method on it (`rules`) are chosen
-//! once its pattern is analysed.
+//! if the first is refused or falls short. The layout of a factor (`layout`), and the method on it, are chosen once its
+//! pattern is analysed.
 
 mod attempt;
 mod choice;
@@ -21,12 +21,11 @@ mod history;
 mod ladder;
 mod layout;
 mod nearly_linear;
-mod next;
-mod rules;
 mod words;
 
-pub(super) use attempt::{Attempt, From, Limits, Means, Next, PATIENCE, Step, Tried, WithFactor};
+pub(super) use attempt::{Attempt, PATIENCE};
 pub(super) use choice::is_bounded_by_factor;
 pub use history::{Answered, Best, Ended, History, Record};
-pub(super) use ladder::{Known, Ladder};
+pub(super) use history::{From, Means, Step, Tried};
+pub(super) use ladder::{Door, Ladder};
 pub(super) use layout::Layout;

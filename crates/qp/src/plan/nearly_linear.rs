@@ -1,6 +1,6 @@
 //! Programs that are nearly linear: a stiffness of low rank, and an answer in a corner of its rows.
 
-use super::rules::is_crowded;
+use super::layout::is_crowded;
 use crate::error::Error;
 use crate::problem::ContactProblem;
 

@@ -2,22 +2,20 @@
 
 use std::fmt;
 
-use super::attempt::{Arrangement, Attempt, From, Means, Rung, Step, Tried, When, WithFactor};
+use super::attempt::{Arrangement, Attempt, Rung};
 use super::choice::Choice;
-use super::history::{Ended, History, Record};
-use super::ladder::Ladder;
+use super::history::{Best, Ended, From, History, Means, Record, Step, Tried};
+use super::ladder::{Door, Ladder};
 use super::layout::Layout;
 use crate::error::Error;
-use crate::linear::memory::in_words as memory;
 use crate::problem::ContactProblem;
-use crate::settings::Settings;
+use crate::settings::{Condense, Settings};
 use crate::solution::Why;
 use crate::transform::{RowSelection, Scaling};
 
 impl Ladder {
-    /// The ways that were compared before, and the decision; with the method that gave the best answer of `history`.
-    pub fn why(&self, history: &History) -> Why {
-        let Some(best) = &history.best else { return Why::default() };
+    /// The ways that were compared before, and the decision; with the method that gave the best answer.
+    pub fn why(&self, history: &History, best: &Best) -> Why {
         let Some((estimate, choice)) = &self.choice else {
             let chosen = self.settings.method.name().to_string();
             let reason = format!("by {chosen}: {}", self.attempts[self.first_with_data()].because);
@@ -26,7 +24,7 @@ impl Ladder {
         let why = estimate.why(choice);
         let then = match self.attempts[best.attempt].means {
             Means::Problem => None,
-            Means::Factor(_) => best.tried.as_ref().map(Tried::in_words),
+            Means::Factor => best.tried.as_ref().map(Tried::in_words),
             Means::Multigrid => self.without_factor(history).map(|reason| format!("in the end {reason}")),
         };
         let reason = then.map_or_else(|| why.reason.clone(), |then| format!("{}; {then}", why.reason));
@@ -34,9 +32,9 @@ impl Ladder {
     }
 
     /// The reason why no factor was taken, if the program decided that and the best answer has none; otherwise empty.
-    pub fn reason(&self, history: &History) -> String {
-        match (&history.best, &self.choice) {
-            (Some(best), Some((estimate, choice))) if self.attempts[best.attempt].means == Means::Multigrid => {
+    pub fn reason(&self, history: &History, best: &Best) -> String {
+        match &self.choice {
+            Some((estimate, choice)) if self.attempts[best.attempt].means == Means::Multigrid => {
                 self.without_factor(history).unwrap_or_else(|| estimate.why(choice).reason)
             }
             _ => String::new(),
@@ -52,12 +50,7 @@ impl Ladder {
     fn without_factor(&self, history: &History) -> Option<String> {
         let (estimate, choice) = self.choice.as_ref()?;
         let refused = history.records.iter().find_map(|record| match &record.ended {
-            Ended::Refused(Error::TooLarge { bytes, allowed, .. }) => {
-                let [of_multigrid, of_factor, allowed] = [estimate.multigrid_bytes, *bytes, *allowed].map(memory);
-                Some(format!(
-                    "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
-                ))
-            }
+            Ended::Refused(Error::TooLarge { bytes, allowed, .. }) => Some(estimate.less_than_factor(*bytes, *allowed)),
             Ended::Refused(Error::OutOfTime { needed, time }) => Some(format!(
                 "by multigrid: a factorisation would take about {needed:.1e} s, but {time:.1e} s are left"
             )),
@@ -75,27 +68,23 @@ impl Ladder {
         let (estimate, _) = self.choice.as_ref()?;
         let last = history.records.iter().rev().find(|record| record.step == Step::Method)?;
         let Ended::Refused(Error::TooLarge { bytes: factor, allowed, .. }) = last.ended else { return None };
-        let is_of_multigrid = |record: &&Record| self.attempts[record.place.attempt].means == Means::Multigrid;
-        let ended = history.records.iter().rev().find(is_of_multigrid).map(|record| record.shortfall(history.goal));
+        let is_of_multigrid = |record: &&Record| record.means == Means::Multigrid;
+        let ended =
+            history.records.iter().rev().find(is_of_multigrid).map(|record| record.shortfall(history.settings.goal()));
         Some(Error::NoRoom { factor, multigrid: estimate.multigrid_bytes, allowed, ended })
     }
 }
 
 impl Ladder {
-    /// The attempts with a factor, by their numbers.
-    fn factors(&self) -> impl Iterator<Item = (usize, WithFactor)> {
-        self.attempts.iter().enumerate().filter_map(|(number, attempt)| match attempt.means {
-            Means::Factor(with) => Some((number, with)),
-            _ => None,
-        })
+    /// The first attempt with a factor, by its number.
+    fn first_factor(&self) -> Option<(usize, &Attempt)> {
+        self.attempts.iter().enumerate().find(|(_, attempt)| attempt.means == Means::Factor)
     }
 }
 
 impl Step {
     fn in_words(self) -> &'static str {
         match self {
-            Step::Pieces => "each piece by a plan of its own",
-            Step::Elimination => "the equalities eliminated, and the rest by a plan of its own",
             Step::Method => "the method",
             Step::InteriorPoint => "the active set again, from the set that the interior point reaches",
             Step::Continuation => "the active set again, from the set that a penalty ladder reaches",
@@ -105,27 +94,6 @@ impl Step {
             Step::Existence => "look whether the problem has an answer, from the problem alone",
             Step::Proximal => "steps with K + rho E in place of K",
             Step::Uniqueness => "look whether the answer is the only one",
-        }
-    }
-}
-
-impl When {
-    /// The condition, to be read after a step.
-    fn in_words(self) -> &'static str {
-        match self {
-            When::Always => "",
-            When::Refused => "if memory or time do not allow the attempt before, or its sets cost too much",
-            When::Unheld => "if the method meets a motion that nothing stops",
-            When::Unsettled => "if no set is settled",
-            When::UnsettledOnDense => "if no set is settled, and the stiffness is dense",
-            When::Improvable | When::Short => "if the answer falls short",
-            When::ShortOfMultigrid => "if multigrid falls short",
-            When::ShortOfUnsettled => "if the method does not settle and its answer falls short",
-            When::ShortOfShortcut => "if a faster method falls short",
-            When::ShortOnCondensed => "if the answer on condensed dofs falls short",
-            When::Doubtful => "if an answer has no bound",
-            When::Exists => "if there is an answer, and none was found",
-            When::WasDoubtful => "if that was open",
         }
     }
 }
@@ -143,18 +111,15 @@ impl Arrangement {
 impl Attempt {
     /// Method and means in words, without its condition.
     fn in_words(&self) -> String {
-        let method = self.method().name();
-        let with = match self.means {
-            Means::Problem if matches!(self.steps[0].step, Step::Pieces | Step::Elimination) => {
-                return self.steps[0].step.in_words().to_string();
-            }
+        let method = self.method.name();
+        match self.means {
             Means::Problem => return "existence and uniqueness of the answer".to_string(),
             Means::Multigrid => return format!("{method} with a multigrid hierarchy"),
-            Means::Factor(with) => with,
-        };
-        let on = match with.arrangements.contains(&Arrangement::Condensed) {
-            true => "condensed to the contact dofs if that pays",
-            false => "on all dofs",
+            Means::Factor => {}
+        }
+        let on = match self.condense {
+            Condense::Auto => "condensed to the contact dofs if that pays",
+            Condense::Never => "on all dofs",
         };
         let start = match self.start {
             From::Given | From::Nothing => "",
@@ -169,10 +134,10 @@ impl Ladder {
     /// The ladder in words, with the layout of the first factor; only the pattern of the stiffness is analysed.
     pub fn in_words(&self, problem: &ContactProblem, settings: &Settings) -> Result<String, Error> {
         let words = self.to_string();
-        let Some((first, with)) = self.factors().next() else { return Ok(words) };
+        let Some((first, attempt)) = self.first_factor() else { return Ok(words) };
         let selection = RowSelection::of(problem);
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let layout = match Layout::within(problem, &scaling, &with, settings) {
+        let layout = match Layout::within(problem, &scaling, &attempt.settings(settings)) {
             Ok(layout) => layout.in_words(),
             Err(error) => error.to_string(),
         };
@@ -186,9 +151,16 @@ impl fmt::Display for Ladder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut listed: Vec<(&[Rung], usize)> = Vec::new();
         for (place, attempt) in self.attempts.iter().enumerate() {
-            let (number, condition) = (place + 1, attempt.when.in_words());
+            let (number, condition) = (place + 1, attempt.when.words);
             let comma = if condition.is_empty() { "" } else { ", " };
-            writeln!(f, "{number}. {}{comma}{condition}", attempt.in_words())?;
+            let words = match &self.door {
+                Some(Door::Equalities) if place == 0 => {
+                    "the equalities eliminated, and the rest by a plan of its own".to_string()
+                }
+                Some(Door::Pieces(_)) if place == 0 => "each piece by a plan of its own".to_string(),
+                _ => attempt.in_words(),
+            };
+            writeln!(f, "{number}. {words}{comma}{condition}")?;
             if !attempt.because.is_empty() {
                 writeln!(f, "   because {}", attempt.because)?;
             }
@@ -197,13 +169,14 @@ impl fmt::Display for Ladder {
                 continue;
             }
             listed.push((attempt.steps, number));
-            for rung in attempt.steps.iter().filter(|rung| rung.when != When::Always) {
-                writeln!(f, "   - {}: {} ({})", rung.when.in_words(), rung.step.in_words(), rung.because)?;
+            for rung in attempt.steps.iter().filter(|rung| !rung.when.words.is_empty()) {
+                writeln!(f, "   - {}: {} ({})", rung.when.words, rung.step.in_words(), rung.because)?;
             }
         }
-        match self.factors().next() {
-            Some((_, with)) => {
-                let words: Vec<&str> = with.arrangements.iter().map(|arrangement| arrangement.in_words()).collect();
+        match self.first_factor() {
+            Some((_, attempt)) => {
+                let arrangements = Arrangement::under(attempt.condense).iter();
+                let words: Vec<&str> = arrangements.map(|arrangement| arrangement.in_words()).collect();
                 writeln!(f, "A factor has the first of these forms that memory and time allow: {}.", words.join("; "))
             }
             None => Ok(()),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::reuse::Prepared;
-use crate::engine::{Body, OnBoundary};
+use crate::engine::{Factored, Reduced, displacement, on_boundary, response, settled};
 use crate::error::Error;
 use crate::solution::{Certificate, ContactSet, Solution};
 
@@ -32,7 +32,7 @@ enum Inside {
     /// The answer was not condensed.
     Whole(Box<Solution>),
     /// The whole answer is found again from the same set, at these gaps.
-    Condensed { body: Arc<dyn Body>, prepared: Box<Prepared>, gap: Vec<f64> },
+    Condensed { engine: Arc<Factored>, found: Box<Reduced>, prepared: Box<Prepared>, gap: Vec<f64> },
 }
 
 impl BoundarySolution {
@@ -45,7 +45,7 @@ impl BoundarySolution {
     pub fn displacement(&self) -> Vec<f64> {
         match &self.inside {
             Inside::Whole(solution) => solution.displacement.clone(),
-            Inside::Condensed { body, .. } => body.displacement(),
+            Inside::Condensed { engine, found, .. } => displacement(engine, found),
         }
     }
 
@@ -87,12 +87,16 @@ impl Prepared {
         if self.problem.equality_rows() > 0 {
             return Ok(self.solve(gap)?.into());
         }
-        let found = self.ask(gap, &self.start, |engine, task| engine.on_boundary(task, is_bounded));
+        let found = self.ask(gap, &self.start, |engine, task| {
+            let Some(engine) = engine.factor() else { return Ok(None) };
+            Ok(on_boundary(engine, task, is_bounded)?.map(|found| (engine.clone(), found)))
+        });
         // The certificate of the whole answer shows what is wrong, unless the answer meets its goal.
-        let Ok(Some(found)) = found else { return Ok(self.solve(gap)?.into()) };
-        let OnBoundary { multiplier, contact_set, iterations, condensed_certificate, body } = found;
-        let (prepared, gap) = (Box::new(self.starting_from(&contact_set)), gap.to_vec());
-        let inside = Inside::Condensed { body, prepared, gap };
+        let Ok(Some((engine, (found, condensed_certificate)))) = found else { return Ok(self.solve(gap)?.into()) };
+        let multiplier = engine.expand_multiplier(&found.outcome.multiplier, found.unit);
+        let contact_set = engine.expand_set(&found.outcome.contact_set);
+        let (iterations, prepared) = (found.outcome.iterations, Box::new(self.starting_from(&contact_set)));
+        let inside = Inside::Condensed { engine, found: Box::new(found), prepared, gap: gap.to_vec() };
         Ok(BoundarySolution { multiplier, contact_set, iterations, condensed_certificate, inside })
     }
 }
@@ -114,12 +118,12 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::boundary`].
     pub fn settled(&self, gap: &[f64]) -> Result<Option<Vec<f64>>, Error> {
-        self.ask(gap, &self.start, |engine, task| engine.settled(task))
+        self.ask(gap, &self.start, |engine, task| engine.factor().map_or(Ok(None), |engine| settled(engine, task)))
     }
 
     /// The displacement, one entry per dof, in length, that the load causes if no row is closed; `None` without a
     /// factor.
     pub fn response(&self) -> Option<Vec<f64>> {
-        self.bench.as_ref().and_then(|bench| bench.engine.response(&bench.load))
+        self.bench.as_ref().and_then(|bench| response(bench.engine.factor()?, &bench.load))
     }
 }

@@ -1,7 +1,9 @@
 //! The exact path between two sets of gaps: every gap at which a row touches or releases, and every answer between.
 
+use std::sync::Arc;
+
 use super::reuse::Prepared;
-use crate::engine::Walk;
+use crate::engine::{Factored, walk};
 use crate::error::Error;
 use crate::method::Start;
 use crate::method::parametric::{Event, Piece};
@@ -31,7 +33,11 @@ pub struct Path {
     prepared: Prepared,
     from: Vec<f64>,
     to: Vec<f64>,
-    walk: Walk,
+    pieces: Vec<Piece>,
+    events: Vec<Event>,
+    /// The engine that knows the way back from its rows, whose multipliers have this unit.
+    engine: Arc<Factored>,
+    unit: i32,
 }
 
 /// Entry by entry `(1 - t) from + t to`; an entry that is equal at both ends, as an infinite gap, stays unchanged.
@@ -43,32 +49,37 @@ pub(crate) fn between(from: &[f64], to: &[f64], t: f64) -> Vec<f64> {
 impl Path {
     /// The rows that touch or release on the way, in the order of their place t.
     pub fn events(&self) -> &[Event] {
-        &self.walk.events
+        &self.events
     }
 
     /// The corners of all polylines: the places t of the beginning, of every event and of the end, dimensionless,
     /// increasing from 0 to 1.
     pub fn corners(&self) -> Vec<f64> {
-        let mut corners: Vec<f64> = self.walk.pieces.iter().map(|piece| piece.from).collect();
-        corners.extend(self.walk.pieces.last().map(|piece| piece.to));
+        let mut corners: Vec<f64> = self.pieces.iter().map(|piece| piece.from).collect();
+        corners.extend(self.pieces.last().map(|piece| piece.to));
         corners
     }
 
     /// The stretches on which the contact set does not change.
     pub fn pieces(&self) -> &[Piece] {
-        &self.walk.pieces
+        &self.pieces
     }
 
     /// The multipliers, one per row, in force, at `t` on `piece`: at a corner the pieces on both sides agree except for
     /// rounding.
     pub fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
-        let [multiplier, _] = self.prepared.problem.split(self.walk.to_rows.multiplier(&piece.multiplier(t)));
+        let [multiplier, _] = self.multipliers_on(piece, t);
         multiplier
+    }
+
+    /// The multipliers of the rows of B, and those of the equality rows.
+    fn multipliers_on(&self, piece: &Piece, t: f64) -> [Vec<f64>; 2] {
+        self.prepared.problem.split(self.engine.expand_multiplier(&piece.multiplier(t), self.unit))
     }
 
     /// The closed rows on `piece`.
     pub fn contact_set_on(&self, piece: &Piece) -> ContactSet {
-        self.prepared.problem.of_inequalities(&self.walk.to_rows.contact_set(&piece.contact_set))
+        self.prepared.problem.of_inequalities(&self.engine.expand_set(&piece.contact_set))
     }
 
     /// The gaps at `t`, length m, in the problem's unit of length; negative if the obstacle starts inside the body.
@@ -85,7 +96,7 @@ impl Path {
     /// The multipliers of the equality rows at `t`, length p, in the problem's unit of force, of either sign.
     pub fn equality_multiplier(&self, t: f64) -> Vec<f64> {
         self.piece(t).map_or_else(Vec::new, |piece| {
-            let [_, multiplier] = self.prepared.problem.split(self.walk.to_rows.multiplier(&piece.multiplier(t)));
+            let [_, multiplier] = self.multipliers_on(piece, t);
             multiplier
         })
     }
@@ -112,8 +123,8 @@ impl Path {
     }
 
     fn piece(&self, t: f64) -> Option<&Piece> {
-        let index = self.walk.pieces.partition_point(|piece| piece.to < t);
-        self.walk.pieces.get(index).or(self.walk.pieces.last())
+        let index = self.pieces.partition_point(|piece| piece.to < t);
+        self.pieces.get(index).or(self.pieces.last())
     }
 }
 
@@ -131,13 +142,19 @@ impl Prepared {
         if self.hierarchy().is_some() && self.settings.method == Method::Auto {
             return self.with_settings(&self.settings.clone().exactly())?.path(from, to);
         }
-        let walk = |start: &Start| self.ask(from, start, |engine, task| engine.walk(task, to));
-        let walk = match walk(&self.start)? {
-            Some(walk) => Some(walk),
-            None => walk(&Start::from(&self.solve(from)?.contact_set))?,
+        let not_condensed = || Error::NotCondensed { step: "the exact path" };
+        let walked = |start: &Start| {
+            self.ask(from, start, |engine, task| walk(engine.factor().ok_or_else(not_condensed)?, task, to))
         };
-        let mut walk = walk.ok_or(Error::NotCondensed { step: "the exact path" })?;
-        walk.events.retain(|event| event.row < self.problem.inequalities());
-        Ok(Path { prepared: self.clone(), from: from.to_vec(), to: to.to_vec(), walk })
+        let found = match walked(&self.start)? {
+            Some(found) => Some(found),
+            None => walked(&Start::from(&self.solve(from)?.contact_set))?,
+        };
+        let (Some((pieces, mut events, unit)), Some(engine)) = (found, self.factored()) else {
+            return Err(not_condensed());
+        };
+        events.retain(|event| event.row < self.problem.inequalities());
+        let (prepared, from, to, engine) = (self.clone(), from.to_vec(), to.to_vec(), engine.clone());
+        Ok(Path { prepared, from, to, pieces, events, engine, unit })
     }
 }

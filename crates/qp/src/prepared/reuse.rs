@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use crate::certificate::{Bounding, EnergyNorm, norm_on_equalities};
-use crate::engine::{Engine, Load, Task};
+use crate::engine::{Engine, Factored, Load, Task};
 use crate::error::Error;
 use crate::linear::multigrid::Multigrid;
 use crate::method::Start;
-use crate::plan::{Attempt, Ended, History, Known, Ladder, Record, Step, Tried};
+use crate::plan::{Attempt, Ended, Ladder, Record, Step, Tried};
 use crate::problem::ContactProblem;
-use crate::run::{KeptRest, Run, Workbench, engine_by, solved};
-use crate::settings::Settings;
+use crate::run::{KeptRest, Run, Workbench, answered, solved};
+use crate::settings::{Method, Settings};
 use crate::solution::{Seconds, Solution};
 use crate::transform::Elimination;
 
@@ -86,34 +86,22 @@ impl Prepared {
         let given = settings;
         let settings = &given.started()?;
         // A problem that is prepared stays in one piece.
-        let ladder = Ladder::of(problem, Known { gaps, is_whole: true }, settings)?;
-        let mut history = History { first: ladder.first_with_data(), ..History::new(settings.goal()) };
-        let with = |ladder: Ladder, bench: Option<Workbench>| {
-            let (problem, settings, ladder) = (problem.clone(), given.clone(), Arc::new(ladder));
-            Prepared { problem, settings, ladder, bench, without: None, start: Start::default() }
-        };
-        let mut has_failed = false;
-        while let Some(next) = ladder.next(&history, &settings.watch) {
-            let attempt = next.place.attempt;
-            let ended = match engine_by(ladder.attempts[attempt].means, problem, settings) {
-                Ok(None) => break,
-                Ok(Some(engine)) => {
-                    let load = Arc::new(Load::new(problem.load().to_vec()));
-                    let whole = with(ladder.after_refusals(&history), Some(Workbench { attempt, engine, load }));
-                    return Ok(Prepared { without: whole.eliminated(gaps, settings), ..whole });
-                }
-                Err(error) => match Ended::by(error) {
-                    Ended::Decided(error) => return Err(error),
-                    ended => ended,
-                },
-            };
-            has_failed |= matches!(ended, Ended::Failed(_));
-            history.records.push(Record { ended, ..Record::of(next, Step::Method) });
+        let (ladder, start) = (Ladder::of(problem, gaps, true, settings)?, Start::default());
+        let mut run = Run::new(problem, &ladder, &start, settings);
+        run.carry_out(|run, step| run.prepared(step).map(|_| Ended::Prepared));
+        let (bench, mut history) = (run.made, run.history);
+        let is_decided = |last: &mut Record| matches!(last.ended, Ended::Decided(_));
+        if let Some(Record { ended: Ended::Decided(error), .. }) = history.records.pop_if(is_decided) {
+            return Err(error);
         }
-        if has_failed {
-            return Ok(with(ladder, None));
+        let has_failed = history.records.iter().any(|record| matches!(record.ended, Ended::Failed(_)));
+        if bench.is_none() && !has_failed {
+            return Err(ladder.no_room(&history).or_else(|| history.into_refusal()).unwrap_or(Error::Interrupted));
         }
-        Err(ladder.no_room(&history).or_else(|| history.into_refusal()).unwrap_or(Error::Interrupted))
+        let ladder = Arc::new(if bench.is_some() { ladder.after_refusals(&history) } else { ladder });
+        let (problem, given) = (problem.clone(), given.clone());
+        let whole = Prepared { problem, settings: given, ladder, bench, without: None, start };
+        Ok(Prepared { without: whole.eliminated(gaps, settings), ..whole })
     }
 
     /// The problem without its equalities, prepared within the memory that this leaves.
@@ -144,8 +132,8 @@ impl Prepared {
         let (attempt, ladder) = match self.ladder.under(settings) {
             Some(ladder) => (bench.attempt, ladder),
             None => {
-                let ladder = Ladder::of(&self.problem, Known { gaps: MANY_GAPS, is_whole: true }, settings)?;
-                let serves = |attempt: &Attempt| bench.engine.serves(&attempt.means);
+                let ladder = Ladder::of(&self.problem, MANY_GAPS, true, settings)?;
+                let serves = |attempt: &Attempt| bench.engine.means() == attempt.means;
                 let Some(attempt) = ladder.attempts.iter().position(serves) else { return anew() };
                 (attempt, ladder)
             }
@@ -190,10 +178,7 @@ impl Prepared {
             return self.without_equalities(&problem, &settings);
         }
         let run = Run::new(&problem, &self.ladder, &self.start, &settings);
-        match &self.bench {
-            Some(bench) => run.with(bench).solved(),
-            None => run.solved(),
-        }
+        answered(&mut run.with(self.bench.as_ref()))
     }
 
     /// Solves a problem with equalities, which are eliminated already if they are those of the one that was prepared.
@@ -212,9 +197,9 @@ impl Prepared {
         let norm = &norm.as_ref().map(|norm| norm.watched(&settings.watch.finishing()));
         let kept = KeptRest { elimination, norm, solve: &solve };
         let start = self.start.of_all_rows(problem);
-        let mut run = Run::new(problem, &self.ladder, &start, settings);
-        (run.rest, run.kept) = (Some(&kept), self.bench.as_ref());
-        run.solved()
+        let mut run = Run::new(problem, &self.ladder, &start, settings).with(self.bench.as_ref());
+        run.rest = Some(&kept);
+        answered(&mut run)
     }
 
     /// Solves with another load, length n, in N, along the positive axes, and the gaps of the problem that was
@@ -239,13 +224,13 @@ impl Prepared {
         &self,
         gap: &[f64],
         start: &Start,
-        answer: impl FnOnce(Arc<dyn Engine>, &Task) -> Result<Option<T>, Error>,
+        answer: impl FnOnce(&Engine, &Task) -> Result<Option<T>, Error>,
     ) -> Result<Option<T>, Error> {
         let Some(Workbench { attempt, engine, load }) = &self.bench else { return Ok(None) };
         let (problem, settings) = (&self.problem_at(gap)?, &self.settings.started()?);
-        let Attempt { means, limits, .. } = self.ladder.attempts[*attempt];
-        let (step, method, best) = (Step::Method, means.method(), None);
-        answer(Arc::clone(engine), &Task { step, problem, load, start, limits, method, settings, best })
+        let by = &self.ladder.attempts[*attempt];
+        let (step, limits, settings, best) = (Step::Method, by.limits, &by.settings(settings), None);
+        answer(engine, &Task { step, problem, load, start, limits, settings, best })
     }
 }
 
@@ -257,7 +242,11 @@ impl Prepared {
 
     /// The method and its means, if the data are prepared.
     fn tried(&self) -> Option<Tried> {
-        self.bench.as_ref().map(|bench| bench.engine.tried(None))
+        self.bench.as_ref().map(|bench| bench.engine.tried(Method::Auto))
+    }
+
+    pub(super) fn factored(&self) -> Option<&Arc<Factored>> {
+        self.bench.as_ref().and_then(|bench| bench.engine.factor())
     }
 
     /// Number of unknowns that the prepared methods work on: less than those of the problem if it is condensed.
@@ -267,7 +256,7 @@ impl Prepared {
 
     /// Number of values of the factor of the stiffness; zero if the methods factorise by themselves or not at all.
     pub fn factor_entries(&self) -> usize {
-        self.bench.as_ref().map_or(0, |bench| bench.engine.factor_entries())
+        self.factored().map_or(0, |factored| factored.factor_entries())
     }
 
     /// Memory of the values of the factor, in bytes.

@@ -1,76 +1,79 @@
-//! The one loop of a solve.
+//! The flow of a solve, and its one loop.
 
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::elimination::{self, KeptRest, Rest};
-use super::pieces;
-use crate::certificate::{Bounding, Examination, Examined, at_rest, with_rounding};
-use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
+use crate::certificate::{Bounding, EnergyNorm, Examination, Examined, at_rest};
+use crate::engine::{Engine, Hierarchical, Load, Task};
 use crate::error::{Error, LinearError};
 use crate::existence::Existence;
 use crate::linear::SymmetricMatrix;
 use crate::method::{Ending, Outcome, Start};
-use crate::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Means, Next, Record, Step, Tried};
+use crate::plan::{Answered, Best, Door, Ended, From, History, Ladder, Means, Record, Step, Tried};
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
 use crate::solution::{Certificate, Seconds, Solution, Why};
-use crate::transform::Scaling;
+use crate::transform::{Elimination, Scaling};
 
 /// The answer of `problem` from a start, by the ladder of `settings`.
 pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
-    by(problem, start, settings, |ladder| ladder)
+    let (start, settings) = &checked(problem, start, settings)?;
+    let ladder = Ladder::of(problem, 1, !start.is_unknown(), settings)?;
+    answered(&mut Run::new(problem, &ladder, start, settings))
 }
 
-/// The same, by a part of the ladder.
-fn by(
-    problem: &ContactProblem,
-    start: &Start,
-    settings: &Settings,
-    part: impl Fn(Ladder) -> Ladder,
-) -> Result<Solution, Error> {
-    let settings = &settings.started()?;
-    let start = &start.of_all_rows(problem);
+/// The flow of a solve, from the plan to the answer: the best one, if it meets the goal.
+pub(crate) fn answered(run: &mut Run) -> Result<Solution, Error> {
+    run.pass_the_door();
+    run.carry_out(|run, step| {
+        let Some(bench) = run.prepared(step)? else { return run.asked(step) };
+        let Some(outcome) = run.found(&bench, step)? else { return Ok(Ended::Empty) };
+        let answer = run.answer(outcome, step);
+        run.examined(answer, &bench, step)
+    });
+    let mut best = run.decided()?;
+    let proven = run.proven(&mut best);
+    let solution = run.reported(best, proven);
+    run.certified(solution)
+}
+
+/// Start and settings that fit a problem, with the clock running.
+fn checked(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<(Start, Settings), Error> {
+    let (settings, start) = (settings.started()?, start.of_all_rows(problem));
     start.check(problem.dofs(), problem.rows())?;
     problem.check_rows()?;
-    let ladder = part(Ladder::of(problem, Known { gaps: 1, is_whole: !start.is_unknown() }, settings)?);
-    Run::new(problem, &ladder, start, settings).solved()
-}
-
-/// The engine with these means; `None` for the problem alone.
-pub(crate) fn engine_by(
-    means: Means,
-    problem: &ContactProblem,
-    settings: &Settings,
-) -> Result<Option<Arc<dyn Engine>>, Error> {
-    Ok(match means {
-        Means::Problem => None,
-        Means::Multigrid => Some(Arc::new(Hierarchical::new(problem, settings)?)),
-        Means::Factor(with) => Some(Arc::new(Factored::new(problem, &with, settings)?)),
-    })
+    Ok((start, settings))
 }
 
 /// The prepared data of an attempt, and its load.
 #[derive(Clone, Debug)]
 pub(crate) struct Workbench {
     pub attempt: usize,
-    pub engine: Arc<dyn Engine>,
+    pub engine: Engine,
     pub load: Arc<Load>,
+}
+
+/// What is kept of a prepared problem without its equalities.
+pub(crate) struct KeptRest<'a> {
+    pub elimination: &'a Elimination,
+    pub norm: &'a Option<EnergyNorm>,
+    /// The answer of the rest of a problem.
+    pub solve: &'a dyn Fn(&Start, &Settings) -> Result<Solution, Error>,
 }
 
 /// A ladder that is being carried out.
 pub(crate) struct Run<'a> {
     pub(super) problem: &'a ContactProblem,
     pub(super) ladder: &'a Ladder,
-    start: &'a Start,
+    pub(super) start: &'a Start,
     pub(super) settings: &'a Settings,
-    pub(super) history: History,
+    pub history: History,
     /// The data that the caller keeps prepared.
     pub kept: Option<&'a Workbench>,
     /// What the caller keeps of the problem without its equalities.
     pub rest: Option<&'a KeptRest<'a>>,
     /// The data that were prepared last.
-    pub(super) made: Option<Workbench>,
+    pub made: Option<Workbench>,
     /// The sets of the last method, and their number, with its attempt.
     last: Option<(usize, Outcome)>,
     pub(super) existence: Option<Existence>,
@@ -84,85 +87,68 @@ pub(crate) struct Run<'a> {
 impl<'a> Run<'a> {
     /// A run on `problem` from `start`, under settings with a running clock.
     pub fn new(problem: &'a ContactProblem, ladder: &'a Ladder, start: &'a Start, settings: &'a Settings) -> Self {
-        let (history, is_cut, clock) = (History::new(settings.goal()), false, Instant::now());
+        let (history, is_cut, clock) = (ladder.history(settings), false, Instant::now());
         let (kept, rest, made, last, existence, moves) = (None, None, None, None, None, None);
         Run { problem, ladder, start, settings, history, kept, rest, made, last, existence, moves, is_cut, clock }
     }
 
-    /// The same with data that are prepared already: the first attempt is that of these data.
-    pub fn with(self, kept: &'a Workbench) -> Self {
-        Run { kept: Some(kept), history: History { first: kept.attempt, ..self.history }, ..self }
-    }
-
-    /// Carries out the ladder; the best answer, if it meets the goal.
-    pub fn solved(mut self) -> Result<Solution, Error> {
-        self.carry_out();
-        self.ended()
+    /// The same with data that may be prepared already: the first attempt is then that of these data.
+    pub fn with(mut self, kept: Option<&'a Workbench>) -> Self {
+        self.kept = kept;
+        self.history.first = kept.map_or(self.history.first, |kept| kept.attempt);
+        self
     }
 
     /// Makes one step after the other, until the plan names none.
-    pub(super) fn carry_out(&mut self) {
-        while let Some(next) = self.ladder.next(&self.history, &self.settings.watch) {
-            let clock = Instant::now();
-            let attempt = &self.ladder.attempts[next.place.attempt];
-            let step = attempt.steps[next.place.rung].step;
-            let mut record = Record::of(next, step);
-            record.ended = match self.made_step(&next, attempt, &mut record) {
-                Ok(ended) => ended,
-                Err(error @ Error::Linear(LinearError::NotConvex { .. })) if step == Step::Existence => {
-                    Ended::Decided(error)
-                }
-                Err(error) => Ended::by(error),
-            };
-            record.seconds = clock.elapsed().as_secs_f64();
-            self.history.records.push(record);
+    pub fn carry_out(&mut self, make: impl Fn(&mut Self, &mut Record) -> Result<Ended, Error>) {
+        while let Some(step) = self.ladder.next(&self.history) {
+            self.record(step, &make);
         }
     }
 
-    fn made_step(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
-        match record.step {
-            Step::Pieces => self.in_pieces(record),
-            Step::Elimination => self.by_elimination(record),
+    /// Records what came of a step.
+    fn record(&mut self, mut step: Record, make: impl FnOnce(&mut Self, &mut Record) -> Result<Ended, Error>) {
+        let clock = Instant::now();
+        step.ended = match make(self, &mut step) {
+            Ok(ended) => ended,
+            Err(error @ Error::Linear(LinearError::NotConvex { .. })) if step.step == Step::Existence => {
+                Ended::Decided(error)
+            }
+            Err(error) => Ended::by(error),
+        };
+        step.seconds = clock.elapsed().as_secs_f64();
+        self.history.records.push(step);
+    }
+
+    /// Solves what is left once equalities are eliminated, or each of the pieces that nothing couples.
+    fn pass_the_door(&mut self) {
+        let ladder = self.ladder;
+        match &ladder.door {
+            Some(Door::Equalities) if !self.problem.equalities().is_empty() => {
+                self.record(ladder.at_the_door(), Self::by_elimination);
+            }
+            Some(Door::Pieces(pieces)) => self.record(ladder.at_the_door(), |run, step| run.in_pieces(pieces, step)),
+            _ => {}
+        }
+    }
+
+    /// What is asked about the problem alone.
+    fn asked(&mut self, step: &mut Record) -> Result<Ended, Error> {
+        match step.step {
             Step::Existence => self.looked_at_existence(),
-            Step::Proximal => self.by_proximal_steps(record),
+            Step::Proximal => self.by_proximal_steps(step),
             Step::Uniqueness => self.looked_at_uniqueness(),
-            _ => self.with_engine(next, attempt, record),
+            _ => Ok(Ended::Empty),
         }
     }
 
-    fn with_engine(&mut self, next: &Next, attempt: &Attempt, record: &mut Record) -> Result<Ended, Error> {
-        let Some(bench) = self.prepared(next.place.attempt, record)? else { return Ok(Ended::Empty) };
-        let Workbench { engine, load, .. } = bench;
-        let (method, settings) = (attempt.means.method(), self.settings);
-        let tried = engine.tried(method);
-        record.tried = Some(tried);
-        // The interior point has no use for a set.
-        let from = match (next.start, tried.method) {
-            (From::Cycles, Method::Qp(_)) => From::Given,
-            (from, _) => from,
-        };
-        let start = self.start_from(from, record.step);
-        let best = self.history.best.as_ref().map(|best| &best.solution);
-        let (problem, step, limits) = (self.problem, record.step, next.limits);
-        let task = Task { step, problem, load: &load, start: &start, limits, method, settings, best };
-        let Some(found) = engine.make(&task)? else { return Ok(Ended::Empty) };
-        record.stages.factor += found.factor_seconds;
-        if let Ending::Infeasible { rows, weights } = &found.outcome.ending {
-            return Ok(Ended::Decided(problem.infeasible(rows, weights)));
+    /// The prepared data of an attempt, `None` for a question; those of another attempt are freed first, unless the
+    /// caller keeps them.
+    pub fn prepared(&mut self, step: &mut Record) -> Result<Option<Workbench>, Error> {
+        if step.means == Means::Problem || step.step == Step::Existence {
+            return Ok(None);
         }
-        let (ending, solution) = (found.outcome.ending.clone(), self.answer(found, &tried, record));
-        self.settings.watch.step("certificate", 0);
-        let is_unsettled = record.step == Step::Method && ending == Ending::Unsettled;
-        let by = match is_unsettled && self.ladder.wanders_by(tried.method) {
-            true => Bounding::Nothing,
-            false => engine.bounding(&self.settings.watch.finishing()),
-        };
-        let answer = Best { ending, tried: Some(tried), ..Best::of(solution, next.place.attempt) };
-        self.judged(answer, &by, record).map(Ended::Answered)
-    }
-
-    /// The prepared data of an attempt; those of another attempt are freed first, unless the caller keeps them.
-    fn prepared(&mut self, attempt: usize, record: &mut Record) -> Result<Option<Workbench>, Error> {
+        let attempt = step.place.attempt;
         let is_of = |bench: &&Workbench| bench.attempt == attempt;
         if let Some(bench) = self.kept.filter(is_of).or(self.made.as_ref().filter(is_of)) {
             return Ok(Some(bench.clone()));
@@ -170,13 +156,35 @@ impl<'a> Run<'a> {
         self.made = None;
         let kept_bytes = self.kept.map_or(0.0, |kept| kept.engine.bytes());
         let memory = self.settings.memory.map(|most| (most - kept_bytes).max(0.0));
-        let settings = Settings { memory, ..self.settings.clone() };
-        let engine = engine_by(self.ladder.attempts[attempt].means, self.problem, &settings)?;
-        let Some(engine) = engine else { return Ok(None) };
-        record.stages.factor += engine.seconds().factor;
+        let settings = Settings { memory, ..self.ladder.attempts[attempt].settings(self.settings) };
+        let Some(engine) = Engine::new(step.means, self.problem, &settings)? else { return Ok(None) };
+        step.stages.factor += engine.seconds().factor;
         let load = Arc::new(Load::new(self.problem.load().to_vec()));
         self.made = Some(Workbench { attempt, engine, load });
         Ok(self.made.clone())
+    }
+
+    /// What a step finds by the prepared data: they scale, start the method, and expand.
+    fn found(&self, bench: &Workbench, record: &mut Record) -> Result<Option<Outcome>, Error> {
+        let attempt = &self.ladder.attempts[record.place.attempt];
+        let settings = &attempt.settings(self.settings);
+        let tried = bench.engine.tried(attempt.method);
+        record.tried = Some(tried);
+        // The interior point has no use for a set.
+        let from = match (record.start, tried.method) {
+            (From::Cycles, Method::Qp(_)) => From::Given,
+            (from, _) => from,
+        };
+        let start = &self.start_from(from, record.step);
+        let best = self.history.best.as_ref().map(|best| &best.solution);
+        let (problem, load, step, limits) = (self.problem, &bench.load, record.step, record.limits);
+        let found = bench.engine.make(&Task { step, problem, load, start, limits, settings, best })?;
+        let Some((found, factor_seconds)) = found else { return Ok(None) };
+        record.stages.factor += factor_seconds;
+        match &found.ending {
+            Ending::Infeasible { rows, weights } => Err(problem.infeasible(rows, weights)),
+            _ => Ok(Some(found)),
+        }
     }
 
     fn start_from(&self, from: From, step: Step) -> Start {
@@ -197,10 +205,9 @@ impl<'a> Run<'a> {
     }
 
     /// What was found as an answer, not judged yet.
-    fn answer(&mut self, found: Found, tried: &Tried, record: &Record) -> Solution {
-        let mut outcome = found.outcome;
-        let attempt = record.place.attempt;
-        match (record.improves(), &self.history.best) {
+    fn answer(&mut self, mut outcome: Outcome, step: &Record) -> Best {
+        let (attempt, ending) = (step.place.attempt, outcome.ending.clone());
+        let solution = match (step.improves(), &self.history.best) {
             (true, Some(best)) => Solution {
                 displacement: outcome.displacement,
                 multiplier: outcome.multiplier,
@@ -217,11 +224,21 @@ impl<'a> Run<'a> {
                     [&mut outcome.displacement, &mut outcome.multiplier].map(std::mem::take);
                 self.last = Some((attempt, outcome.clone()));
                 let outcome = Outcome { displacement, multiplier, ..outcome };
-                let condensed_dofs = tried.condensed_dofs.unwrap_or(outcome.displacement.len());
-                let solution = without_certificate(outcome, tried.method.name());
-                Solution { condensed_dofs, lost_pivot: tried.lost_pivot, ..solution }
+                without_certificate(outcome, step.tried.as_ref())
             }
-        }
+        };
+        Best { ending, tried: step.tried, ..Best::of(solution, attempt) }
+    }
+
+    /// An answer, judged by the prepared data.
+    fn examined(&mut self, answer: Best, bench: &Workbench, step: &mut Record) -> Result<Ended, Error> {
+        self.settings.watch.step("certificate", 0);
+        let is_unsettled = step.step == Step::Method && answer.ending == Ending::Unsettled;
+        let by = match is_unsettled && answer.tried.is_some_and(|tried| self.history.wanders_by(tried.method)) {
+            true => Bounding::Nothing,
+            false => bench.engine.bounding(&self.settings.watch.finishing()),
+        };
+        self.judged(answer, &by, step).map(Ended::Answered)
     }
 
     /// Judges an answer, and the same with those parts at rest that may rest; the better one is kept if it is the best
@@ -250,52 +267,6 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The answers of the pieces as one.
-    fn in_pieces(&mut self, record: &mut Record) -> Result<Ended, Error> {
-        let Some(pieces) = &self.ladder.pieces else { return Ok(Ended::Empty) };
-        let pieces = Arc::clone(pieces);
-        let joined = pieces::solved(self.problem, &pieces, self.settings, |piece, settings| {
-            solved(piece, &Start::default(), settings)
-        })?;
-        let Some((solution, certificates)) = joined else { return Ok(Ended::Empty) };
-        let Seconds { factor, certificate, proof, .. } = solution.seconds;
-        record.stages = Seconds { factor, certificate, proof, solve: 0.0 };
-        let answer = Best::of(solution, record.place.attempt);
-        self.judged(answer, &Bounding::Pieces(&certificates), record).map(Ended::Answered)
-    }
-
-    /// The answer without the equalities, and these put back.
-    fn by_elimination(&mut self, record: &mut Record) -> Result<Ended, Error> {
-        // What is exact enough for the rest may be far from that for a whole that moves almost without energy.
-        let exact = Settings { tolerance: Some(f64::MIN_POSITIVE), accuracy: None, ..self.settings.clone() };
-        let mut all: Option<Answered> = None;
-        for settings in [self.settings, &exact] {
-            let (answer, of_rest) = match elimination::solved(self.problem, self.start, settings, self.rest, solved)? {
-                Rest::Answer(answer, of_rest) => (*answer, of_rest),
-                Rest::Moves(error) => {
-                    self.moves = Some(error);
-                    break;
-                }
-                Rest::Open => break,
-            };
-            let Seconds { factor, certificate, .. } = answer.seconds;
-            record.stages.factor += factor;
-            record.stages.certificate += certificate;
-            // An error has the same energy in the rest, but for the rounding of the displacement.
-            let of_rest = of_rest.map(|rest| [with_rounding(self.problem, rest, &answer.displacement)]);
-            self.is_cut = of_rest.is_some();
-            let norm = self.rest.and_then(|kept| kept.norm.clone());
-            let by_norm = || norm.map_or(Bounding::OwnFactor, Bounding::Factor);
-            let by = of_rest.as_ref().map_or_else(by_norm, |rest| Bounding::Pieces(rest));
-            let answered = self.judged(Best::of(answer, record.place.attempt), &by, record)?;
-            all = Some(all.map_or(answered, |all| all.or(answered)));
-            if self.history.is_certified() || !settings.method.wants_best() {
-                break;
-            }
-        }
-        Ok(all.map_or(Ended::Empty, Ended::Answered))
-    }
-
     /// Whether an answer exists.
     fn looked_at_existence(&mut self) -> Result<Ended, Error> {
         let Some(existence) = Existence::of(self.problem, self.settings)? else { return Ok(Ended::Empty) };
@@ -310,16 +281,17 @@ impl<'a> Run<'a> {
     /// Checks that the best answer is the only one.
     fn looked_at_uniqueness(&mut self) -> Result<Ended, Error> {
         let (Some(existence), Some(best)) = (&self.existence, &self.history.best) else { return Ok(Ended::Empty) };
-        existence.check_unique(self.problem, &best.solution, self.ladder.sure_tolerance())?;
+        existence.check_unique(self.problem, &best.solution, self.history.sure_tolerance())?;
         Ok(Ended::MayExist)
     }
 }
 
-/// The outcome of the method called `name` as a solution, without a certificate.
-pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
+/// The outcome of a method as a solution, without a certificate; at rest without a method.
+pub(super) fn without_certificate(outcome: Outcome, tried: Option<&Tried>) -> Solution {
+    let name = tried.map_or("none", |tried| tried.method.name());
     let Outcome { displacement, multiplier, contact_set, iterations, history, variant, .. } = outcome;
     Solution {
-        condensed_dofs: displacement.len(),
+        condensed_dofs: tried.and_then(|tried| tried.condensed_dofs).unwrap_or(displacement.len()),
         displacement,
         multiplier,
         equality_multiplier: Vec::new(),
@@ -331,7 +303,7 @@ pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
         proven: None,
         cut_short: None,
         refinements: 0,
-        lost_pivot: None,
+        lost_pivot: tried.and_then(|tried| tried.lost_pivot),
         reason: String::new(),
         why: Why::default(),
         attempts: Vec::new(),
@@ -348,7 +320,12 @@ pub(crate) fn check_rows(problem: &ContactProblem, settings: &Settings) -> Resul
     let (contact, rest) = (problem.contact().clone(), vec![0.0; problem.dofs()]);
     let stiffness = SymmetricMatrix::of_diagonal(Scaling::of(problem.stiffness(), &contact)?.identity(0));
     let nearest = ContactProblem::computed(stiffness, rest, contact, problem.gap().to_vec())?;
-    match by(&nearest, &Start::default(), &settings.of_question(), Ladder::without_existence) {
+    let met = || {
+        let (start, settings) = &checked(&nearest, &Start::default(), &settings.of_question())?;
+        let ladder = Ladder::of(&nearest, 1, false, settings)?.without_existence();
+        answered(&mut Run::new(&nearest, &ladder, start, settings))
+    };
+    match met() {
         Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
         _ => Ok(()),
     }
@@ -398,10 +375,10 @@ mod tests {
         ];
         for (name, problem, settings, is_solved) in kinds {
             let settings = settings.started().unwrap();
-            let ladder = Ladder::of(&problem, Known { gaps: 1, is_whole: false }, &settings).unwrap();
+            let ladder = Ladder::of(&problem, 1, false, &settings).unwrap();
             let start = Start::default();
             let mut run = Run::new(&problem, &ladder, &start, &settings);
-            run.carry_out();
+            let is_answered = answered(&mut run).is_ok();
             let steps: Vec<(usize, usize)> =
                 run.history.records.iter().map(|record| (record.place.attempt, record.place.rung)).collect();
             assert!(steps.is_sorted(), "{name}: {steps:?}");
@@ -414,7 +391,7 @@ mod tests {
                 assert_eq!(attempt.steps[record.place.rung].step, record.step, "{name}");
                 assert!(record.tried.is_none() || attempt.means != Means::Problem, "{name}");
             }
-            assert_eq!(run.ended().is_ok(), is_solved, "{name}: {steps:?}");
+            assert_eq!(is_answered, is_solved, "{name}: {steps:?}");
         }
     }
 }

@@ -6,7 +6,7 @@ use super::carried_out::{Run, solved, without_certificate};
 use crate::certificate::{Bounding, Examination};
 use crate::error::Error;
 use crate::method::{Ending, Outcome, Start};
-use crate::plan::{Answered, Best, Ended, Record, Step};
+use crate::plan::{Best, Door, Ended, Record, Step};
 use crate::solution::{Attempt, Goal, ProvenSet, Seconds, Solution};
 
 /// The error of an answer that is not certified, with the condition that decides.
@@ -16,8 +16,8 @@ fn fallen_short(solution: Solution, goal: Goal) -> Error {
 }
 
 impl Run<'_> {
-    /// The best answer with everything that was tried, if it meets the goal.
-    pub(super) fn ended(mut self) -> Result<Solution, Error> {
+    /// The best answer, or the error that stands in its way.
+    pub(super) fn decided(&mut self) -> Result<Best, Error> {
         let is_decided = |record: &Record| match record.ended {
             Ended::Decided(Error::Interrupted) => self.history.best.is_none(),
             Ended::Decided(_) => true,
@@ -28,20 +28,26 @@ impl Run<'_> {
         {
             return Err(error);
         }
-        let goal = self.settings.goal();
-        let certified = self.history.is_certified();
-        if let Some(error) = self.ladder.no_room(&self.history).filter(|_| !certified) {
-            return Err(error);
+        if !self.history.is_certified() {
+            if let Some(error) = self.ladder.no_room(&self.history) {
+                return Err(error);
+            }
+            // A motion says nothing of rows that are not met.
+            let meets_rows = |best: &Best| best.solution.certificate.penetration <= self.history.sure_tolerance();
+            let moves = if self.history.best.as_ref().is_some_and(meets_rows) { self.moves.take() } else { None };
+            if let Some(error) = moves.or_else(|| self.doubt()) {
+                return Err(error);
+            }
         }
-        // A motion says nothing of rows that are not met.
-        let meets_rows = |best: &Best| best.solution.certificate.penetration <= self.ladder.sure_tolerance();
-        let moves = if self.history.best.as_ref().is_some_and(meets_rows) { self.moves.take() } else { None };
-        if !certified && let Some(error) = moves.or_else(|| self.doubt()) {
-            return Err(error);
+        match self.history.best.take() {
+            Some(best) => Ok(best),
+            None => Err(self.without_answer()?),
         }
-        let (why, reason) = (self.ladder.why(&self.history), self.ladder.reason(&self.history));
-        let Some(mut best) = self.history.best.take() else { return Err(self.without_answer()?) };
-        let proven = self.proven(&mut best);
+    }
+
+    /// The best answer with everything that was tried.
+    pub(super) fn reported(&self, mut best: Best, proven: (Option<ProvenSet>, f64)) -> Solution {
+        let (why, reason) = (self.ladder.why(&self.history, &best), self.ladder.reason(&self.history, &best));
         let mut attempts = self.other_attempts(&best);
         attempts.append(&mut best.solution.attempts);
         let mut solution = Solution { attempts, ..best.solution };
@@ -57,7 +63,13 @@ impl Run<'_> {
         let (factor, certificate) = (of(|stages| stages.factor), of(|stages| stages.certificate));
         solution.proven = solution.proven.or(proven.0);
         solution.seconds = Seconds { factor, certificate, proof, solve: self.clock.elapsed().as_secs_f64() };
-        if certified {
+        solution
+    }
+
+    /// The answer in the rows as they were given, if it meets the goal.
+    pub(super) fn certified(&self, solution: Solution) -> Result<Solution, Error> {
+        let goal = self.settings.goal();
+        if goal.is_met_by(&solution.certificate) {
             let without = self.without_open_rows(&solution)?;
             return Ok(without.unwrap_or_else(|| self.problem.in_given_rows(solution)));
         }
@@ -120,7 +132,7 @@ impl Run<'_> {
     }
 
     /// The error if no step gave an answer: the limit of time, with the body at rest, or the last error.
-    fn without_answer(mut self) -> Result<Error, Error> {
+    fn without_answer(&mut self) -> Result<Error, Error> {
         let records = std::mem::take(&mut self.history.records);
         let errors = records.into_iter().filter_map(|record| match record.ended {
             Ended::Refused(error) | Ended::Failed(error) => Some(error),
@@ -128,7 +140,7 @@ impl Run<'_> {
         });
         match (errors.last(), self.settings.watch.cut()) {
             (Some(Error::OutOfTime { .. }), cut_short) | (Some(_), cut_short @ Some(_)) => {
-                let at_rest = without_certificate(Outcome::at_rest(self.problem, Ending::Unsettled), "none");
+                let at_rest = without_certificate(Outcome::at_rest(self.problem, Ending::Unsettled), None);
                 let answer = [&*at_rest.displacement, &at_rest.multiplier];
                 let examined = Examination::of(self.problem, answer, &Bounding::Nothing)?.certificate()?;
                 let certificate = examined.certificate;
@@ -142,7 +154,7 @@ impl Run<'_> {
 
     /// The rows that the best answer proves, and the seconds that this took: by the prepared data, or with a factor of
     /// its own if the problem has equalities and no data were prepared.
-    fn proven(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
+    pub(super) fn proven(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
         let (watch, equalities) = (&self.settings.watch, self.problem.equalities());
         let by = match self.made.as_ref().or(self.kept) {
             _ if !self.settings.prove => Bounding::Nothing,
@@ -179,11 +191,11 @@ impl Run<'_> {
                 Some(dofs) => format!("on {dofs} condensed dofs {reason}"),
                 None => reason,
             };
-            let method = match (record.step, &self.ladder.pieces, &record.answer) {
-                (Step::Pieces, Some(pieces), _) => format!("{} pieces", pieces.count()),
+            let method = match (record.place.attempt, &self.ladder.door, &record.answer) {
+                (0, Some(Door::Pieces(pieces)), _) => format!("{} pieces", pieces.count()),
                 (_, _, Some((method, _))) => method.clone(),
                 _ => {
-                    let named = self.ladder.attempts[record.place.attempt].method();
+                    let named = self.ladder.attempts[record.place.attempt].method;
                     record.tried.map_or(named, |tried| tried.method).name().to_string()
                 }
             };
@@ -191,7 +203,7 @@ impl Run<'_> {
                 Some((_, other)) => {
                     other.seconds += record.seconds;
                     // An attempt is named by its best answer.
-                    if matches!(record.ended, Ended::Answered(Answered { is_best: true, .. })) {
+                    if record.is_best() {
                         (other.method, other.reason) = (method, reason);
                     }
                 }

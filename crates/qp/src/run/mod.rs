@@ -2,11 +2,9 @@
 //! and records them all.
 
 mod carried_out;
-mod elimination;
+mod door;
 mod ending;
-mod pieces;
 mod proximal;
 
 pub use carried_out::solved;
-pub(super) use carried_out::{Run, Workbench, check_rows, engine_by};
-pub(super) use elimination::KeptRest;
+pub(super) use carried_out::{KeptRest, Run, Workbench, answered, check_rows};

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::carried_out::{Run, Workbench};
+use super::carried_out::{Run, Workbench, answered};
 use crate::certificate::Bounding;
 use crate::engine::Load;
 use crate::error::Error;
 use crate::linear::SymmetricMatrix;
 use crate::method::Start;
-use crate::plan::{Answered, Best, Ended, Known, Ladder, Record};
+use crate::plan::{Answered, Best, Ended, Ladder, Record};
 use crate::problem::ContactProblem;
 use crate::settings::Settings;
 use crate::solution::{Solution, Why};
@@ -66,17 +66,16 @@ fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> 
     let stiffness = problem.stiffness().combined(1.0, 1.0, &SymmetricMatrix::of_diagonal(added.clone()))?;
     let mut of_step = ContactProblem::computed(stiffness, load.to_vec(), problem.contact().clone(), gap)?;
     let settings = &settings.of_question();
-    let known = Known { gaps: MOST_STEPS, is_whole: true };
-    let ladder = Ladder::of(&of_step, known, settings)?.without_existence();
+    let ladder = Ladder::of(&of_step, MOST_STEPS, true, settings)?.without_existence();
     let (mut start, mut kept): (Start, Option<Workbench>) = (Start::default(), None);
     let (mut last, mut before): (Vec<Solution>, Vec<Solution>) = (Vec::new(), Vec::new());
     let (mut centre, mut before_last) = (vec![0.0; problem.dofs()], f64::INFINITY);
     for step in 1..=MOST_STEPS {
         let mut run = Run::new(&of_step, &ladder, &start, settings);
         run.made = kept.take();
-        run.carry_out();
-        kept = run.made.clone();
-        let found = match run.ended() {
+        let found = answered(&mut run);
+        kept = run.made;
+        let found = match found {
             Ok(solution) => solution,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(infeasible @ Error::Infeasible { .. }) => return Err(infeasible),
