@@ -5,13 +5,13 @@ use std::sync::OnceLock;
 use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{bytes, check_time, seconds};
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::linear::{Analysis, Augmented, Compliance, Equilibration};
 use crate::plan::Tried;
 use crate::problem::ContactProblem;
 use crate::settings::Method;
 use crate::solution::{ContactSet, Seconds};
 use crate::transform::{Condensation, RowSelection, Scaling};
-use crate::watch::Watch;
 
 /// Factorisations for one step of a loop if K is not definite by itself.
 const SINGULAR: f64 = 3.0;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::factored::{Factored, Norm};
 use super::loading::{Load, Loading};
 use super::step::{Task, outcome};
-use crate::certificate::Bounding;
-use crate::error::Error;
+use crate::certificate::{self, Bounding, Examination};
+use crate::error::{Error, LinearError};
 use crate::linear::{dot, ldexp};
 use crate::method::parametric::{Event, ParametricLcp, Piece};
 use crate::method::penalty::AccuracyGoal;
@@ -46,7 +46,7 @@ fn find_under(engine: &Factored, loading: Arc<Loading>, gap: &[f64], task: &Task
     let start = task.start.contact_set.as_ref().map(|set| engine.selection.restrict_set(set));
     let bound = |displacement: &[f64], multiplier: &[f64]| {
         let by = engine.condensed_bounding(&problem, &settings.watch);
-        let examined = problem.examine(&by, displacement, multiplier);
+        let examined = Examination::of(&problem, [displacement, multiplier], &by).and_then(|of| of.certificate());
         let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
         let of_whole = loading.share_of_boundary(engine, unit, on_boundary);
         examined.map_or(f64::INFINITY, |examined| examined.certificate.energy_error_bound * of_whole)
@@ -81,7 +81,8 @@ fn check_gap(engine: &Factored, gap: &[f64]) -> Result<(), Error> {
         None => Ok(()),
         Some(row) => {
             let allowed = "infinite in the same rows as when the problem was prepared";
-            Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value: gap[row], allowed })
+            let at = format!("entry {row}");
+            Err(LinearError::NotFinite { name: "gap vector", at, value: gap[row], allowed }.into())
         }
     }
 }
@@ -128,7 +129,7 @@ fn expand_contradiction(engine: &Factored, rows: &[usize], weights: &[f64]) -> E
 pub(super) fn repaired(engine: &Factored, task: &Task, best: &Solution) -> Option<(Outcome, f64)> {
     let Norm::Kept(norm) = &engine.norm else { return None };
     let norm = norm.watched(&task.settings.watch.finishing());
-    let (displacement, multiplier) = task.problem.repaired(&norm, &best.displacement, &best.multiplier)?;
+    let (displacement, multiplier) = certificate::repaired(task.problem, &norm, &best.displacement, &best.multiplier)?;
     let contact_set = multiplier.iter().map(|&force| force < 0.0).collect();
     let at_rest = Outcome::at_rest(task.problem, Ending::Settled);
     Some((Outcome { displacement, multiplier, contact_set, ..at_rest }, 0.0))
@@ -218,7 +219,8 @@ pub(crate) fn on_boundary(
     let Some(found) = find(engine, task)? else { return Ok(None) };
     let Reduced { problem, outcome, .. } = &found;
     let by = if is_bounded { engine.condensed_bounding(problem, &settings.watch) } else { Bounding::Nothing };
-    let certificate = problem.examine(&by, &outcome.displacement, &outcome.multiplier)?.certificate;
+    let answer = [&*outcome.displacement, &outcome.multiplier];
+    let certificate = Examination::of(problem, answer, &by)?.certificate()?.certificate;
     let is_met = match is_bounded {
         true => settings.goal().is_met_by(&certificate),
         false => certificate.conditions_hold(settings.goal().tolerance),

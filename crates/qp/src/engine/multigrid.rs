@@ -7,13 +7,13 @@ use crate::cost::{Kept, NEAR_CYCLES, bytes, check_memory, check_time, seconds};
 use crate::error::Error;
 use crate::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::linear::threads_of_machine;
+use crate::linear::watch::Watch;
 use crate::method::mprgp::{Limits, Mprgp, takes_travels};
 use crate::method::{Outcome, Solver, Start};
 use crate::plan::Tried;
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
 use crate::solution::{ContactSet, Seconds};
-use crate::watch::Watch;
 
 /// With fewer dofs a second thread costs about what it saves.
 const WORTH_THREADS: usize = 50_000;

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::matrix::{MatrixRow, RowReader, dense_columns};
 use super::source::{INTEGER, REAL, indices, vector};
 use super::{BLOCK_SIZE, CONTACT, COORDINATES, EQUALITIES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS, VALUES};
-use crate::error::Error;
-use crate::file::read_text_capped;
+use crate::error::{Error, LinearError};
+use crate::linear::file::read_text_capped;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, SymmetricLines, SymmetricMatrix};
 use crate::problem::ContactProblem;
@@ -23,14 +23,14 @@ const SUPPORTED: u32 = u32::MAX;
 /// Reads the problem of a directory of PETSc files: the small ones first, then the stiffness row by row.
 ///
 /// # Errors
-/// [`Error::File`] and [`Error::FileBytes`] for a file that is missing or malformed, [`Error::FileSyntax`] for
+/// [`LinearError::File`] and [`LinearError::FileBytes`] for a file that is missing or malformed, [`LinearError::FileSyntax`] for
 /// `K.petsc.info`, and those of [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let stiffness = RowReader::open(&directory.join(STIFFNESS))?;
     let (size, columns) = stiffness.shape;
     if columns != size {
         let message = format!("the stiffness is {size} x {columns}; it must have as many columns as rows");
-        return Err(stiffness.wrong_shape(message));
+        return Err(stiffness.wrong_shape(message).into());
     }
     let places = Places::of(indices(&directory.join(FREE), size)?, size);
     let load = places.load(&directory.join(LOAD))?;
@@ -59,7 +59,7 @@ fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, Error> {
 
 /// The error of a vector of wrong size.
 fn fault(file: &Path, message: String) -> Error {
-    Error::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
+    LinearError::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }.into()
 }
 
 /// The places of the free dofs in the stiffness.
@@ -87,7 +87,7 @@ impl Places {
         if let Some((place, value)) = load.iter().enumerate().find(supported) {
             let message = format!("value {place} is {value} (from 0), but {FREE} does not name it: it must be 0");
             let byte = (2 * INTEGER + REAL * place as u64) as usize;
-            return Err(Error::FileBytes { file: file.to_path_buf(), byte, message });
+            return Err(LinearError::FileBytes { file: file.to_path_buf(), byte, message }.into());
         }
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }
@@ -103,7 +103,9 @@ impl Places {
                 kept += 1;
             } else if value != 0.0 {
                 let place = format!("entry ({}, {column}) is {value:e} (indices from 0)", rows.row());
-                return Err(rows.fault(entry, format!("{place}, but {FREE} does not name {column}: it must be 0")));
+                return Err(rows
+                    .fault(entry, format!("{place}, but {FREE} does not name {column}: it must be 0"))
+                    .into());
             }
         }
         row.columns.truncate(kept);
@@ -114,7 +116,7 @@ impl Places {
     fn rows(&self, mut rows: RowReader) -> Result<SparseMatrix, Error> {
         if rows.shape.1 != self.dof.len() {
             let found = format!("it has {} columns, but {STIFFNESS} has {} rows", rows.shape.1, self.dof.len());
-            return Err(rows.wrong_shape(found));
+            return Err(rows.wrong_shape(found).into());
         }
         let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
         let mut row = MatrixRow::default();
@@ -147,19 +149,21 @@ impl Places {
                 if let Some(entry) = (0..row.columns.len()).find(beside) {
                     let (column, value) = (row.columns[entry], row.values[entry]);
                     let place = format!("entry ({own}, {column}) is {value:e} (indices from 0)");
-                    return Err(rows.fault(entry, format!("{place}, but {FREE} does not name {own}: it must be 0")));
+                    return Err(rows
+                        .fault(entry, format!("{place}, but {FREE} does not name {own}: it must be 0"))
+                        .into());
                 }
                 continue;
             }
             self.leave_out(&rows, &mut row)?;
             matrix.take(&row.columns, &row.values).map_err(|error| self.located(error, &rows))?;
         }
-        SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)
+        Ok(SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)?)
     }
 
     /// Two triangles that differ, at their places in the file.
-    fn located(&self, error: Error, rows: &RowReader) -> Error {
-        let Error::NotSymmetric { row, column, value, mirrored } = error else { return error };
+    fn located(&self, error: LinearError, rows: &RowReader) -> LinearError {
+        let LinearError::NotSymmetric { row, column, value, mirrored } = error else { return error };
         let [row, column] = [row, column].map(|dof| self.free[dof]);
         let entries = format!("entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is {mirrored:e}");
         let allowed = "they may differ by 1e-10 of the diagonal";
@@ -201,7 +205,7 @@ fn block_size(directory: &Path) -> Result<usize, Error> {
         Some(size @ 1..=3) => Ok(size),
         _ => {
             let message = format!("it must have the line `{BLOCK_SIZE} D`, with 1, 2 or 3 dofs for each node");
-            Err(Error::FileSyntax { file, line: 1, message })
+            Err(LinearError::FileSyntax { file, line: 1, message }.into())
         }
     }
 }

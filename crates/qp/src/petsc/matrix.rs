@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::source::{INTEGER, REAL, Source};
 use super::{DENSE, MATRIX, TOO_MANY};
-use crate::error::Error;
+use crate::error::LinearError as Error;
 
 /// Bytes before the lengths of the rows of a sparse matrix, or the values of a dense one.
 const HEADER: u64 = 4 * INTEGER;

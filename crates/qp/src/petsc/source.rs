@@ -5,8 +5,8 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use super::{Class, INDICES, MATRIX, VECTOR};
-use crate::error::Error;
-use crate::file::open_regular;
+use crate::error::LinearError as Error;
+use crate::linear::file::open_regular;
 
 /// Bytes of a PETSc file that are read at a time.
 const PIECE: usize = 1 << 20;

@@ -1,7 +1,7 @@
 //! What was tried and what came of it.
 
 use crate::certificate::Evidence;
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::method::Ending;
 use crate::method::mprgp::Limits;
 use crate::settings::{Method, Settings};
@@ -119,7 +119,7 @@ impl Ended {
     pub fn by(error: Error) -> Self {
         match error {
             Error::TooLarge { .. } | Error::OutOfTime { .. } => Ended::Refused(error),
-            Error::Numerical { .. } | Error::NotConvex { .. } => Ended::Failed(error),
+            Error::Linear(LinearError::Numerical { .. } | LinearError::NotConvex { .. }) => Ended::Failed(error),
             _ => Ended::Decided(error),
         }
     }

@@ -3,16 +3,17 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::certificate::{Bounding, EnergyNorm, Examined};
+use crate::certificate::{Bounding, EnergyNorm, Examination, Examined, at_rest};
 use crate::engine::{Engine, Hierarchical, Load, Task};
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::existence::Existence;
+use crate::linear::SymmetricMatrix;
 use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Answered, Best, Door, Ended, From, History, Ladder, Means, Record, Step, Tried};
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
 use crate::solution::{Certificate, Seconds, Solution, Why};
-use crate::transform::Elimination;
+use crate::transform::{Elimination, Scaling};
 
 /// The answer of `problem` from a start, by the ladder of `settings`.
 pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
@@ -110,7 +111,9 @@ impl<'a> Run<'a> {
         let clock = Instant::now();
         step.ended = match make(self, &mut step) {
             Ok(ended) => ended,
-            Err(error @ Error::NotConvex { .. }) if step.step == Step::Existence => Ended::Decided(error),
+            Err(error @ Error::Linear(LinearError::NotConvex { .. })) if step.step == Step::Existence => {
+                Ended::Decided(error)
+            }
             Err(error) => Ended::by(error),
         };
         step.seconds = clock.elapsed().as_secs_f64();
@@ -243,10 +246,11 @@ impl<'a> Run<'a> {
     pub(super) fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
         let clock = Instant::now();
         let Solution { displacement, multiplier, .. } = &answer.solution;
-        let Examined { certificate, evidence, may_rest } = self.problem.examine(by, displacement, multiplier)?;
+        let examination = Examination::of(self.problem, [displacement, multiplier], by)?;
+        let Examined { certificate, evidence, may_rest } = examination.certificate()?;
         record.stages.certificate += clock.elapsed().as_secs_f64();
         let wants_best = answer.tried.is_none_or(|tried| tried.method.wants_best());
-        let at_rest = self.problem.at_rest(displacement, &may_rest).filter(|_| wants_best);
+        let at_rest = at_rest(self.problem, displacement, &may_rest).filter(|_| wants_best);
         let at_rest = at_rest.map(|displacement| Best {
             solution: Solution { displacement, ..answer.solution.clone() },
             ending: answer.ending.clone(),
@@ -265,8 +269,11 @@ impl<'a> Run<'a> {
 
     /// Whether an answer exists.
     fn looked_at_existence(&mut self) -> Result<Ended, Error> {
-        let Some(existence) = Existence::of(self.problem, self.settings, solve_any)? else { return Ok(Ended::Empty) };
-        existence.check_bounded(self.problem, self.settings)?;
+        let Some(existence) = Existence::of(self.problem, self.settings)? else { return Ok(Ended::Empty) };
+        if let Some(unbounded) = existence.unbounded() {
+            check_rows(self.problem, self.settings)?;
+            return Err(unbounded);
+        }
         self.existence = Some(existence);
         Ok(Ended::MayExist)
     }
@@ -304,11 +311,24 @@ pub(super) fn without_certificate(outcome: Outcome, tried: Option<&Tried>) -> So
     }
 }
 
-/// An answer for another problem, with a regular stiffness, that the question of existence gives rise to.
-pub(crate) fn solve_any(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    let (start, settings) = &checked(problem, &Start::default(), settings)?;
-    let ladder = Ladder::of(problem, 1, false, settings)?.without_existence();
-    answered(&mut Run::new(problem, &ladder, start, settings))
+/// Checks that some displacement meets all contact rows of `problem`: the nearest to rest, in units of equal stiffness.
+///
+/// # Errors
+/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
+pub(crate) fn check_rows(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+    problem.check_rows()?;
+    let (contact, rest) = (problem.contact().clone(), vec![0.0; problem.dofs()]);
+    let stiffness = SymmetricMatrix::of_diagonal(Scaling::of(problem.stiffness(), &contact)?.identity(0));
+    let nearest = &ContactProblem::computed(stiffness, rest, contact, problem.gap().to_vec())?;
+    let answer = || {
+        let (start, settings) = &checked(nearest, &Start::default(), &settings.of_question())?;
+        let ladder = Ladder::of(nearest, 1, false, settings)?.without_existence();
+        answered(&mut Run::new(nearest, &ladder, start, settings))
+    };
+    match answer() {
+        Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

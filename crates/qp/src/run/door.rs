@@ -1,7 +1,7 @@
 //! What is taken out of a problem before its ladder: equalities, eliminated, or pieces that nothing couples.
 
 use super::carried_out::{Run, solved};
-use crate::certificate::Bounding;
+use crate::certificate::{Bounding, motion_along, with_rounding};
 use crate::cost::bytes;
 use crate::error::Error;
 use crate::method::Start;
@@ -40,7 +40,7 @@ impl Run<'_> {
                     }
                 }
                 Err(error) => {
-                    let moves = |direction| problem.motion_along(&elimination.motion(direction));
+                    let moves = |direction| motion_along(problem, &elimination.motion(direction));
                     self.moves = error.direction().and_then(moves);
                     break;
                 }
@@ -52,7 +52,7 @@ impl Run<'_> {
             let seconds = Seconds { proof: 0.0, ..answer.seconds };
             let answer = elimination.expanded(problem, Solution { seconds, ..answer });
             // An error has the same energy in the rest, but for the rounding of the displacement.
-            let of_rest = self.is_cut.then(|| [problem.with_rounding(of_rest, &answer.displacement)]);
+            let of_rest = self.is_cut.then(|| [with_rounding(problem, of_rest, &answer.displacement)]);
             let norm = || kept.and_then(|kept| kept.norm.clone()).map_or(Bounding::OwnFactor, Bounding::Factor);
             let by = of_rest.as_ref().map_or_else(norm, |of_rest| Bounding::Pieces(of_rest));
             let answered = self.judged(Best::of(answer, record.place.attempt), &by, record)?;

@@ -4,9 +4,9 @@ use std::collections::HashSet;
 
 use super::basis::{Basis, DEPENDENT_ROW};
 use super::polyhedron::{Contradiction, Polyhedron};
+use crate::linear::watch::Watch;
 use crate::linear::{dot, largest, norm};
 use crate::solution::Iteration;
-use crate::watch::Watch;
 
 /// A violation below this number of units in the last place of the terms is rounding. The next pass, with accurate
 /// distances, makes any value up to 1e-4 give the same sets.
