@@ -142,8 +142,7 @@ impl Run<'_> {
             (Some(Error::OutOfTime { .. }), cut_short) | (Some(_), cut_short @ Some(_)) => {
                 let at_rest = without_certificate(Outcome::at_rest(self.problem, Ending::Unsettled), None);
                 let answer = [&*at_rest.displacement, &at_rest.multiplier];
-                let examined = Examination::of(self.problem, answer, &Bounding::Nothing)?.certificate()?;
-                let certificate = examined.certificate;
+                let certificate = Examination::of(self.problem, answer, &Bounding::Nothing)?.certificate()?.certificate;
                 let at_rest = self.problem.in_given_rows(Solution { certificate, cut_short, ..at_rest });
                 Ok(fallen_short(at_rest, self.settings.goal()))
             }
