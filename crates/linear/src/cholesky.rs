@@ -105,6 +105,7 @@ impl Analysis {
         Ok(Analysis { structure: Structure::Sparse(Arc::new(symbolic)), trailing: last.len(), threads: 1 })
     }
 
+    /// The same with factors on so many threads.
     pub fn with_threads(self, threads: usize) -> Self {
         Analysis { threads, ..self }
     }

@@ -76,10 +76,12 @@ impl Compliance {
         Compliance { halves: None, ..self.clone() }
     }
 
+    /// Returns `true` if there is nothing but the values.
     pub fn is_kept(&self) -> bool {
         self.halves.is_none()
     }
 
+    /// Bytes in memory.
     pub fn bytes(&self) -> f64 {
         let [size, count] = [self.by_row.rows(), self.by_row.columns()].map(|count| count as f64);
         (self.cholesky.entries() as f64 + size * count + count * count) * size_of::<f64>() as f64

@@ -98,6 +98,7 @@ impl LowerTriangle {
         &self.values
     }
 
+    /// The diagonal entry of a row.
     pub fn diagonal(&self, place: usize) -> f64 {
         self.values[place * self.size + place]
     }
@@ -225,6 +226,7 @@ pub struct UpperTriangle {
 }
 
 impl UpperTriangle {
+    /// Number of rows and columns.
     pub fn size(&self) -> usize {
         self.columns.len()
     }

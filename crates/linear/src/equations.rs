@@ -30,11 +30,14 @@ fn taken_out(values: &mut Sparse, place: usize) -> Option<Twice> {
 /// A sum with the magnitudes of its terms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sum {
+    /// The sum so far.
     pub value: Twice,
+    /// The sum of the sizes of its terms.
     pub terms: f64,
 }
 
 impl Sum {
+    /// Adds a term.
     pub fn add(&mut self, term: Twice) {
         self.value = self.value + term;
         self.terms += term.rounded().abs();
@@ -90,7 +93,9 @@ impl Sums {
 /// A dof that an equality gives: `u_dof = constant + sum of others`.
 #[derive(Clone, Debug)]
 pub struct Pivot {
+    /// The unknown that it gives.
     pub dof: usize,
+    /// Its value if all others are zero.
     pub constant: Twice,
     /// Dofs that stay, with their coefficients.
     pub others: Sparse,
@@ -115,6 +120,7 @@ impl Pivot {
 /// An equation that follows from others: the sum of all these equations, with their weights, is zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Following {
+    /// The equation.
     pub row: usize,
     /// Rows with weights, its own among them with weight one.
     pub weights: Vec<(usize, f64)>,
@@ -165,7 +171,12 @@ pub enum Remainder {
     /// `sum of others + constant = 0`, not yet solved for a dof.
     Row(Pivot),
     /// Nothing is left, exactly or except for rounding: with these weights the sum of the equalities is zero.
-    Follows { weights: Sparse, is_exact: bool },
+    Follows {
+        /// The weights.
+        weights: Sparse,
+        /// `true` if exactly nothing is left.
+        is_exact: bool,
+    },
     /// Nothing is left but a number: with these weights the equalities contradict each other.
     Contradicts(Sparse),
     /// No more is left than rounding of the entries may leave.
@@ -175,6 +186,7 @@ pub enum Remainder {
 /// The pivots so far. None depends on another.
 #[derive(Default)]
 pub struct Pivots {
+    /// In the order in which they were found.
     pub pivots: Vec<Pivot>,
     by_dof: HashMap<usize, usize>,
     /// The pivots that depend on a dof that stays.

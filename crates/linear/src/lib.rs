@@ -12,7 +12,6 @@
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
-#![allow(missing_docs)]
 #![allow(
     clippy::missing_errors_doc,
     reason = "what users see of it has them; the rest is for the crates of this workspace"
@@ -266,6 +265,7 @@ impl SparseMatrix {
         SparseMatrix { rows, pattern: Arc::new(Pattern::of(column_starts, row_indices)), values: Arc::new(values) }
     }
 
+    /// The matrix of the same pattern with these values, in the order of [`values`](Self::values).
     pub fn with_values(&self, values: Vec<f64>) -> Self {
         SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
     }

@@ -46,6 +46,7 @@ const SOFTEST_STEPS: usize = 5;
 const LEAST_NEGATIVE: f64 = 1e-12;
 const NEGATIVE_BY_COLUMN: f64 = 8.0 * f64::EPSILON;
 
+/// The vectors that a matrix maps to zero.
 #[derive(Clone, Debug, Default)]
 pub struct NullSpace {
     /// Linearly independent vectors of length about one.
@@ -68,6 +69,7 @@ impl NullSpace {
     /// coefficients and right-hand sides*, Numer. Math. 6 (1964) 405-409.
     pub const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
 
+    /// Returns `true` if every vector vanishes exactly under the matrix.
     pub fn is_exact(&self) -> bool {
         self.shares.iter().all(|&share| share == 0.0)
     }

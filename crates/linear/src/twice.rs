@@ -19,6 +19,7 @@ pub struct Twice {
 }
 
 impl Twice {
+    /// Zero.
     pub const ZERO: Twice = Twice { head: 0.0, tail: 0.0 };
 
     /// The nearest double.
@@ -26,6 +27,7 @@ impl Twice {
         self.head
     }
 
+    /// The absolute value.
     pub fn abs(self) -> Self {
         if self.head < 0.0 { -self } else { self }
     }

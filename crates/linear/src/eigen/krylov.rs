@@ -57,6 +57,7 @@ pub struct Krylov<A> {
 
 /// Eigenpairs of the operator in the space, eigenvalues decreasing.
 pub struct Pairs {
+    /// The eigenvalues.
     pub values: Vec<f64>,
     /// The norm of `A y - value y` for the unit vector y of each pair.
     pub residuals: Vec<f64>,
@@ -82,6 +83,7 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
         space
     }
 
+    /// Number of vectors of the basis.
     pub fn columns(&self) -> usize {
         self.projected.len()
     }

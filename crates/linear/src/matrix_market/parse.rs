@@ -42,6 +42,7 @@ const LONGEST_EXCERPT: usize = 80;
 /// The values that a file may hold, and the same in words.
 pub type Allowed = (fn(f64) -> bool, &'static str);
 
+/// Finite numbers.
 pub const FINITE: Allowed = (f64::is_finite, "finite");
 
 /// Gaps: `inf` is a row without obstacle.
