@@ -30,7 +30,7 @@ export RUSTC_WORKSPACE_WRAPPER=clippy-driver CLIPPY_ARGS=-D__CLIPPY_HACKERY__war
 table="
 every | first  | format        | cargo fmt --all --check |
 long  | first  | documentation | rustdoc_as_errors    | Cargo.toml src/lib.rs crates/*/src/lib.rs
-long  | first  | features      | features             | Cargo.toml crates/*/Cargo.toml src/lib.rs crates/qp/src/lib.rs crates/qp/src/linear/mod.rs
+long  | first  | features      | features             | Cargo.toml crates/*/Cargo.toml src/lib.rs crates/qp/src/lib.rs crates/linear/src/lib.rs
 every | first  | lints and build | cargo test --quiet --workspace --all-targets --all-features --no-run |
 code  | tests  | tests         | cargo test --quiet --workspace --all-features |
 code  | tests  | lessons       | lessons              |

@@ -1,4 +1,4 @@
-"""Counts how large the code is: `python3 reference/count.py [FOLDER ...]`, by default the crate of the QP.
+"""Counts how large the code is: `python3 reference/count.py [FOLDER ...]`, by default that of the QP, in all its crates.
 
 A line is documentation, a comment, blank, of unit tests or code. A type is a `struct`, an `enum` or a `trait`. The files with an
 `impl` are those that add methods to a type that every room knows; the doors are the functions that judge or prove an answer.
@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 
-FOLDERS = ["crates/qp/src"]
+FOLDERS = ["crates/linear/src", "crates/qp/src"]
 """What was the crate of the QP, wherever its parts stand now."""
 
 VISIBLE = r"\s*(?:pub(?:\([^)]*\))? )?"
@@ -40,13 +40,13 @@ def kinds(text):
             yield "code" if bare else "blank", line
 
 
-def counts(folder):
-    """Returns the numbers of a folder by their names."""
-    files = sorted(folder.rglob("*.rs"))
+def counts(folders):
+    """Returns the numbers of these folders together by their names."""
+    files = sorted(file for folder in folders for file in folder.rglob("*.rs"))
     of_tests = {name for file in files for name in re.findall(r"#\[cfg\(test\)\]\nmod (\w+);", file.read_text())}
     lines, types, doors, constants, methods, characters = Counter(), Counter(), Counter(), 0, set(), 0
     for file in files:
-        in_tests = bool(of_tests & {file.stem, *file.relative_to(folder).parts})
+        in_tests = bool(of_tests & {file.stem, *file.relative_to(ROOT).parts})
         for kind, line in [("unit tests", line) for line in file.open()] if in_tests else kinds(file.read_text()):
             lines[kind] += 1
             if kind == "code":
@@ -58,6 +58,7 @@ def counts(folder):
     twice = sorted(name for name in types if types[name] > 1)
     return {
         "lines": lines.total(),
+        "lines of the largest folder": max(sum(len(file.read_text().splitlines()) for file in folder.rglob("*.rs")) for folder in folders),
         **{kind: lines[kind] for kind in ("code", "documentation", "comments", "blank", "unit tests")},
         "letters of a line of code": round(characters / max(lines["code"], 1), 2),
         "files": len(files),
@@ -70,10 +71,10 @@ def counts(folder):
 
 
 def main():
-    for folder in sys.argv[1:] or FOLDERS:
-        print(folder)
-        for name, value in counts(ROOT / folder).items():
-            print(f"  {name:32} {value}")
+    folders = sys.argv[1:] or FOLDERS
+    print(*folders)
+    for name, value in counts([ROOT / folder for folder in folders]).items():
+        print(f"  {name:32} {value}")
 
 
 if __name__ == "__main__":

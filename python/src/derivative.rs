@@ -53,7 +53,7 @@ impl Gradient {
     /// Needs scipy.
     #[getter]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let both = self.inner.of_stiffness(&self.problem).and_then(|lower| shared_out(&lower));
+        let both = self.inner.of_stiffness(&self.problem).and_then(|lower| Ok(shared_out(&lower)?));
         matrices::csc(py, &both.map_err(|error| plain_exception(py, error))?)
     }
 
@@ -80,7 +80,7 @@ impl Gradient {
 }
 
 /// Both triangles of derivatives that stand in the lower one for both places of an entry: each place has half of it.
-fn shared_out(lower: &SparseMatrix) -> Result<SparseMatrix, qp::Error> {
+fn shared_out(lower: &SparseMatrix) -> Result<SparseMatrix, qp::LinearError> {
     let places = lower.triplets().flat_map(|(i, j, value)| match i == j {
         true => [Some((i, j, value)), None],
         false => [Some((i, j, 0.5 * value)), Some((j, i, 0.5 * value))],

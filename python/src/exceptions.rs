@@ -20,7 +20,7 @@ pub fn exception(
     let filled = || -> PyResult<&'static str> {
         about.set_item("code", code)?;
         Ok(match error {
-            Error::Qp(qp::Error::NotConvex { .. }) => "NotConvex",
+            Error::Linear(qp::LinearError::NotConvex { .. }) => "NotConvex",
             Error::Qp(qp::Error::Infeasible { rows, weights, overlap, .. }) => {
                 about.set_item("rows", of_indices(py, rows)?)?;
                 about.set_item("weights", of_reals(py, &weights)?)?;
@@ -65,7 +65,7 @@ pub fn exception(
                 about.set_item("allowed", allowed)?;
                 "TooLarge"
             }
-            Error::Qp(qp::Error::Numerical { .. }) => "NumericalError",
+            Error::Linear(qp::LinearError::Numerical { .. }) => "NumericalError",
             Error::SceneSyntax { path, line, column, .. } => {
                 about.set_item("path", path)?;
                 about.set_item("line", line)?;
@@ -76,7 +76,7 @@ pub fn exception(
                 about.set_item("path", path)?;
                 "SceneError"
             }
-            Error::Qp(qp::Error::File { .. }) => "FileError",
+            Error::Linear(qp::LinearError::File { .. }) => "FileError",
             _ => "BadInput",
         })
     };

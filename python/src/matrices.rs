@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use signorini::qp::Error;
+use signorini::qp::LinearError as Error;
 use signorini::{SparseMatrix, SymmetricMatrix};
 
 use crate::arrays::{Indices, is_array, kind_of, room, slice, with_reals, with_table};

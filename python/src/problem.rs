@@ -131,7 +131,7 @@ impl Problem {
                 NearNullSpace::of_nodes(&axes)
             }
         };
-        let problem = near_null.and_then(|near_null| problem.with_near_null(near_null));
+        let problem = near_null.map_err(Into::into).and_then(|near_null| problem.with_near_null(near_null));
         problem.map(Problem::from).map_err(|error| plain_exception(py, error))
     }
 

@@ -58,7 +58,7 @@ pub(super) fn check_contact(path: &Path) -> Result<(), Error> {
         return Ok(());
     }
     let message = "it is a complementarity problem (q.mtx), which only `solve`, `compare` and `verify` take";
-    Err(qp::Error::File {
+    Err(qp::LinearError::File {
         action: "read",
         path: path.into(),
         source: io::Error::new(io::ErrorKind::InvalidInput, message),

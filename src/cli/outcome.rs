@@ -78,7 +78,7 @@ impl Report {
     /// The report `value` with its text.
     pub fn new(value: &impl Serialize, text: String) -> Result<Self, Error> {
         let failed =
-            |error: serde_json::Error| qp::Error::Numerical { step: "writing JSON", reason: error.to_string() };
+            |error: serde_json::Error| qp::LinearError::Numerical { step: "writing JSON", reason: error.to_string() };
         // Through a value: indented, fields in alphabetical order, `null` for a number that is not finite.
         let value = serde_json::to_value(value).map_err(failed)?;
         Ok(Report { text, json: format!("{value:#}\n") })
@@ -87,7 +87,7 @@ impl Report {
     /// The object of `report.json`.
     pub fn value(&self) -> Result<serde_json::Value, Error> {
         let failed =
-            |error: serde_json::Error| qp::Error::Numerical { step: "reading JSON", reason: error.to_string() };
+            |error: serde_json::Error| qp::LinearError::Numerical { step: "reading JSON", reason: error.to_string() };
         Ok(serde_json::from_str(&self.json).map_err(failed)?)
     }
 

@@ -91,7 +91,7 @@ fn a_section_without_its_end_is_a_located_fault() {
 
 /// Asserts that an error names a byte of the file, and the line in which a section begins or should begin.
 fn assert_located(content: &[u8], error: &Error) {
-    let Error::Qp(qp::Error::FileSyntax { line, message, .. }) = error else { panic!("{error}") };
+    let Error::Linear(qp::LinearError::FileSyntax { line, message, .. }) = error else { panic!("{error}") };
     let text = content.split(|&byte| byte == b'\n').nth(line - 1).unwrap_or_else(|| panic!("{error}"));
     assert!(message.len() < 400 && !message.contains(char::is_control), "the error is not one sentence: {error}");
     let Some((byte, _)) = message.strip_prefix("at byte ").and_then(|rest| rest.split_once(": ")) else {

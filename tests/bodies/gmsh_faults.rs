@@ -88,7 +88,7 @@ fn read(text: &str) -> Result<signorini::fem::Mesh, Error> {
 
 fn check(text: &str, expected_line: usize, phrase: &str) {
     match read(text) {
-        Err(Error::Qp(qp::Error::FileSyntax { file, line, message })) => {
+        Err(Error::Linear(qp::LinearError::FileSyntax { file, line, message })) => {
             assert_eq!(file.to_str(), Some("folder/body.msh"));
             assert!(line == expected_line && message.contains(phrase), "{phrase}: line {line}: {message}");
             assert!(!message.contains('\n'), "the error is not one sentence: {message}");
@@ -246,7 +246,7 @@ fn a_plane_mesh_may_have_any_height_and_is_scaled() {
     assert_eq!(mesh.nodes()[3], [1e-3, 1e-3, 0.0]);
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = GmshFile::parse(text(&V2).as_str(), "x").unwrap().mesh(&[], scale).unwrap_err();
-        assert!(matches!(error, Error::Qp(qp::Error::Setting { name: "scale", .. })), "{error}");
+        assert!(matches!(error, Error::Linear(qp::LinearError::Setting { name: "scale", .. })), "{error}");
     }
 }
 

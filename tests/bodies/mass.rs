@@ -157,7 +157,10 @@ fn a_mesh_too_coarse_and_a_material_without_density_are_refused() {
     let refused = |body: &ElasticBody| {
         mass(body, &all_free(body), MassForm::Redistributed, &contact_nodes(body, "right")).unwrap_err()
     };
-    assert!(matches!(refused(&body(material, &LINES)), Error::Qp(qp::Error::Setting { name: "density", .. })));
+    assert!(matches!(
+        refused(&body(material, &LINES)),
+        Error::Linear(qp::LinearError::Setting { name: "density", .. })
+    ));
     let heavy = material.with_density(1.0).unwrap();
     let everywhere = body(heavy, &LINES);
     let all: Vec<usize> = (0..LINES.len()).collect();
@@ -165,6 +168,9 @@ fn a_mesh_too_coarse_and_a_material_without_density_are_refused() {
     assert!(none_left.to_string().contains("every node of a body is a contact node"), "{none_left}");
     assert!(refused(&body(heavy, &[0.0, 1.0])).to_string().contains("too coarse"));
     for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(material.with_density(wrong), Err(Error::Qp(qp::Error::Setting { name: "density", .. }))));
+        assert!(matches!(
+            material.with_density(wrong),
+            Err(Error::Linear(qp::LinearError::Setting { name: "density", .. }))
+        ));
     }
 }

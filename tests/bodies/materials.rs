@@ -137,7 +137,10 @@ fn each_material_contributes_its_density_to_the_mass() {
 fn constants_without_a_positive_definite_stiffness_are_refused() {
     let refused = |young, ratios, shear, expected: &str| {
         let error = Material::orthotropic(young, ratios, shear).unwrap_err();
-        assert!(matches!(&error, Error::Qp(qp::Error::Setting { name, .. }) if *name == expected), "{error:?}");
+        assert!(
+            matches!(&error, Error::Linear(qp::LinearError::Setting { name, .. }) if *name == expected),
+            "{error:?}"
+        );
     };
     refused([140.0, 0.0, 9.0], RATIOS, SHEAR, "orthotropic.young[1]");
     refused(YOUNG, RATIOS, [5.0, 3.6, f64::INFINITY], "orthotropic.shear[2]");

@@ -77,7 +77,7 @@ fn faults_are_reported_with_their_line_and_what_is_allowed() {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), &[("K.mtx", text.to_string())]);
         match qp::read_problem(folder.path()) {
-            Err(qp::Error::FileSyntax { line, message, .. }) => {
+            Err(qp::Error::Linear(qp::LinearError::FileSyntax { line, message, .. })) => {
                 assert!(line == expected_line && message.contains(phrase), "{text:?}: line {line}: {message}");
             }
             other => panic!("{text:?}: {other:?}"),

@@ -5,7 +5,7 @@
 //! answer.
 
 use serde_json::{Value, json};
-use signorini::qp::{Cholesky, Error, Multigrid, NearNullSpace};
+use signorini::qp::{Cholesky, Error, LinearError, Multigrid, NearNullSpace};
 use signorini::{
     ContactProblem, Method, Prepared, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve,
 };
@@ -389,7 +389,7 @@ fn springs_of_the_bound_do_not_hide_a_direction_of_negative_energy() {
             Err(Error::NotCertified { solution, .. }) => {
                 assert!(solution.certificate.energy_error_bound.is_infinite(), "{:?}", solution.certificate);
             }
-            Err(Error::NotConvex { .. }) => {}
+            Err(Error::Linear(LinearError::NotConvex { .. })) => {}
             other => panic!("{share}: {:?}", other.map(|found| found.certificate)),
         }
     }

@@ -9,7 +9,7 @@ use support::endings::best;
 use support::scenes::built_example;
 
 use serde_json::json;
-use signorini::qp::{Error, NearNullSpace};
+use signorini::qp::{Error, LinearError, NearNullSpace};
 use signorini::{ContactProblem, ContactSet, Method, Prepared, Settings, Solution, Start, solve};
 use support::bodies::{clamped_block, clamped_square, largest};
 use support::oracles::{Dense, Draws, random};
@@ -174,7 +174,7 @@ fn a_start_from_the_last_answer_saves_cycles() {
     assert_eq!(next.contact_set, cold.contact_set);
     assert!(next.iterations < cold.iterations, "{} against {}", next.iterations, cold.iterations);
     let short = iterative.starting_from(Start::near(vec![0.0; 3]));
-    assert!(matches!(short.solve(problem.gap()), Err(Error::Length { .. })));
+    assert!(matches!(short.solve(problem.gap()), Err(Error::Linear(LinearError::Length { .. }))));
 }
 
 #[test]
@@ -248,7 +248,7 @@ fn a_body_that_is_pulled_away_is_reported_as_unbounded() {
 fn a_stiffness_with_a_negative_eigenvalue_on_the_free_face_is_refused() {
     let dense = Dense::new(&[&[1.0, 2.0], &[2.0, 1.0]], &[1.0, -1.0], &[&[1.0, 0.0]], &[5.0]);
     let refused = solve(&dense.problem().unwrap(), &mprgp());
-    assert!(matches!(refused, Err(Error::NotConvex { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(Error::Linear(LinearError::NotConvex { .. }))), "{refused:?}");
     // A block three levels deep with one reduced diagonal entry: the direction is named if the iteration meets it.
     let problem = built(&clamped_block(9, -0.01)).problem().clone();
     let lower = problem.stiffness().lower();

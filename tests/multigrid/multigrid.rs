@@ -4,7 +4,7 @@
 //! precision, one thread and two; near-null spaces that do not match the problem.
 
 use serde_json::json;
-use signorini::qp::{Cholesky, Error, Multigrid, NearNullSpace, Width};
+use signorini::qp::{Cholesky, LinearError, Multigrid, NearNullSpace, Width};
 use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
 use support::bodies::{clamped_block, clamped_square, largest};
 use support::oracles::Draws;
@@ -144,9 +144,9 @@ fn near_null_spaces_that_do_not_match_the_problem_are_refused_by_name() {
     assert!(dependent.to_string().starts_with("the rank of the near-null space is 2; it must be"), "{dependent}");
     assert!(dependent.to_string().contains("linearly independent"), "{dependent}");
     assert!(NearNullSpace::new(Vec::new(), dofs).is_err());
-    assert!(matches!(NearNullSpace::new(vec![vec![f64::NAN; dofs]], dofs), Err(Error::NotFinite { .. })));
+    assert!(matches!(NearNullSpace::new(vec![vec![f64::NAN; dofs]], dofs), Err(LinearError::NotFinite { .. })));
     let other = NearNullSpace::new(vec![vec![1.0; dofs + 1]], dofs + 1).unwrap();
-    assert!(matches!(Multigrid::new(problem.stiffness(), &other, 1), Err(Error::Length { .. })));
+    assert!(matches!(Multigrid::new(problem.stiffness(), &other, 1), Err(LinearError::Length { .. })));
     assert!(problem.with_near_null(other).is_err());
 }
 
@@ -166,5 +166,5 @@ fn a_matrix_with_a_negative_eigenvalue_is_refused() {
         Ok(multigrid) => multigrid.preconditioning(&matrix).solve(&pressed(&problem), TOLERANCE, 200).map(|_| ()),
         Err(error) => Err(error),
     };
-    assert!(matches!(refused, Err(Error::NotConvex { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(LinearError::NotConvex { .. })), "{refused:?}");
 }

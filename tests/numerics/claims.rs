@@ -3,7 +3,7 @@
 //! CONDITIONS: a stiffness that resists no motion, or not every motion; loads in balance and not in balance; rows that
 //! stop the motion in one direction, in both or in none. REFERENCE: the answers follow directly from the data.
 
-use signorini::qp::{Error, NearNullSpace};
+use signorini::qp::{Error, LinearError, NearNullSpace};
 use signorini::{ContactProblem, Method, Settings, Solution, solve};
 use support::endings::best;
 use support::problems::of_entries;
@@ -122,7 +122,7 @@ fn rows_that_stop_a_motion_in_both_directions_without_play_support_it() {
 fn a_negative_eigenvalue_is_named_with_the_tolerance_of_its_recheck() {
     let problem = problem(&[(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)], &[1.0, 0.0], &[&[1.0, 0.0]], &[1.0]);
     for (method, ending) in endings(&problem) {
-        let Err(Error::NotConvex { evidence }) = ending else { panic!("{method}: {ending:?}") };
+        let Err(Error::Linear(LinearError::NotConvex { evidence })) = ending else { panic!("{method}: {ending:?}") };
         assert!(evidence.contains("beyond 1e-12 of its terms"), "{method}: {evidence}");
     }
 }

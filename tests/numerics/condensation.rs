@@ -13,7 +13,7 @@ use support::problems::of_entries;
 use support::scenes::{built, built_example};
 
 use serde_json::json;
-use signorini::qp::{Cholesky, Error};
+use signorini::qp::{Cholesky, Error, LinearError};
 use support::oracles::{Draws, random};
 
 /// Condensed and full answers differ by rounding times the condition number of the stiffness.
@@ -134,7 +134,10 @@ fn two_threads_give_the_answer_of_one_bit_by_bit() {
         assert_eq!(one.certificate, two.certificate);
     }
     settings.threads = Some(0);
-    assert!(matches!(solve(&example("block"), &settings), Err(Error::Setting { name: "threads", .. })));
+    assert!(matches!(
+        solve(&example("block"), &settings),
+        Err(Error::Linear(LinearError::Setting { name: "threads", .. }))
+    ));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! REFERENCE: independent solves at random gaps; enumeration of all contact sets for few rows.
 
-use signorini::qp::Error;
+use signorini::qp::{Error, LinearError};
 use signorini::{Condense, Prepared, Settings, SparseMatrix, SymmetricMatrix, solve_qp};
 use support::oracles::{Draws, random};
 use support::scenes::built_example;
@@ -86,7 +86,9 @@ fn rows_that_touch_release_and_touch_again_agree_with_independent_solves() {
         let path = match prepared.path(&from, &to) {
             Ok(path) => path,
             // The gaps at the end may contradict each other, or there may be too many rows to condense.
-            Err(Error::Infeasible { .. } | Error::NotCondensed { .. } | Error::Numerical { .. }) => {
+            Err(
+                Error::Infeasible { .. } | Error::NotCondensed { .. } | Error::Linear(LinearError::Numerical { .. }),
+            ) => {
                 continue;
             }
             Err(error) => panic!("case {case}: {error}"),

@@ -1,7 +1,7 @@
 //! The three methods on problems that are small enough to enumerate all contact sets.
 
 use nalgebra::DMatrix;
-use signorini::qp::Error;
+use signorini::qp::{Error, LinearError};
 use signorini::{
     ContactProblem, InteriorPoint, Method, Penalty, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
 };
@@ -243,10 +243,10 @@ fn indefinite_stiffness_is_refused() {
         let contact: [&[f64]; 2] = [&[1.0, 0.0], &[0.0, 1.0]];
         let dense = Dense::new(&[&[1.0, shear], &[shear, 1.0]], &[0.0, 1.0], &contact, &[1.0, 1.0]);
         let result = solve_qp(&dense.problem().unwrap());
-        assert!(matches!(result, Err(Error::NotConvex { .. })), "{shear}: {result:?}");
+        assert!(matches!(result, Err(Error::Linear(LinearError::NotConvex { .. }))), "{shear}: {result:?}");
     }
     let negative = Dense::new(&[&[-1.0]], &[0.0], &[&[1.0]], &[1.0]).problem();
-    assert!(matches!(negative, Err(Error::NotConvex { .. })), "{negative:?}");
+    assert!(matches!(negative, Err(Error::Linear(LinearError::NotConvex { .. }))), "{negative:?}");
 }
 
 #[test]

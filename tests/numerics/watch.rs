@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use signorini::motion::Integrator;
-use signorini::qp::Error;
+use signorini::qp::{Error, LinearError};
 use signorini::study::{MotionTradeoff, Sweep, Tradeoff, TradeoffGrid, compare};
 use signorini::{Condense, InteriorPoint, Method, Prepared, Scene, Settings, Watch, solve};
 use support::endings::best;
@@ -226,6 +226,12 @@ fn memory_that_does_not_suffice_is_refused_before_a_factorisation() {
     let mut settings = Settings::default();
     for wrong in [-1.0, f64::NAN] {
         settings.memory = Some(wrong);
-        assert!(matches!(solve(model.problem(), &settings), Err(Error::Setting { name: "memory", .. })), "{wrong}");
+        assert!(
+            matches!(
+                solve(model.problem(), &settings),
+                Err(Error::Linear(LinearError::Setting { name: "memory", .. }))
+            ),
+            "{wrong}"
+        );
     }
 }

@@ -97,7 +97,10 @@ fn invalid_accuracies_are_refused_by_name() {
     let problem = problem("bar");
     for wrong in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
         let refused = solve(&problem, &Settings::for_accuracy(wrong));
-        assert!(matches!(refused, Err(qp::Error::Setting { name: "accuracy", .. })), "{wrong}");
+        assert!(
+            matches!(refused, Err(qp::Error::Linear(qp::LinearError::Setting { name: "accuracy", .. }))),
+            "{wrong}"
+        );
     }
 }
 

@@ -111,19 +111,19 @@ const FOREIGN: [(&str, &[&str]); 6] = [
     (
         "faer",
         &[
-            "crates/qp/src/linear/cholesky.rs",
-            "crates/qp/src/linear/dense_factor.rs",
-            "crates/qp/src/linear/eigen",
-            "crates/qp/src/linear/factor.rs",
-            "crates/qp/src/linear/of_faer.rs",
-            "crates/qp/src/linear/ordering.rs",
-            "crates/qp/src/linear/selected_inverse.rs",
+            "crates/linear/src/cholesky.rs",
+            "crates/linear/src/dense_factor.rs",
+            "crates/linear/src/eigen",
+            "crates/linear/src/factor.rs",
+            "crates/linear/src/of_faer.rs",
+            "crates/linear/src/ordering.rs",
+            "crates/linear/src/selected_inverse.rs",
         ],
     ),
-    ("feral_metis", &["crates/qp/src/linear/ordering.rs"]),
+    ("feral_metis", &["crates/linear/src/ordering.rs"]),
     ("nalgebra", &[]),
-    ("nalgebra_sparse", &["crates/qp/src/linear/of_nalgebra.rs"]),
-    ("rayon", &["crates/qp/src/linear/threads.rs", "crates/mechanics/src/fem/threads.rs"]),
+    ("nalgebra_sparse", &["crates/linear/src/of_nalgebra.rs"]),
+    ("rayon", &["crates/linear/src/threads.rs", "crates/mechanics/src/fem/threads.rs"]),
 ];
 
 #[test]

@@ -54,7 +54,16 @@ fn each_dependency_stands_once_in_the_workspace_with_its_reason_above_it() {
     for pair in lines.windows(2).filter(|pair| !pair[1].starts_with('#')) {
         assert!(pair[0].starts_with("# "), "{} has no reason", pair[1]);
     }
-    for folder in [".", "crates/qp", "crates/lcp", "crates/mechanics", "crates/output", "python", "tests/support"] {
+    for folder in [
+        ".",
+        "crates/linear",
+        "crates/qp",
+        "crates/lcp",
+        "crates/mechanics",
+        "crates/output",
+        "python",
+        "tests/support",
+    ] {
         let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml")).unwrap();
         let tables = manifest.split("\n[").filter(|table| table.split(']').next().unwrap().ends_with("dependencies"));
         for line in tables.filter(|table| !table.starts_with("workspace")).flat_map(|table| table.lines().skip(1)) {

@@ -146,7 +146,7 @@ fn public_documentation_gives_shape_unit_and_sign_of_arrays() {
     for (module, source) in &sources.files {
         let file = syn::parse_file(&fs::read_to_string(root().join(&source.path)).unwrap()).unwrap();
         // Matrices and vectors may have any unit.
-        let may_have_any_unit = source.path.starts_with("crates/qp/src/linear");
+        let may_have_any_unit = source.path.starts_with("crates/linear/src");
         let mut found = Found::default();
         let is_seen = |name: &Ident| exported.contains(&sources.meant(module, &name.to_string()));
         file.items.iter().for_each(|item| found.read(item, is_seen));

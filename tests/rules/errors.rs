@@ -128,7 +128,7 @@ fn gmsh_of_another_body() -> Error {
 
 /// The variants with their codes, as the table of `Error::code` lists them.
 fn variants() -> BTreeMap<String, String> {
-    let text = ["qp", "mechanics"].map(|name| read(&format!("crates/{name}/src/error.rs"))).concat();
+    let text = ["linear", "qp", "mechanics"].map(|name| read(&format!("crates/{name}/src/error.rs"))).concat();
     let arms = text.lines().filter(|line| line.trim().starts_with("Error::"));
     let arms = arms.filter_map(|line| {
         let (patterns, class) = line.trim().split_once(" => ")?;
@@ -148,8 +148,13 @@ fn every_variant_is_provoked_with_its_code_and_one_sentence() {
     let known: BTreeSet<&str> = variants.keys().map(String::as_str).collect();
     assert_eq!(known, provoked.keys().copied().collect(), "a variant is not provoked, or does not exist");
     for (variant, (code, error)) in provoked {
-        // An error of the quadratic program comes in its wrapping.
-        assert_eq!(format!("{error:?}").trim_start_matches("Qp(").split([' ', ')']).next(), Some(variant), "{error:?}");
+        // The errors of other crates come in their wrapping.
+        let named = format!("{error:?}");
+        assert_eq!(
+            named.trim_start_matches("Qp(").trim_start_matches("Linear(").split([' ', ')']).next(),
+            Some(variant),
+            "{error:?}"
+        );
         assert_eq!((error.code(), variants[variant].as_str()), (code, code), "{error}");
         let sentence = error.to_string();
         assert!(sentence.len() > 20 && sentence.lines().count() == 1 && !sentence.contains("  "), "{sentence:?}");

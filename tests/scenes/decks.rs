@@ -40,7 +40,7 @@ pub fn answer(deck: &str) -> Answer {
 /// The line and the message of the error of a deck.
 pub fn refusal(deck: &str) -> (usize, String) {
     match read(&[("deck.inp", deck)], &[]) {
-        Err(Error::Qp(qp::Error::FileSyntax { line, message, .. })) => (line, message),
+        Err(Error::Linear(qp::LinearError::FileSyntax { line, message, .. })) => (line, message),
         Err(error) => panic!("{error}"),
         Ok(_) => panic!("accepted: {deck}"),
     }

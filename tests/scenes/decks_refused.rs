@@ -56,7 +56,7 @@ fn check(from: &str, to: &str, phrase: &str) {
     let (error, sentence) = error(&[("deck.inp", &deck)]);
     // The change begins in this line; a reason may lie some lines behind.
     let first = 1 + CUBE[..at].matches('\n').count();
-    let Error::Qp(qp::Error::FileSyntax { line, ref message, .. }) = error else {
+    let Error::Linear(qp::LinearError::FileSyntax { line, ref message, .. }) = error else {
         panic!("{from:?} to {to:?}: {sentence}")
     };
     let last = first + to.matches('\n').count();

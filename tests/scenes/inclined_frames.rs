@@ -194,7 +194,7 @@ fn frames_transform_vectors_in_both_directions() {
 
     for given in [&[[1.0, 1.0, 0.0]][..], &[[1.0, 0.0, 0.0], [0.6, 0.8, 0.0]], &[[0.0, 0.0, 1.0]], &[[f64::NAN; 3]]] {
         assert!(
-            matches!(Frame::completing(given, 2), Err(Error::Qp(qp::Error::Setting { name: "frame", .. }))),
+            matches!(Frame::completing(given, 2), Err(Error::Linear(qp::LinearError::Setting { name: "frame", .. }))),
             "{given:?}"
         );
     }

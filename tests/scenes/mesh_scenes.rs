@@ -270,7 +270,7 @@ fn the_path_of_a_mesh_file_is_relative_to_its_scene() {
     // A scene from text has no folder: the path is relative to the current one.
     let error = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap_err();
     assert!(
-        matches!(&error, Error::Qp(qp::Error::File { action: "read", path, .. }) if path.ends_with("parts/block.msh")),
+        matches!(&error, Error::Linear(qp::LinearError::File { action: "read", path, .. }) if path.ends_with("parts/block.msh")),
         "{error}"
     );
 }
@@ -284,7 +284,7 @@ fn faults_of_a_mesh_are_reported_with_file_and_line() {
     let value = pressed("plane-strain", json!({"gmsh": {"file": "cut.msh"}}), "y", &[("bottom", "y")]);
     let read = Scene::from_json(&value.to_string(), "scene").unwrap();
     let error = Scene { folder: Some(folder.path().into()), ..read }.build().unwrap_err();
-    assert!(matches!(&error, Error::Qp(qp::Error::FileSyntax { line, .. }) if *line > 20), "{error}");
+    assert!(matches!(&error, Error::Linear(qp::LinearError::FileSyntax { line, .. }) if *line > 20), "{error}");
     assert!(error.to_string().contains("cut.msh:"), "{error}");
 }
 

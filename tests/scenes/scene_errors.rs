@@ -278,7 +278,7 @@ fn a_schema_address_and_a_byte_order_mark_are_accepted() {
 #[test]
 fn a_missing_scene_file_is_named() {
     let error = Scene::read("no/such/scene.json").unwrap_err();
-    assert!(matches!(&error, Error::Qp(qp::Error::File { action: "read", .. })));
+    assert!(matches!(&error, Error::Linear(qp::LinearError::File { action: "read", .. })));
     assert!(error.to_string().contains("no/such/scene.json"), "{error}");
 }
 

@@ -186,11 +186,11 @@ fn a_node_between_two_obstacles_has_a_row_and_a_pressure_for_each() {
 fn vectors_of_wrong_length_are_refused_by_a_model() {
     let model = built(&plane_above(0.0));
     let (u, lambda) = (vec![0.0; model.problem().dofs()], vec![0.0; model.rows().len()]);
-    assert!(matches!(model.nodal_displacement(&u[1..]), Err(Error::Qp(qp::Error::Length { .. }))));
-    assert!(matches!(model.pressure(&lambda[1..]), Err(Error::Qp(qp::Error::Length { .. }))));
-    assert!(matches!(model.reactions(&u[1..], &lambda), Err(Error::Qp(qp::Error::Length { .. }))));
-    assert!(matches!(model.force_balance(&u, &lambda[1..]), Err(Error::Qp(qp::Error::Length { .. }))));
-    assert!(matches!(model.stress(&u[1..]), Err(Error::Qp(qp::Error::Length { .. }))));
+    assert!(matches!(model.nodal_displacement(&u[1..]), Err(Error::Linear(qp::LinearError::Length { .. }))));
+    assert!(matches!(model.pressure(&lambda[1..]), Err(Error::Linear(qp::LinearError::Length { .. }))));
+    assert!(matches!(model.reactions(&u[1..], &lambda), Err(Error::Linear(qp::LinearError::Length { .. }))));
+    assert!(matches!(model.force_balance(&u, &lambda[1..]), Err(Error::Linear(qp::LinearError::Length { .. }))));
+    assert!(matches!(model.stress(&u[1..]), Err(Error::Linear(qp::LinearError::Length { .. }))));
 }
 
 fn under_held(scene: &Value) -> (String, Vec<f64>) {

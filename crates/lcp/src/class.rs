@@ -1,6 +1,6 @@
 //! The class of M, and what its claims rest on. Every decision about a method follows from it.
 
-use signorini_qp::{Cholesky, Error as QpError, SparseMatrix, SymmetricMatrix, dot};
+use signorini_qp::{Cholesky, LinearError, SparseMatrix, SymmetricMatrix, dot};
 
 use crate::answer::Class;
 use crate::error::Error;
@@ -163,7 +163,7 @@ fn semidefinite(scaled: &Scaled) -> Result<Option<(Cholesky, Option<f64>)>, Erro
 /// Those of a factorisation for lack of memory.
 pub fn if_definite(matrix: &SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
     match Cholesky::of(matrix) {
-        Err(QpError::NotConvex { .. }) => Ok(None),
+        Err(LinearError::NotConvex { .. }) => Ok(None),
         factor => Ok(Some(factor?)),
     }
 }

@@ -1,7 +1,7 @@
 //! The errors of complementarity problems: each states what is wrong, where, which value, and what is allowed.
 
-use signorini_qp::Failure;
 use signorini_qp::memory::in_words as memory;
+use signorini_qp::{Failure, LinearError};
 
 use crate::answer::LcpSolution;
 
@@ -73,6 +73,12 @@ pub enum Error {
         /// Bytes that they may take.
         allowed: f64,
     },
+}
+
+impl From<LinearError> for Error {
+    fn from(error: LinearError) -> Self {
+        Error::Qp(error.into())
+    }
 }
 
 impl Error {

@@ -4,7 +4,7 @@
 use std::io;
 use std::path::Path;
 
-use signorini_qp::{ContactProblem, Error as QpError, SparseMatrix, format_vector, read_vector};
+use signorini_qp::{ContactProblem, LinearError, SparseMatrix, format_vector, read_vector};
 
 use crate::answer::LcpSolution;
 use crate::error::Error;
@@ -18,13 +18,13 @@ impl Lcp {
     ///
     /// # Errors
     /// `File` for a directory that has the stiffness of a contact problem as well.
-    pub fn is_directory(directory: &Path) -> Result<bool, QpError> {
+    pub fn is_directory(directory: &Path) -> Result<bool, LinearError> {
         let is_one = directory.join(OFFSET).exists();
         if is_one && ContactProblem::is_directory(directory) {
             let both = "the folder has both q.mtx, of a complementarity problem, and the stiffness K of a contact problem; \
                         remove the files of one of them";
             let source = io::Error::new(io::ErrorKind::InvalidInput, both);
-            return Err(QpError::File { action: "read", path: directory.to_path_buf(), source });
+            return Err(LinearError::File { action: "read", path: directory.to_path_buf(), source });
         }
         Ok(is_one)
     }

@@ -51,7 +51,7 @@ pub use answer::LcpSolution;
 pub use error::Error;
 pub use problem::Lcp;
 
-use signorini_qp::{Error as QpError, Settings};
+use signorini_qp::{LinearError, Settings};
 
 /// Solves a linear complementarity problem; `Ok` means that the residual of every unknown meets the tolerance of the
 /// settings. Their method is that of the quadratic programs; iterations, memory and watch hold for pivoting as well.
@@ -74,10 +74,10 @@ impl Lcp {
     /// [`Error::Qp`] with `Length` or `NotFinite` for a wrong z, and `Numerical` if memory does not suffice for a
     /// factor.
     pub fn certify(&self, z: &[f64]) -> Result<LcpSolution, Error> {
-        QpError::check_length("unknowns z", z.len(), self.unknowns(), "rows of M")?;
+        LinearError::check_length("unknowns z", z.len(), self.unknowns(), "rows of M")?;
         if let Some((at, &value)) = z.iter().enumerate().find(|entry| !entry.1.is_finite()) {
             let (name, at, allowed) = ("unknowns z", at.to_string(), "finite");
-            return Err(QpError::NotFinite { name, at, value, allowed }.into());
+            return Err(LinearError::NotFinite { name, at, value, allowed }.into());
         }
         let start = std::time::Instant::now();
         let solution = certificate::examined(self, &class::Known::of(self)?, certificate::placed(self, z.to_vec()));

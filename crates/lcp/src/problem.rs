@@ -1,6 +1,6 @@
 //! The complementarity problem, checked once.
 
-use signorini_qp::{Error as QpError, SparseMatrix};
+use signorini_qp::{LinearError, SparseMatrix};
 
 use crate::error::Error;
 
@@ -39,16 +39,17 @@ impl Lcp {
         let n = offset.len();
         if (matrix.rows(), matrix.columns()) != (n, n) {
             let found = (matrix.rows(), matrix.columns());
-            return Err(QpError::Shape { name: "matrix M of the LCP", found, expected: (n, n) }.into());
+            return Err(LinearError::Shape { name: "matrix M of the LCP", found, expected: (n, n) }.into());
         }
         if let Some((i, j, value)) = matrix.triplets().find(|entry| !entry.2.is_finite()) {
             let (name, at, allowed) = ("matrix M of the LCP", format!("({i}, {j})"), "finite");
-            return Err(QpError::NotFinite { name, at, value, allowed }.into());
+            return Err(LinearError::NotFinite { name, at, value, allowed }.into());
         }
-        let check = |name, values: &[f64], is_allowed: fn(f64) -> bool, allowed| -> Result<(), QpError> {
-            QpError::check_length(name, values.len(), n, "rows of M")?;
+        let check = |name, values: &[f64], is_allowed: fn(f64) -> bool, allowed| -> Result<(), LinearError> {
+            LinearError::check_length(name, values.len(), n, "rows of M")?;
             let wrong = values.iter().enumerate().find(|entry| !is_allowed(*entry.1));
-            wrong.map_or(Ok(()), |(at, &value)| Err(QpError::NotFinite { name, at: at.to_string(), value, allowed }))
+            wrong
+                .map_or(Ok(()), |(at, &value)| Err(LinearError::NotFinite { name, at: at.to_string(), value, allowed }))
         };
         check("offset q", &offset, f64::is_finite, "finite")?;
         check("lower bound", &lower, |value| !value.is_nan(), "a number or infinite")?;

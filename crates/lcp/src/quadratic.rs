@@ -1,7 +1,9 @@
 //! The convex programs behind a complementarity problem, solved by the QP: that of a symmetric M, also with
 //! multipliers, and the gap of a monotone one. The rays that show that there is no point are found and checked here.
 
-use signorini_qp::{ContactProblem, Error as QpError, Settings, SparseMatrix, SymmetricMatrix, largest, solve};
+use signorini_qp::{
+    ContactProblem, Error as QpError, LinearError, Settings, SparseMatrix, SymmetricMatrix, largest, solve,
+};
 
 use crate::answer::Found;
 use crate::class::{SMALL, dense};
@@ -83,16 +85,16 @@ impl<'a> Program<'a> {
     ///
     /// # Errors
     /// Those of the QP that are not about this problem.
-    fn solved(self, stiffness: Result<SymmetricMatrix, QpError>, settings: &Settings) -> Result<Found, Error> {
+    fn solved(self, stiffness: Result<SymmetricMatrix, LinearError>, settings: &Settings) -> Result<Found, Error> {
         let Program { scaled, columns, load, entries, gaps, demands } = self;
-        let problem = stiffness.and_then(|stiffness| {
+        let problem = || {
             let contact = SparseMatrix::from_triplets(gaps.len(), load.len(), &entries)?;
-            ContactProblem::new(stiffness, load, contact, gaps)
-        });
+            ContactProblem::new(stiffness?, load, contact, gaps)
+        };
         let whole = |values: &[f64]| -> Vec<f64> {
             columns.iter().map(|column| column.map_or(0.0, |column| values[column])).collect()
         };
-        let answer = match problem.and_then(|problem| solve(&problem, settings)) {
+        let answer = match problem().and_then(|problem| solve(&problem, settings)) {
             Err(QpError::NotCertified { solution, .. }) => Ok(*solution),
             answer => answer,
         };
@@ -114,7 +116,7 @@ impl<'a> Program<'a> {
             Err(
                 error @ (QpError::Interrupted
                 | QpError::OutOfTime { .. }
-                | QpError::Setting { .. }
+                | QpError::Linear(LinearError::Setting { .. })
                 | QpError::NoRoom { .. }
                 | QpError::TooLarge { .. }),
             ) => Err(error.into()),

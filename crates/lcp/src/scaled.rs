@@ -1,7 +1,7 @@
 //! Rows and unknowns in units of their own: A = R M C with diagonal R and C. A row may be multiplied by any positive
 //! number, because only the sign of w matters; so M need not keep its symmetry by chance of its units.
 
-use signorini_qp::{Error, SparseMatrix, SymmetricMatrix};
+use signorini_qp::{LinearError, SparseMatrix, SymmetricMatrix};
 
 use crate::problem::Lcp;
 
@@ -106,7 +106,7 @@ impl Scaled {
     }
 
     /// The symmetric part (A + A') / 2, with this number added to its diagonal.
-    pub fn symmetric_part(&self, shift: f64) -> Result<SymmetricMatrix, Error> {
+    pub fn symmetric_part(&self, shift: f64) -> Result<SymmetricMatrix, LinearError> {
         let n = self.offset.len();
         let half = |(i, j, value): (usize, usize, f64)| (i.max(j), i.min(j), if i == j { value } else { 0.5 * value });
         let mut entries: Vec<_> = match self.is_symmetric {

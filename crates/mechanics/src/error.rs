@@ -8,9 +8,12 @@ use signorini_qp::{Failure, Solution};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// An error of the quadratic program, of a file or of a setting, with the same sentence and the same code.
+    /// Faulty data, a file, a setting, or a step of a library, with the same sentence and the same code.
     #[error(transparent)]
-    Qp(#[from] signorini_qp::Error),
+    Linear(#[from] signorini_linear::Error),
+    /// An error of the quadratic program, with the same sentence and the same code.
+    #[error(transparent)]
+    Qp(signorini_qp::Error),
     /// A sweep whose answers leave too little memory to each solve.
     #[error(
         "{count} answers with {dofs} dofs, which a sweep keeps, take about {}, and a solve about {}, but {} are allowed; take fewer \
@@ -83,6 +86,15 @@ pub enum Error {
     },
 }
 
+impl From<signorini_qp::Error> for Error {
+    fn from(error: signorini_qp::Error) -> Self {
+        match error {
+            signorini_qp::Error::Linear(error) => Error::Linear(error),
+            error => Error::Qp(error),
+        }
+    }
+}
+
 impl Error {
     /// The best answer of a solve that ended without a certified one; `None` for every other error.
     pub fn into_best(self) -> Option<Solution> {
@@ -97,6 +109,7 @@ impl Error {
     /// solve as [`qp::Error::code`](signorini_qp::Error::code).
     pub fn code(&self) -> &'static str {
         match self {
+            Error::Linear(error) => error.class().0,
             Error::Qp(error) => error.code(),
             Error::TooManyAnswers { .. } => "too-large",
             Error::Mesh { .. } => "mesh",
@@ -110,6 +123,7 @@ impl Error {
     /// or `bad_input`.
     pub fn status(&self) -> &'static str {
         match self {
+            Error::Linear(error) => error.class().1,
             Error::Qp(error) => error.status(),
             Error::BeyondSmallDisplacements { .. } => "beyond-small-displacements",
             _ => "bad_input",

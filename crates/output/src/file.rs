@@ -18,7 +18,7 @@ const PIECE: usize = 1 << 20;
 /// The contents go to a new file in the same folder, which is synced and then replaces `path` in one step.
 ///
 /// # Errors
-/// [`qp::Error::File`] if the system refuses; an older file at `path` is then untouched, and nothing is left beside it.
+/// [`qp::LinearError::File`] if the system refuses; an older file at `path` is then untouched, and nothing is left beside it.
 pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), Error> {
     streamed_atomically(path, |out| out.write_all(contents))
 }
@@ -33,7 +33,7 @@ pub(crate) fn streamed_atomically(
         _ => Path::new("."),
     };
     make_folder(folder)?;
-    Ok(write(folder, path, contents).map_err(|source| qp::Error::File {
+    Ok(write(folder, path, contents).map_err(|source| qp::LinearError::File {
         action: "write",
         path: path.to_owned(),
         source,
@@ -47,7 +47,7 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Error> {
         io::ErrorKind::AlreadyExists => io::Error::new(io::ErrorKind::NotADirectory, "there is a file of that name"),
         _ => error,
     });
-    Ok(made.map_err(|source| qp::Error::File { action: "make the folder", path: folder.to_owned(), source })?)
+    Ok(made.map_err(|source| qp::LinearError::File { action: "make the folder", path: folder.to_owned(), source })?)
 }
 
 fn write(folder: &Path, path: &Path, contents: impl Fn(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
@@ -69,7 +69,7 @@ impl Drawing {
     /// both paths.
     ///
     /// # Errors
-    /// [`qp::Error::File`] if the system refuses, [`qp::Error::Numerical`] if the rasteriser fails (then neither file
+    /// [`qp::LinearError::File`] if the system refuses, [`qp::LinearError::Numerical`] if the rasteriser fails (then neither file
     /// is written).
     pub fn write(&self, folder: &Path, stem: &str) -> Result<[PathBuf; 2], Error> {
         let (other, bytes) = match self.is_for_paper() {
@@ -86,7 +86,7 @@ impl Drawing {
 /// Writes named texts into `folder`, one file each, from the first to the last.
 ///
 /// # Errors
-/// [`qp::Error::File`] if the system refuses; the files before the one that failed are complete.
+/// [`qp::LinearError::File`] if the system refuses; the files before the one that failed are complete.
 pub fn write_files(folder: &Path, files: &[(&str, impl AsRef<str>)]) -> Result<(), Error> {
     files.iter().try_for_each(|(name, text)| write_atomically(&folder.join(name), text.as_ref().as_bytes()))
 }
@@ -136,12 +136,12 @@ pub fn remove_shown(folder: &Path) -> Result<(), Error> {
 /// Removes files that an earlier run left in a folder, and that would not belong to this one.
 ///
 /// # Errors
-/// [`qp::Error::File`] if a file stays.
+/// [`qp::LinearError::File`] if a file stays.
 pub fn remove_files(folder: &Path, names: &[&str]) -> Result<(), Error> {
     for name in names {
         match std::fs::remove_file(folder.join(name)) {
             Err(source) if source.kind() != std::io::ErrorKind::NotFound && folder.exists() => {
-                return Err(qp::Error::File { action: "remove", path: folder.join(name), source }.into());
+                return Err(qp::LinearError::File { action: "remove", path: folder.join(name), source }.into());
             }
             _ => {}
         }

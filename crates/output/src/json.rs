@@ -11,5 +11,5 @@ pub(crate) fn compact_json(value: &impl Serialize) -> Result<String, Error> {
 }
 
 fn failed(error: serde_json::Error) -> Error {
-    qp::Error::Numerical { step: "writing JSON", reason: error.to_string() }.into()
+    qp::LinearError::Numerical { step: "writing JSON", reason: error.to_string() }.into()
 }

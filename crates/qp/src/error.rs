@@ -1,8 +1,8 @@
 //! The one error type: each error states what is wrong, where, which value, and what is allowed.
 
-use std::path::PathBuf;
-
-use crate::memory::in_words as memory;
+pub use crate::linear::Error as LinearError;
+use crate::linear::FactorError;
+use crate::linear::memory::in_words as memory;
 use crate::solution::{Cancellation, Solution};
 
 /// The step that fails at a dof without stiffness.
@@ -13,79 +13,9 @@ const HIERARCHY: &str = "multigrid hierarchy";
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A vector with a length that does not fit the rest of the problem.
-    #[error("{name} has length {found}, but there are {expected} {of}")]
-    Length {
-        /// The vector in words, as `load vector`.
-        name: &'static str,
-        /// Number of its entries.
-        found: usize,
-        /// Number of entries that it must have.
-        expected: usize,
-        /// The unit of the fitting length, such as `dofs`.
-        of: &'static str,
-    },
-    /// A matrix with a shape that does not fit the rest of the problem.
-    #[error("{name} is {} x {}, but it must be {} x {}", found.0, found.1, expected.0, expected.1)]
-    Shape {
-        /// The matrix in words, as `contact matrix`.
-        name: &'static str,
-        /// Rows and columns that it has.
-        found: (usize, usize),
-        /// Rows and columns that fit.
-        expected: (usize, usize),
-    },
-    /// An entry outside its matrix.
-    #[error("entry ({row}, {column}) lies outside a matrix of {rows} rows and {columns} columns (indices from 0)")]
-    IndexOutOfRange {
-        /// Row of the entry, counted from 0.
-        row: usize,
-        /// Column of the entry, counted from 0.
-        column: usize,
-        /// Number of rows that the matrix has.
-        rows: usize,
-        /// Number of columns that the matrix has.
-        columns: usize,
-    },
-    /// Compressed columns that form no matrix.
-    #[error("compressed columns: {message}")]
-    Pattern {
-        /// A sentence on what is wrong, and where.
-        message: String,
-    },
-    /// A number that is not finite, at a place that needs a finite one.
-    #[error("{name} has the value {value} at {at} (indices from 0); it must be {allowed}")]
-    NotFinite {
-        /// The vector or matrix in words.
-        name: &'static str,
-        /// Index of the entry, or row and column in parentheses, from 0.
-        at: String,
-        /// The number found: NaN or an infinity, or one that overflows.
-        value: f64,
-        /// The values allowed there.
-        allowed: &'static str,
-    },
-    /// A stiffness given with both triangles, which differ.
-    #[error(
-        "the stiffness is not symmetric: entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is \
-         {mirrored:e} (indices from 0); give both triangles with equal entries, or only the lower one"
-    )]
-    NotSymmetric {
-        /// Row of the entry below the diagonal, from 0.
-        row: usize,
-        /// Column of the entry below the diagonal, from 0.
-        column: usize,
-        /// Value of entry (row, column), in the unit of the matrix.
-        value: f64,
-        /// Value of entry (column, row), in the unit of the matrix.
-        mirrored: f64,
-    },
-    /// A stiffness with a negative eigenvalue: the problem has no unique minimum.
-    #[error("the stiffness is not positive semidefinite ({evidence}): the problem is not convex")]
-    NotConvex {
-        /// The evidence for it in words, such as a pivot or a direction.
-        evidence: String,
-    },
+    /// Faulty data, a file, or a step of a library: of the linear algebra below.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
     /// Contact rows that no displacement satisfies together.
     #[error("infeasible: {reason}")]
     Infeasible {
@@ -156,16 +86,6 @@ pub enum Error {
         /// The tolerance that was requested.
         tolerance: f64,
     },
-    /// A setting outside its range.
-    #[error("{name} is {value}; it must be {allowed}")]
-    Setting {
-        /// The setting in words, as `threads`.
-        name: &'static str,
-        /// The number that was given for it.
-        value: f64,
-        /// The range in words, as `positive and finite`.
-        allowed: &'static str,
-    },
     /// A step that needs a condensed problem.
     #[error(
         "{step} needs a problem that is condensed onto its contact dofs and held by its supports; solve point by point"
@@ -206,44 +126,12 @@ pub enum Error {
         /// The way in which the iterative path ended without a certified answer, if there was room for it.
         ended: Option<String>,
     },
-    /// A library step that failed for its own reason.
-    #[error("{step} failed: {reason}")]
-    Numerical {
-        /// The step in words, as `sparse Cholesky factorisation`.
-        step: &'static str,
-        /// The cause, as the library states it.
-        reason: String,
-    },
-    /// A matrix or mesh file that does not have the right form.
-    #[error("{}:{line}: {message}", file.display())]
-    FileSyntax {
-        /// Path of the faulty text or mesh file, as it was given.
-        file: PathBuf,
-        /// Line, from 1; in a binary mesh the line at which the section begins.
-        line: usize,
-        /// A sentence on what is wrong, and what is allowed; in a binary mesh after the byte of the file, from 0.
-        message: String,
-    },
-    /// A binary file, such as an STL file, that does not have the right form.
-    #[error("{}, byte {byte}: {message}", file.display())]
-    FileBytes {
-        /// Path of the faulty binary file, as it was given.
-        file: PathBuf,
-        /// Offset of the fault, from 0.
-        byte: usize,
-        /// A sentence on what is wrong at this byte, and what is allowed.
-        message: String,
-    },
-    /// A file or folder that cannot be read or written.
-    #[error("cannot {action} {}: {source}", path.display())]
-    File {
-        /// `read`, `write` or `make the folder`.
-        action: &'static str,
-        /// Path of the file or folder at which the system refused.
-        path: PathBuf,
-        /// The system's reason.
-        source: std::io::Error,
-    },
+}
+
+impl From<FactorError> for Error {
+    fn from(error: FactorError) -> Self {
+        LinearError::from(error).into()
+    }
 }
 
 impl Error {
@@ -253,14 +141,6 @@ impl Error {
             Error::NotCertified { solution, .. } => Some(*solution),
             _ => None,
         }
-    }
-
-    /// Refuses a vector, named in words, that has not as many entries as there are `of`.
-    ///
-    /// # Errors
-    /// [`Error::Length`].
-    pub fn check_length(name: &'static str, found: usize, expected: usize, of: &'static str) -> Result<(), Error> {
-        if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
     }
 
     /// The name of the kind of error, the same in every version: for programs that distinguish errors.
@@ -275,12 +155,14 @@ impl Error {
 
     /// The error of a method that needs a hierarchy for a `dof` without stiffness, which is no travel.
     pub(crate) fn without_hierarchy(dof: usize) -> Self {
-        Error::Numerical { step: HIERARCHY, reason: format!("dof {dof} (indices from 0) has no stiffness") }
+        LinearError::Numerical { step: HIERARCHY, reason: format!("dof {dof} (indices from 0) has no stiffness") }
+            .into()
     }
 
     /// Returns `true` if a method met a stiffness that is not definite, so that it is open whether an answer exists.
     pub(crate) fn leaves_existence_open(&self) -> bool {
-        matches!(self, Error::NotConvex { .. } | Error::Numerical { step: HIERARCHY, .. })
+        use LinearError::{NotConvex, Numerical};
+        matches!(self, Error::Linear(NotConvex { .. } | Numerical { step: HIERARCHY, .. }))
     }
 
     /// The direction of a motion that nothing holds.
@@ -301,13 +183,10 @@ impl Error {
         use Failure::{BadInput, NoSolution, NotCertified};
         let bad_input = |code| (code, "bad_input", BadInput);
         match self {
-            Error::Length { .. } => bad_input("length"),
-            Error::Pattern { .. } => bad_input("pattern"),
-            Error::Shape { .. } => bad_input("shape"),
-            Error::IndexOutOfRange { .. } => bad_input("index-out-of-range"),
-            Error::NotFinite { .. } => bad_input("not-finite"),
-            Error::NotSymmetric { .. } => bad_input("not-symmetric"),
-            Error::NotConvex { .. } => ("not-convex", "not_convex", BadInput),
+            Error::Linear(error) => {
+                let (code, status) = error.class();
+                (code, status, BadInput)
+            }
             Error::Infeasible { .. } => ("infeasible", "infeasible", NoSolution),
             Error::Unbounded { .. } => ("unbounded", "unbounded", NoSolution),
             Error::UnderHeld { .. } => ("under-held", "under_held", NoSolution),
@@ -315,13 +194,9 @@ impl Error {
             Error::Interrupted => ("interrupted", "interrupted", NotCertified),
             Error::Undecided { .. } => ("undecided", "not_certified", NotCertified),
             Error::NotCertified { .. } => ("not-certified", "not_certified", NotCertified),
-            Error::Setting { .. } => bad_input("setting"),
             Error::NearlyLinear { .. } => bad_input("nearly-linear"),
             Error::NotCondensed { .. } => bad_input("not-condensed"),
             Error::TooLarge { .. } | Error::NoRoom { .. } => bad_input("too-large"),
-            Error::Numerical { .. } => ("numerical", "failed", BadInput),
-            Error::FileSyntax { .. } | Error::FileBytes { .. } => bad_input("file-syntax"),
-            Error::File { .. } => bad_input("file"),
         }
     }
 }

@@ -34,13 +34,9 @@ mod derivative;
 mod engine;
 mod error;
 mod existence;
-pub mod file;
-mod linear;
 mod matrix_market;
-pub mod memory;
 mod method;
 mod modes;
-mod panics;
 mod petsc;
 mod plan;
 mod prepared;
@@ -49,14 +45,18 @@ mod run;
 mod settings;
 mod solution;
 mod transform;
-mod watch;
+
+#[doc(hidden)]
+pub use linear::{file, memory};
+use signorini_linear as linear;
 
 pub use cost::Estimate;
 pub use derivative::{Adjoint, Change, Derivative, Derivatives, Tangent};
-pub use error::{Error, Failure};
+pub use error::{Error, Failure, LinearError};
+pub use linear::matrix_market::{format_vector, read_vector};
 pub use linear::multigrid::{Multigrid, NearNullSpace};
+pub use linear::watch::{Activity, Part, Watch};
 pub use linear::{Cholesky, Forest, SparseMatrix, SymmetricMatrix, Width, dot, largest};
-pub use matrix_market::{format_vector, read_vector};
 pub use method::interior_point::InteriorPoint;
 pub use method::penalty::Penalty;
 pub use method::{Ending, Outcome, Start};
@@ -65,15 +65,15 @@ pub use prepared::{Delassus, Path, Prepared};
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Settings};
 pub use solution::{Certificate, ContactSet, Goal, Iteration, Met, ProvenSet, Seconds, Solution, Why};
-pub use watch::{Activity, Part, Watch};
 
 use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use certificate::Bounding;
+use certificate::{Bounding, Examination};
 use cost::{Kept, check_memory};
 use engine::Engine;
 use linear::{Analysis, in_order, threads_of_machine};
+use modes::Modes;
 use prepared::between;
 
 /// The reason against a folder without a stiffness.
@@ -98,17 +98,17 @@ const NO_PROBLEM: &str = "the folder has neither K.mtx nor K.petsc; a problem di
 /// ```
 ///
 /// # Errors
-/// * [`Error::Setting`] for a setting outside its range,
+/// * [`LinearError::Setting`] for a setting outside its range,
 /// * [`Error::Infeasible`] for contact rows that contradict each other,
 /// * [`Error::Unbounded`] for a load along a rigid-body mode that nothing stops,
 /// * [`Error::UnderHeld`] for a rigid-body mode that nothing resists: the answer would not be unique,
-/// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
+/// * [`LinearError::NotConvex`] for a stiffness with a negative eigenvalue,
 /// * [`Error::NearlyLinear`] for more than 256 dofs of which the stiffness holds less than a quarter,
 /// * [`Error::NotCertified`] with the best answer, if it does not meet the tolerance,
 /// * [`Error::NoRoom`] if no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] if the named
 ///   method does not fit,
 /// * [`Error::Interrupted`] if the watch was asked to stop before there was an answer,
-/// * [`Error::Numerical`] if memory does not suffice.
+/// * [`LinearError::Numerical`] if memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     run::solved(problem, &Start::default(), settings)
 }
@@ -166,39 +166,6 @@ impl Settings {
     }
 }
 
-impl SparseMatrix {
-    /// Reads a Matrix Market file; of a symmetric one both triangles. For the crates of this workspace.
-    ///
-    /// # Errors
-    /// As [`read_vector`].
-    #[doc(hidden)]
-    pub fn read(file: &std::path::Path) -> Result<Self, Error> {
-        matrix_market::read_matrix(file)
-    }
-
-    /// Reads a file as [`read_vector`] does, in which `-inf` and `inf` stand for no bound. For the crates of this
-    /// workspace.
-    ///
-    /// # Errors
-    /// As [`read_vector`].
-    #[doc(hidden)]
-    pub fn read_bounds(file: &std::path::Path) -> Result<Vec<f64>, Error> {
-        matrix_market::read_bounds(file)
-    }
-
-    /// The matrix as a Matrix Market file of this name.
-    pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
-        file::Streamed::new(name, |out| matrix_market::write_entries(out, self, "general"))
-    }
-}
-
-impl SymmetricMatrix {
-    /// The matrix as a Matrix Market file of this name, by its lower triangle.
-    pub fn file(&self, name: &'static str) -> file::Streamed<'_> {
-        matrix_market::symmetric_file(name, self)
-    }
-}
-
 impl ContactProblem {
     /// Returns `true` if the directory is that of a problem: it has a stiffness in either format.
     pub fn is_directory(directory: &std::path::Path) -> bool {
@@ -209,7 +176,7 @@ impl ContactProblem {
     /// or the load stay unchanged.
     ///
     /// # Errors
-    /// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for
+    /// As [`read_problem`]; [`LinearError::FileSyntax`] if there is neither file, for a vector of another length, and for
     /// gaps that are infinite in other rows.
     pub fn read_other_end(&self, directory: &std::path::Path) -> Result<ContactProblem, Error> {
         matrix_market::read_other_end(directory, self)
@@ -238,7 +205,7 @@ impl ContactProblem {
     ///
     /// # Errors
     /// [`Error::NotCondensed`] for a problem that is too large for a dense basis of its rows, or whose stiffness has no
-    /// factor; [`Error::Numerical`] for lack of memory.
+    /// factor; [`LinearError::Numerical`] for lack of memory.
     pub fn dual_active_set(&self, is_definite: bool) -> Result<Outcome, Error> {
         method::dual_active_set::dual_active_set(self, is_definite)
     }
@@ -247,7 +214,7 @@ impl ContactProblem {
     /// those of both.
     ///
     /// # Errors
-    /// [`Error::Length`] if `last` has other numbers of dofs or rows.
+    /// [`LinearError::Length`] if `last` has other numbers of dofs or rows.
     pub fn towards(&self, last: &ContactProblem, t: f64) -> Result<ContactProblem, Error> {
         self.with(between(self.load(), last.load(), t), between(self.gap(), last.gap(), t))
     }
@@ -255,12 +222,34 @@ impl ContactProblem {
     /// The attempts of a solve from a start, in order, each with its condition and its reason: text, a line each.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and those
+    /// [`LinearError::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and those
     /// of an analysis of the stiffness.
     pub fn plan(&self, start: &Start, settings: &Settings) -> Result<String, Error> {
         let settings = &settings.started()?;
         let known = plan::Known { gaps: 1, is_whole: !start.is_unknown() };
         plan::Ladder::of(self, known, settings)?.in_words(self, settings)
+    }
+
+    /// The certificate of an answer: displacement u (length n, in m) and multiplier lambda (length m, in N, `<= 0` in
+    /// compression; with equality rows followed by theirs, of either sign), with the energy bound if K is positive
+    /// definite or the rows that press hold the body.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of
+    /// memory.
+    pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
+        let examination = Examination::of(self, [displacement, multiplier], &Bounding::OwnFactor)?;
+        Ok(examination.certificate()?.certificate)
+    }
+
+    /// The rows for which an answer (u of length n, in m; lambda of length m, in N, `<= 0` in compression) proves, by
+    /// its distance and force, that they are open or closed in the exact answer; `None` if K is not positive definite
+    /// by itself, except for travels that forces drive against rows, and if no bound is known.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::certify`].
+    pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
+        Examination::of(self, [displacement, multiplier], &Bounding::OwnFactor)?.proof(None)
     }
 
     /// The certificate of an answer (u, lambda), one entry per dof and per row of B and then of E, that came from
@@ -277,7 +266,8 @@ impl ContactProblem {
         settings: &Settings,
     ) -> Result<Certificate, Error> {
         let (displacement, multiplier) = answer;
-        let examine = |by: &Bounding| Ok(self.examine(by, displacement, multiplier)?.certificate);
+        let examine =
+            |by: &Bounding| Ok(Examination::of(self, [displacement, multiplier], by)?.certificate()?.certificate);
         let certificate = if plan::is_bounded_by_factor(self, seconds, settings)? {
             examine(&Bounding::OwnFactor)
         } else {
@@ -290,9 +280,52 @@ impl ContactProblem {
         }?;
         // An answer that meets its rows shows that they can be met.
         if certificate.penetration > settings.goal().tolerance {
-            existence::check_rows(self, settings, run::solve_any)?;
+            run::check_rows(self, settings)?;
         }
         Ok(certificate)
+    }
+
+    /// The `count` lowest pairs of `K x = w M x`, with the mass M (n x n, positive semidefinite), on the vectors on
+    /// which the rows `closed` and all equality rows vanish; fewer if M has a smaller rank. Unknowns of `first`, such
+    /// as those without stiffness, are eliminated where a row allows it.
+    ///
+    /// ```
+    /// use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, Watch};
+    ///
+    /// // Two masses of 1, each on a spring to the ground and with one between them, all of stiffness 1: w = 1 and 3.
+    /// let k = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)])?)?;
+    /// let m = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)])?)?;
+    /// let wall = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0)])?;
+    /// let problem = ContactProblem::new(k, vec![0.0; 2], wall, vec![1.0])?;
+    /// let found = problem.modes(&m, (&[], &[]), 2, 1, &Watch::default())?;
+    /// assert!((found.values[0] - 1.0).abs() < 1e-14 && (found.values[1] - 3.0).abs() < 1e-14 && found.is_complete);
+    ///
+    /// // With the first mass held at the wall, w = 2.
+    /// let held = problem.modes(&m, (&[0], &[]), 2, 1, &Watch::default())?;
+    /// assert!((held.values[0] - 2.0).abs() < 1e-14 && held.values.len() == 1);
+    /// # Ok::<(), signorini_qp::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Shape`] if the sizes differ, [`Error::IndexOutOfRange`] for a row beyond the last; [`Error::NotConvex`]
+    /// if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
+    pub fn modes(
+        &self,
+        mass: &SymmetricMatrix,
+        (closed, first): (&[usize], &[usize]),
+        count: usize,
+        threads: usize,
+        watch: &Watch,
+    ) -> Result<Modes, Error> {
+        modes::modes(self, mass, (closed, first), count, threads, watch)
+    }
+
+    /// The derivatives of an answer of this problem, with a factor or a hierarchy of their own.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`] and [`Prepared::derivatives`].
+    pub fn derivatives(&self, solution: &Solution, settings: &Settings) -> Result<Derivatives, Error> {
+        derivative::derivatives(self, solution, settings)
     }
 
     /// The displacement `K^-1 f`, one entry per dof, in length: rows and equality rows are left out. It takes one
@@ -300,8 +333,8 @@ impl ContactProblem {
     /// interruption count.
     ///
     /// # Errors
-    /// [`Error::NotConvex`] for a stiffness that is not positive definite, [`Error::TooLarge`] if the factor does not
-    /// fit into the memory, [`Error::Interrupted`], [`Error::Numerical`] if memory is not enough all the same.
+    /// [`LinearError::NotConvex`] for a stiffness that is not positive definite, [`Error::TooLarge`] if the factor does not
+    /// fit into the memory, [`Error::Interrupted`], [`LinearError::Numerical`] if memory is not enough all the same.
     pub fn linear_displacement(&self, settings: &Settings) -> Result<Vec<f64>, Error> {
         let (stiffness, load) = (self.stiffness(), self.load());
         let analysis = Analysis::of(stiffness)?;
@@ -336,19 +369,19 @@ impl ContactProblem {
 /// both is refused: they may belong to two problems.
 ///
 /// # Errors
-/// [`Error::File`] for a file that is missing and for a directory with both; [`Error::FileSyntax`] and
-/// [`Error::FileBytes`] for one that is malformed; those of [`ContactProblem::new`].
+/// [`LinearError::File`] for a file that is missing and for a directory with both; [`LinearError::FileSyntax`] and
+/// [`LinearError::FileBytes`] for one that is malformed; those of [`ContactProblem::new`].
 pub fn read_problem(directory: &std::path::Path) -> Result<ContactProblem, Error> {
     match stiffness_forms(directory) {
         [true, true] => {
             let both = format!("the folder has both {} and {}", matrix_market::STIFFNESS, petsc::STIFFNESS);
             let source = io::Error::new(io::ErrorKind::InvalidInput, format!("{both}; remove the files of one form"));
-            Err(Error::File { action: "read", path: directory.to_path_buf(), source })
+            Err(LinearError::File { action: "read", path: directory.to_path_buf(), source }.into())
         }
         [false, true] => petsc::read_problem(directory),
         [false, false] if directory.is_dir() => {
             let source = io::Error::new(io::ErrorKind::NotFound, NO_PROBLEM);
-            Err(Error::File { action: "read", path: directory.to_path_buf(), source })
+            Err(LinearError::File { action: "read", path: directory.to_path_buf(), source }.into())
         }
         _ => matrix_market::read_problem(directory),
     }

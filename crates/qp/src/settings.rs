@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
+use crate::linear::watch::Watch;
 use crate::memory;
 use crate::method::interior_point::InteriorPoint;
 use crate::method::penalty::{BEST_PENALTY, Penalty};
 use crate::solution::Goal;
-use crate::watch::Watch;
 
 /// Factor by which soft parts of the body may enlarge the relative penetration of the best penalty, which is one over
 /// that penalty.
@@ -278,7 +278,7 @@ impl Settings {
     /// The same with the time counted from now, as the deadline of the watch.
     ///
     /// # Errors
-    /// [`Error::Setting`] for the first setting that is not in its range.
+    /// [`LinearError::Setting`] for the first setting that is not in its range.
     pub fn started(&self) -> Result<Self, Error> {
         self.check()?;
         let watch = self.time.map_or_else(|| self.watch.clone(), |time| self.watch.within(time.as_secs_f64()));
@@ -295,14 +295,14 @@ impl Settings {
             value.map_or(Ok(()), |value| positive(name, value))?;
         }
         if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory <= 0.0) {
-            return Err(Error::Setting { name: "memory", value: memory, allowed: "positive" });
+            return Err(LinearError::Setting { name: "memory", value: memory, allowed: "positive" }.into());
         }
         self.method.check()?;
         if self.threads == Some(0) {
-            return Err(Error::Setting { name: "threads", value: 0.0, allowed: "at least 1" });
+            return Err(LinearError::Setting { name: "threads", value: 0.0, allowed: "at least 1" }.into());
         }
         if self.max_iterations == 0 {
-            return Err(Error::Setting { name: "max_iterations", value: 0.0, allowed: "at least 1" });
+            return Err(LinearError::Setting { name: "max_iterations", value: 0.0, allowed: "at least 1" }.into());
         }
         Ok(())
     }
@@ -333,11 +333,16 @@ impl Method {
                 positive("first penalty", first)?;
                 positive("last penalty", last)?;
                 if first > last {
-                    return Err(Error::Setting { name: "first penalty", value: first, allowed: "at most the last" });
+                    return Err(LinearError::Setting {
+                        name: "first penalty",
+                        value: first,
+                        allowed: "at most the last",
+                    }
+                    .into());
                 }
                 if penetration_threshold.is_nan() || penetration_threshold < 0.0 {
                     let (name, value) = ("penetration threshold", penetration_threshold);
-                    return Err(Error::Setting { name, value, allowed: "zero or positive" });
+                    return Err(LinearError::Setting { name, value, allowed: "zero or positive" }.into());
                 }
                 Ok(())
             }
@@ -350,6 +355,6 @@ impl Method {
 fn positive(name: &'static str, value: f64) -> Result<(), Error> {
     match value.is_finite() && value > 0.0 {
         true => Ok(()),
-        false => Err(Error::Setting { name, value, allowed: "positive and finite" }),
+        false => Err(LinearError::Setting { name, value, allowed: "positive and finite" }.into()),
     }
 }

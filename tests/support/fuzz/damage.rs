@@ -107,7 +107,7 @@ pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
         }
         Some("inp") => {
             let file = desk.join(name);
-            std::fs::write(&file, bytes).map_err(|source| qp::Error::File {
+            std::fs::write(&file, bytes).map_err(|source| qp::LinearError::File {
                 action: "write",
                 path: desk.into(),
                 source,
@@ -116,7 +116,7 @@ pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
         }
         Some("msh") => GmshFile::parse(bytes, name)?.mesh(&[], 1.0).map(drop),
         _ => {
-            let io = |source| qp::Error::File { action: "write", path: desk.into(), source };
+            let io = |source| qp::LinearError::File { action: "write", path: desk.into(), source };
             std::fs::write(desk.join(name), bytes).map_err(io)?;
             Ok(read_problem(desk).map(drop)?)
         }

@@ -129,7 +129,7 @@ pub fn with_value(
     let scene: Scene = serde_json::from_value(scene).expect("a scene");
     let model = scene.build()?;
     let Some(dynamics) = scene.dynamics(&model)? else {
-        return Err(Error::Qp(qp::Error::Setting { name: "analysis", value: 0.0, allowed: "dynamic" }));
+        return Err(Error::Linear(qp::LinearError::Setting { name: "analysis", value: 0.0, allowed: "dynamic" }));
     };
     let mut integrator = Integrator::new(
         dynamics.problem,

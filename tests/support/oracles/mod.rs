@@ -6,7 +6,7 @@ pub mod modes;
 pub mod promises;
 
 use nalgebra::{DMatrix, DVector};
-use signorini::qp::Error;
+use signorini::qp::{Error, LinearError};
 use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
 
 /// A small problem in dense arrays, row by row.
@@ -96,7 +96,7 @@ impl Dense {
     }
 }
 
-pub fn sparse(dense: &DMatrix<f64>) -> Result<SparseMatrix, Error> {
+pub fn sparse(dense: &DMatrix<f64>) -> Result<SparseMatrix, LinearError> {
     let mut triplets = Vec::new();
     for column in 0..dense.ncols() {
         for row in 0..dense.nrows() {

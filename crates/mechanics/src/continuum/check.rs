@@ -44,7 +44,7 @@ impl Bracket<'_> {
                 let reason = format!(
                     "{what} by {size:.1e}, but at most {allowed:.0e} is allowed as rounding; nothing is guaranteed"
                 );
-                Err(qp::Error::Numerical { step: "the guaranteed bound", reason }.into())
+                Err(qp::LinearError::Numerical { step: "the guaranteed bound", reason }.into())
             }
         }
     }

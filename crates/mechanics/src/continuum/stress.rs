@@ -68,7 +68,7 @@ impl<'a> Stresses<'a> {
         let elements: Option<Vec<_>> = (0..mesh.count()).map(element).collect();
         let reason = || "a simplex of the mesh is flat".to_string();
         let elements =
-            elements.ok_or_else(|| qp::Error::Numerical { step: "the guaranteed bound", reason: reason() })?;
+            elements.ok_or_else(|| qp::LinearError::Numerical { step: "the guaranteed bound", reason: reason() })?;
         Ok(Stresses { problem, mesh, numbers, elements })
     }
 

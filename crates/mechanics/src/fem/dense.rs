@@ -3,7 +3,7 @@
 use std::ops::{Index, IndexMut};
 
 use super::geometry::rotation;
-use signorini_qp::dot;
+use signorini_linear::dot;
 
 /// Most sweeps over all pairs of columns; thirty columns take ten.
 const MOST_SWEEPS: usize = 40;

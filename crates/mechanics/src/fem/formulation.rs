@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 
 use crate::error::Error;
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 /// Checks that a setting is positive and finite; a subnormal number counts as zero.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
     match value.is_normal() && value > 0.0 {
         true => Ok(()),
-        false => Err(qp::Error::Setting { name, value, allowed: "positive and finite" }.into()),
+        false => Err(linear::Error::Setting { name, value, allowed: "positive and finite" }.into()),
     }
 }
 
@@ -43,7 +43,7 @@ impl Formulation {
     /// Checks area or thickness.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] if it is not positive and finite.
+    /// [`linear::Error::Setting`] if it is not positive and finite.
     pub fn check(&self) -> Result<(), Error> {
         let (name, value) = match *self {
             Formulation::Bar { area } => ("area", area),

@@ -43,7 +43,7 @@ const HALVINGS: usize = 12;
 /// singular at a point. The errors are infinite or NaN if the exact solution is zero.
 ///
 /// # Errors
-/// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
+/// [`linear::Error::Length`](signorini_linear::Error::Length) if the displacement does not have `dim` entries per node.
 ///
 /// ```
 /// use signorini_mechanics::fem::ElasticBody;

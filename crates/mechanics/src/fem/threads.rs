@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use signorini_qp::Settings;
+use signorini_linear::threads_of_machine;
 
 /// Elements, or nodes, of a run: their work is worth a thread, and their results fit into its cache.
 const RUN: usize = 1024;
@@ -24,7 +24,7 @@ pub fn limit_threads(threads: usize) {
 
 fn threads() -> usize {
     match LIMIT.load(Ordering::Relaxed) {
-        0 => Settings::threads_of_machine(),
+        0 => threads_of_machine(),
         threads => threads,
     }
 }

@@ -37,12 +37,12 @@ impl Integrator {
     /// step.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of
-    /// its range, an initial penetration, a form of the mass that the scheme cannot use; [`qp::Error::Numerical`] for a
+    /// [`qp::LinearError::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of
+    /// its range, an initial penetration, a form of the mass that the scheme cannot use; [`qp::LinearError::Numerical`] for a
     /// step beyond the stable one of an explicit scheme; the errors of [`Prepared::new`](signorini_qp::Prepared::new).
     pub fn new(problem: DynamicProblem, scheme: Scheme, step: f64, settings: &Settings) -> Result<Self, Error> {
         if !(step.is_finite() && step > 0.0) {
-            return Err(qp::Error::Setting { name: "step", value: step, allowed: "positive and finite" }.into());
+            return Err(qp::LinearError::Setting { name: "step", value: step, allowed: "positive and finite" }.into());
         }
         scheme.check()?;
         let reach = largest(problem.displacement())
@@ -50,16 +50,16 @@ impl Integrator {
         let penetration = problem.penetration(problem.displacement(), 0.0);
         if penetration > GAP_ROUNDING * reach {
             let allowed = "zero: no contact row may be violated at the start";
-            return Err(qp::Error::Setting { name: "initial penetration", value: penetration, allowed }.into());
+            return Err(qp::LinearError::Setting { name: "initial penetration", value: penetration, allowed }.into());
         }
         let shift = problem.largest_shift();
         if shift > 0.0 && !scheme.follows_obstacles() {
             let allowed = "zero: the scheme has obstacles at rest only";
-            return Err(qp::Error::Setting { name: "shift of a contact row", value: shift, allowed }.into());
+            return Err(qp::LinearError::Setting { name: "shift of a contact row", value: shift, allowed }.into());
         }
         if !scheme.allows(MassForm::Redistributed) && !problem.massless().is_empty() {
             let allowed = "positive: dofs without mass are for the midpoint rule";
-            return Err(qp::Error::Setting { name: "mass of a dof", value: 0.0, allowed }.into());
+            return Err(qp::LinearError::Setting { name: "mass of a dof", value: 0.0, allowed }.into());
         }
         let mut settings = settings.started()?.exactly();
         if matches!(settings.method, Method::Penalty(_)) {
@@ -104,7 +104,7 @@ impl Integrator {
     /// Advances by one step, and returns the state at its end.
     ///
     /// # Errors
-    /// Those of a contact solve; [`qp::Error::Numerical`] if the motion grows without bound; [`qp::Error::Interrupted`]
+    /// Those of a contact solve; [`qp::LinearError::Numerical`] if the motion grows without bound; [`qp::Error::Interrupted`]
     /// if the watch of the settings ends the run, in the state after the last whole step.
     pub fn advance(&mut self) -> Result<&State, Error> {
         if self.watch.time_left().is_some_and(|left| left <= self.longest) {
@@ -120,7 +120,7 @@ impl Integrator {
         let mut next = next?;
         if let Some(value) = next.displacement.iter().chain(&next.velocity).find(|value| !value.is_finite()) {
             let reason = format!("the motion has the value {value} after step {}", next.steps);
-            return Err(qp::Error::Numerical { step: "time integration", reason }.into());
+            return Err(qp::LinearError::Numerical { step: "time integration", reason }.into());
         }
         let times = self.load_times.iter().map(|share| (self.state.steps as f64 + share) * self.step);
         let halves = [&self.state, &next].map(|state| self.scheme.half_step(&self.problem, self.step, state));
@@ -156,7 +156,7 @@ impl Integrator {
     /// Continues from a state of an earlier integrator of the same problem, scheme and step.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] for a state of another problem.
+    /// [`qp::LinearError::Length`] for a state of another problem.
     pub fn resume(&mut self, state: State) -> Result<(), Error> {
         let (dofs, rows) = (self.problem.statics().dofs(), self.problem.statics().rows());
         let lengths = [
@@ -169,7 +169,7 @@ impl Integrator {
         // Only some schemes have these.
         let own = [("kept energy", state.kept.len(), rows, "contact rows"), ("rate", state.rate.len(), dofs, "dofs")];
         for (name, found, expected, of) in lengths.into_iter().chain(own.into_iter().filter(|one| one.1 > 0)) {
-            qp::Error::check_length(name, found, expected, of)?;
+            qp::LinearError::check_length(name, found, expected, of)?;
         }
         (self.state, self.before) = (state.with_forces(&self.problem), None);
         Ok(())

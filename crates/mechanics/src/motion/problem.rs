@@ -36,17 +36,20 @@ impl DynamicProblem {
     /// The motion from rest of the body of `statics`, under its constant load, with the mass M (n x n).
     ///
     /// # Errors
-    /// [`qp::Error::Shape`] for a mass of another size, [`qp::Error::Setting`] for a negative diagonal entry.
+    /// [`qp::LinearError::Shape`] for a mass of another size, [`qp::LinearError::Setting`] for a negative diagonal entry.
     pub fn new(statics: ContactProblem, mass: SymmetricMatrix) -> Result<Self, Error> {
         let dofs = statics.dofs();
         if mass.dim() != dofs {
             let (found, expected) = ((mass.dim(), mass.dim()), (dofs, dofs));
-            return Err(qp::Error::Shape { name: "mass", found, expected }.into());
+            return Err(qp::LinearError::Shape { name: "mass", found, expected }.into());
         }
         if let Some(&value) = mass.diagonal().iter().find(|&&entry| entry < 0.0) {
-            return Err(
-                qp::Error::Setting { name: "diagonal entry of the mass", value, allowed: "zero or positive" }.into()
-            );
+            return Err(qp::LinearError::Setting {
+                name: "diagonal entry of the mass",
+                value,
+                allowed: "zero or positive",
+            }
+            .into());
         }
         let zeros = vec![0.0; dofs];
         Ok(DynamicProblem {
@@ -66,11 +69,11 @@ impl DynamicProblem {
     /// The same with Rayleigh damping `C = mass M + stiffness K`; `mass` in one over time, `stiffness` in time.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a coefficient that is negative or not finite.
+    /// [`qp::LinearError::Setting`] for a coefficient that is negative or not finite.
     pub fn with_damping(mut self, mass: f64, stiffness: f64) -> Result<Self, Error> {
         for (name, value) in [("mass damping", mass), ("stiffness damping", stiffness)] {
             if !(value.is_finite() && value >= 0.0) {
-                return Err(qp::Error::Setting { name, value, allowed: "zero or positive, and finite" }.into());
+                return Err(qp::LinearError::Setting { name, value, allowed: "zero or positive, and finite" }.into());
             }
         }
         self.damping = [mass, stiffness];
@@ -81,7 +84,7 @@ impl DynamicProblem {
     /// with time.
     ///
     /// # Errors
-    /// As [`TimeFunction::check`]; [`qp::Error::Length`] and [`qp::Error::NotFinite`] for a load of another length or
+    /// As [`TimeFunction::check`]; [`qp::LinearError::Length`] and [`qp::LinearError::NotFinite`] for a load of another length or
     /// not finite.
     pub fn with_load(mut self, factor: TimeFunction, load: Vec<f64>) -> Result<Self, Error> {
         factor.check()?;
@@ -95,7 +98,7 @@ impl DynamicProblem {
     /// obstacles.
     ///
     /// # Errors
-    /// As [`TimeFunction::check`]; [`qp::Error::Length`] and [`qp::Error::NotFinite`] for shifts of another length or
+    /// As [`TimeFunction::check`]; [`qp::LinearError::Length`] and [`qp::LinearError::NotFinite`] for shifts of another length or
     /// not finite.
     pub fn with_moving_gaps(mut self, factor: TimeFunction, shift: Vec<f64>) -> Result<Self, Error> {
         factor.check()?;
@@ -107,7 +110,7 @@ impl DynamicProblem {
     /// The same from another displacement and velocity (length n each, in length and length over time).
     ///
     /// # Errors
-    /// [`qp::Error::Length`] and [`qp::Error::NotFinite`] for vectors of another length or not finite.
+    /// [`qp::LinearError::Length`] and [`qp::LinearError::NotFinite`] for vectors of another length or not finite.
     pub fn starting_from(mut self, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<Self, Error> {
         check_finite("initial displacement", &displacement, (self.statics.dofs(), "dofs"))?;
         check_finite("initial velocity", &velocity, (self.statics.dofs(), "dofs"))?;
@@ -281,10 +284,10 @@ impl DynamicProblem {
 
 /// Checks length and values of a vector.
 fn check_finite(name: &'static str, values: &[f64], (expected, of): (usize, &'static str)) -> Result<(), Error> {
-    qp::Error::check_length(name, values.len(), expected, of)?;
+    qp::LinearError::check_length(name, values.len(), expected, of)?;
     match values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
         Some((index, &value)) => {
-            Err(qp::Error::NotFinite { name, at: format!("entry {index}"), value, allowed: "finite" }.into())
+            Err(qp::LinearError::NotFinite { name, at: format!("entry {index}"), value, allowed: "finite" }.into())
         }
         None => Ok(()),
     }

@@ -38,9 +38,9 @@ impl TimeFunction {
     /// Checks that the numbers are finite and the times in order.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for the first number that is not.
+    /// [`qp::LinearError::Setting`] for the first number that is not.
     pub fn check(&self) -> Result<(), Error> {
-        let fail = |name, value, allowed| Err(qp::Error::Setting { name, value, allowed }.into());
+        let fail = |name, value, allowed| Err(qp::LinearError::Setting { name, value, allowed }.into());
         match self {
             TimeFunction::Table(points) => {
                 if points.is_empty() {

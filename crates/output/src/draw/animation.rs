@@ -15,7 +15,7 @@ pub fn animate(
     milliseconds: u16,
     mut frame: impl FnMut(usize) -> Result<Drawing, Error>,
 ) -> Result<Vec<u8>, Error> {
-    let failed = |reason: String| qp::Error::Numerical { step: "writing an animation", reason };
+    let failed = |reason: String| qp::LinearError::Numerical { step: "writing an animation", reason };
     let mut bytes = Vec::new();
     if count == 0 {
         return Err(failed("it has no frames".into()).into());

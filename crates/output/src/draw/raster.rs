@@ -19,11 +19,11 @@ pub(crate) fn painted(sides: [f64; 2], shapes: &[Shape], scale: f64) -> Result<P
     let [width, height] = sides.map(|side| (side * scale).round());
     if !(scale > 0.0 && width >= 1.0 && height >= 1.0 && width * height <= MOST_PIXELS) {
         let allowed = "positive, and such that the image has at least one and at most 1e8 pixels";
-        return Err(qp::Error::Setting { name: "scale of the picture", value: scale, allowed }.into());
+        return Err(qp::LinearError::Setting { name: "scale of the picture", value: scale, allowed }.into());
     }
     let reason = format!("no image of {width} x {height} pixels");
     let mut pixels = Pixmap::new(width as u32, height as u32)
-        .ok_or(qp::Error::Numerical { step: "rasterising a picture", reason })?;
+        .ok_or(qp::LinearError::Numerical { step: "rasterising a picture", reason })?;
     pixels.fill(Color::WHITE);
     let transform = Transform::from_scale((width / sides[0]) as f32, (height / sides[1]) as f32);
     Canvas { pixels: &mut pixels, transform }.draw(shapes, None);
@@ -41,7 +41,7 @@ pub(crate) fn png(pixels: &Pixmap) -> Result<Vec<u8>, Error> {
     encoder.set_compression(png::Compression::Fast);
     let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&colours));
     let failed =
-        |error: png::EncodingError| qp::Error::Numerical { step: "writing a picture", reason: error.to_string() };
+        |error: png::EncodingError| qp::LinearError::Numerical { step: "writing a picture", reason: error.to_string() };
     written.map_err(failed)?;
     Ok(bytes)
 }

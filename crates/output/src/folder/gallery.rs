@@ -99,7 +99,7 @@ impl Wanted {
     /// iteration (`iteration-1`, ...) or each penalty (`rung-1`, ...), at most twelve. A bar has no picture.
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File), and those of the recovery of stresses.
+    /// [`qp::LinearError::File`](signorini_qp::LinearError::File), and those of the recovery of stresses.
     pub fn write_solve(self, folder: &Path, answer: &Answer, history: &[Iteration]) -> Result<(), Error> {
         write_atomically(&folder.join("solution.vtu"), fields(&Source { answer, velocity: None })?.as_bytes())?;
         let (model, Wanted { pictures, medium }) = (answer.model(), self);
@@ -140,7 +140,7 @@ impl Wanted {
     /// state of each contact row (`contact.csv`).
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File).
+    /// [`qp::LinearError::File`](signorini_qp::LinearError::File).
     pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>) -> Result<(), Error> {
         write_files(folder, &solution.files())?;
         let Some(answer) = answer else { return Ok(()) };

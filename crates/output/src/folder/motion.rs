@@ -94,7 +94,7 @@ impl MotionFolder {
     /// A new run of `scene` in `folder`, with the watched points of `model`; it overwrites the files of an earlier run.
     ///
     /// # Errors
-    /// [`qp::Error::File`].
+    /// [`qp::LinearError::File`].
     pub fn new(folder: &Path, scene: &Scene, model: &Model, watched: &[WatchedPoint]) -> Result<Self, Error> {
         let scene = compact_json(scene)?;
         // A checkpoint of an earlier run would belong to another history, and so would its table of points.
@@ -123,7 +123,7 @@ impl MotionFolder {
     /// duration and the frames of the scene may differ from those of the earlier run.
     ///
     /// # Errors
-    /// [`qp::Error::File`] if there is no run, [`Error::Scene`] for the run of another scene or a checkpoint that
+    /// [`qp::LinearError::File`] if there is no run, [`Error::Scene`] for the run of another scene or a checkpoint that
     /// cannot be read.
     pub fn resume(
         folder: &Path,
@@ -134,10 +134,10 @@ impl MotionFolder {
         let scene = compact_json(scene)?;
         let path = folder.join(CHECKPOINT);
         let text = read_text_capped(&path, MOST_OF_TABLE).map_err(|error| match error {
-            qp::Error::File { path, source, .. } => qp::Error::File { action: "resume from", path, source },
+            qp::LinearError::File { path, source, .. } => qp::LinearError::File { action: "resume from", path, source },
             other => other,
         })?;
-        let wrong = |message: String| qp::Error::FileSyntax { file: path.clone(), line: 1, message };
+        let wrong = |message: String| qp::LinearError::FileSyntax { file: path.clone(), line: 1, message };
         let found: Checkpoint =
             serde_json::from_str(&text).map_err(|error| not_ours(&path, "checkpoint of a motion", &error))?;
         if found.scene != scene && undated(&found.scene) != undated(&scene) {
@@ -157,7 +157,7 @@ impl MotionFolder {
     /// [`Dynamics::resultants`](signorini_mechanics::scene::Dynamics::resultants).
     ///
     /// # Errors
-    /// [`qp::Error::File`]; [`qp::Error::Length`] for the state of another model.
+    /// [`qp::LinearError::File`]; [`qp::LinearError::Length`] for the state of another model.
     pub fn observe(
         &mut self,
         model: &Model,
@@ -191,7 +191,7 @@ impl MotionFolder {
     /// Writes a frame of the series with the velocities, the table lines up to this frame, and the checkpoint.
     ///
     /// # Errors
-    /// [`qp::Error::File`], and those of the recovery of stresses.
+    /// [`qp::LinearError::File`], and those of the recovery of stresses.
     pub fn frame(
         &mut self,
         model: &Arc<Model>,
@@ -259,7 +259,7 @@ impl MotionFolder {
     /// Draws force and energies over time (`history`), and an animation of a body in the plane (`motion.png`).
     ///
     /// # Errors
-    /// [`qp::Error::File`], and those of the recovery of stresses and of the rasteriser.
+    /// [`qp::LinearError::File`], and those of the recovery of stresses and of the rasteriser.
     pub fn draw(&self, model: &Arc<Model>) -> Result<(), Error> {
         self.draw_for(model, Medium::Screen)
     }
@@ -305,7 +305,7 @@ impl MotionFolder {
     /// Writes `report.html`, with the same report object as in `report.json`.
     ///
     /// # Errors
-    /// [`qp::Error::File`], and those of the recovery of stresses.
+    /// [`qp::LinearError::File`], and those of the recovery of stresses.
     pub fn write_page(&self, model: &Arc<Model>, about: &About, report: &impl Serialize) -> Result<(), Error> {
         let answer = |number: usize| self.read_frame(model, number).map(|(_, answer)| answer);
         let history = self.read_history()?;
@@ -316,7 +316,7 @@ impl MotionFolder {
     /// The rows of the history; if it is long, only some rows, each with the largest force since the previous one.
     fn read_history(&self) -> Result<Vec<[f64; 9]>, Error> {
         let path = self.folder.join(HISTORY);
-        let fail = |source| qp::Error::File { action: "read", path: path.clone(), source };
+        let fail = |source| qp::LinearError::File { action: "read", path: path.clone(), source };
         let open = || std::fs::File::open(&path).map(BufReader::new).map_err(fail);
         let count = open()?.lines().count();
         let every = count.div_ceil(MOST_POINTS).max(1);
@@ -401,7 +401,7 @@ fn watch_heading(model: &Model, watched: &[WatchedPoint]) -> Option<String> {
 /// Error for a file that is not the output of a run; it quotes no content, which may be private.
 fn not_ours(path: &Path, what: &str, error: &serde_json::Error) -> Error {
     let message = format!("it is not a {what} (column {})", error.column());
-    qp::Error::FileSyntax { file: path.into(), line: error.line().max(1), message }.into()
+    qp::LinearError::FileSyntax { file: path.into(), line: error.line().max(1), message }.into()
 }
 
 /// The scene without the fields that may differ when a run is resumed: duration and number of frames.

@@ -32,7 +32,7 @@ impl MotionTable {
     pub fn resume(path: PathBuf, heading: &str, bytes: u64) -> Result<Self, Error> {
         match cut(&path, heading, bytes) {
             Ok(()) => Ok(MotionTable { path, lines: String::new(), written: bytes }),
-            Err(source) => Err(qp::Error::File { action: "resume", path, source }.into()),
+            Err(source) => Err(qp::LinearError::File { action: "resume", path, source }.into()),
         }
     }
 
@@ -54,7 +54,7 @@ impl MotionTable {
             file.write_all(self.lines.as_bytes())?;
             file.sync_data()
         });
-        appended.map_err(|source| qp::Error::File { action: "write", path: self.path.clone(), source })?;
+        appended.map_err(|source| qp::LinearError::File { action: "write", path: self.path.clone(), source })?;
         self.written += self.lines.len() as u64;
         self.lines.clear();
         Ok(())

@@ -39,7 +39,7 @@ impl Wanted {
     /// start.
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File).
+    /// [`qp::LinearError::File`](signorini_qp::LinearError::File).
     pub fn write_points(folder: &Path, sweep: &ProblemSweep) -> Result<(), Error> {
         for (index, point) in sweep.points.iter().enumerate() {
             write_files(&folder.join(format!("point-{:02}", index + 1)), &point.summary.solution.files())?;
@@ -50,7 +50,7 @@ impl Wanted {
     /// Draws the sum of the multipliers and the number of closed rows along the sweep (`force`).
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File), [`qp::Error::Numerical`](signorini_qp::Error::Numerical).
+    /// [`qp::LinearError::File`](signorini_qp::LinearError::File), [`qp::LinearError::Numerical`](signorini_qp::LinearError::Numerical).
     pub fn draw_problem_sweep(self, folder: &Path, title: &str, sweep: &ProblemSweep) -> Result<(), Error> {
         if self.pictures == Pictures::None {
             return Ok(());

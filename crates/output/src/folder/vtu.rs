@@ -39,8 +39,8 @@ impl Unstructured<'_> {
     /// The text of the `.vtu` file; every number reads back as the same number.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if an array does not fit the nodes or the elements, [`qp::Error::NotFinite`] for a
-    /// coordinate or value that ASCII readers would stop at, [`qp::Error::Setting`] for an element with a number of
+    /// [`qp::LinearError::Length`] if an array does not fit the nodes or the elements, [`qp::LinearError::NotFinite`] for a
+    /// coordinate or value that ASCII readers would stop at, [`qp::LinearError::Setting`] for an element with a number of
     /// nodes that is not that of its type, or that names a node that does not exist.
     pub fn to_vtu(&self) -> Result<String, Error> {
         let mut text = String::from(
@@ -65,22 +65,29 @@ impl Unstructured<'_> {
         let mut end = 0;
         if self.cell_types.len() != self.elements.len() {
             let (found, expected) = (self.cell_types.len(), self.elements.len());
-            return Err(
-                qp::Error::Length { name: "the cell types of a .vtu file", found, expected, of: "elements" }.into()
-            );
+            return Err(qp::LinearError::Length {
+                name: "the cell types of a .vtu file",
+                found,
+                expected,
+                of: "elements",
+            }
+            .into());
         }
         for (element, cell_type) in self.elements.iter().zip(self.cell_types) {
             let (kind, nodes) = (cell_type.reference().vtk, cell_type.nodes());
             if element.len() != nodes {
                 let name = "number of nodes of an element in a .vtu file";
                 let value = element.len() as f64;
-                return Err(qp::Error::Setting { name, value, allowed: "that of its cell type" }.into());
+                return Err(qp::LinearError::Setting { name, value, allowed: "that of its cell type" }.into());
             }
             if let Some(&node) = element.iter().find(|&&node| node >= self.nodes.len()) {
                 let allowed = "smaller than the number of nodes (indices from 0)";
-                return Err(
-                    qp::Error::Setting { name: "node index in a .vtu file", value: node as f64, allowed }.into()
-                );
+                return Err(qp::LinearError::Setting {
+                    name: "node index in a .vtu file",
+                    value: node as f64,
+                    allowed,
+                }
+                .into());
             }
             end += element.len();
             for (place, node) in element.iter().enumerate() {
@@ -112,7 +119,7 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
         };
         let expected = components * expected;
         if found != expected {
-            return Err(qp::Error::Length { name: "an array of a .vtu file", found, expected, of }.into());
+            return Err(qp::LinearError::Length { name: "an array of a .vtu file", found, expected, of }.into());
         }
         match array {
             Array::Scalars(name, values) | Array::Vectors(name, values) | Array::Tensors(name, values) => {
@@ -136,7 +143,7 @@ fn tuples(text: &mut String, name: &str, components: usize, values: &[f64]) -> R
         for (component, value) in tuple.iter().enumerate() {
             if !value.is_finite() {
                 let at = format!("entry {entry} of `{name}`");
-                return Err(qp::Error::NotFinite {
+                return Err(qp::LinearError::NotFinite {
                     name: "an array of a .vtu file",
                     at,
                     value: *value,

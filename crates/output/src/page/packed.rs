@@ -114,7 +114,8 @@ impl Packer {
 
     /// The block, deflated without a header, in base64.
     pub fn finished(self) -> Result<String, Error> {
-        let failed = |error: std::io::Error| qp::Error::Numerical { step: "packing a page", reason: error.to_string() };
+        let failed =
+            |error: std::io::Error| qp::LinearError::Numerical { step: "packing a page", reason: error.to_string() };
         let mut deflated = DeflateEncoder::new(Vec::new(), Compression::default());
         deflated.write_all(&self.bytes).map_err(failed)?;
         Ok(STANDARD.encode(deflated.finish().map_err(failed)?))

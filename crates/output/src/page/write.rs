@@ -36,7 +36,7 @@ impl About {
     /// The page of one answer to a scene, with the answer along lines.
     ///
     /// # Errors
-    /// [`qp::Error::File`], and those of the recovery of stresses.
+    /// [`qp::LinearError::File`], and those of the recovery of stresses.
     pub fn write_answer(
         &self,
         folder: &Path,
@@ -53,7 +53,7 @@ impl About {
     /// The page of an answer to a problem directory, which has no body to draw.
     ///
     /// # Errors
-    /// [`qp::Error::File`].
+    /// [`qp::LinearError::File`].
     pub fn write_problem(&self, folder: &Path, summary: &Summary) -> Result<(), Error> {
         let page = Page { report: timeless(value(summary)?), ..judged(Page::new(self, &Units::unnamed()), summary) };
         write_page(folder, &page, Packer::default(), None)
@@ -128,7 +128,7 @@ impl About {
     /// The page of a trade-off with its pictures.
     ///
     /// # Errors
-    /// [`qp::Error::File`].
+    /// [`qp::LinearError::File`].
     pub fn write_tradeoff<'a>(
         &self,
         folder: &Path,
@@ -229,6 +229,7 @@ fn timeless(mut report: Value) -> Value {
 }
 
 fn value(of: &(impl Serialize + ?Sized)) -> Result<Value, Error> {
-    let failed = |error: serde_json::Error| qp::Error::Numerical { step: "writing JSON", reason: error.to_string() };
+    let failed =
+        |error: serde_json::Error| qp::LinearError::Numerical { step: "writing JSON", reason: error.to_string() };
     Ok(serde_json::to_value(of).map_err(failed)?)
 }

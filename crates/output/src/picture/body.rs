@@ -152,13 +152,13 @@ impl ContactPicture<'_> {
             [displaced, ("closed flags of a picture", self.closed.len(), self.candidates.len(), "candidate nodes")];
         for (name, found, expected, of) in lengths.into_iter().chain(fields) {
             if found != expected {
-                return Err(qp::Error::Length { name, found, expected, of }.into());
+                return Err(qp::LinearError::Length { name, found, expected, of }.into());
             }
         }
         match self.elements.iter().flatten().chain(self.candidates).find(|&&node| node >= nodes) {
             Some(&node) => {
                 let allowed = "smaller than the number of nodes (indices from 0)";
-                Err(qp::Error::Setting { name: "node index in a picture", value: node as f64, allowed }.into())
+                Err(qp::LinearError::Setting { name: "node index in a picture", value: node as f64, allowed }.into())
             }
             None => Ok(()),
         }

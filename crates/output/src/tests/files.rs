@@ -66,12 +66,12 @@ fn vtu_files_that_readers_would_misread_are_refused() {
         Unstructured { point_data: &[Array::Scalars("gap", &values)], ..good }.to_vtu().unwrap_err().to_string();
     assert!(sentence.contains("entry 1 of `gap`") && sentence.contains("NaN"), "{sentence}");
     let short = Unstructured { point_data: &[Array::Vectors("u", &values)], ..good };
-    assert!(matches!(short.to_vtu(), Err(Error::Qp(qp::Error::Length { found: 4, expected: 12, .. }))));
+    assert!(matches!(short.to_vtu(), Err(Error::Linear(qp::LinearError::Length { found: 4, expected: 12, .. }))));
     let short = Unstructured { cell_data: &[Array::Flags("dead", &[])], ..good };
-    assert!(matches!(short.to_vtu(), Err(Error::Qp(qp::Error::Length { found: 0, expected: 1, .. }))));
+    assert!(matches!(short.to_vtu(), Err(Error::Linear(qp::LinearError::Length { found: 0, expected: 1, .. }))));
     for (elements, value) in [([vec![0, 1, 2, 3, 0]], 5.0), ([vec![0, 1]], 2.0), ([vec![0, 1, 4, 3]], 4.0)] {
         match (Unstructured { elements: &elements, ..good }).to_vtu() {
-            Err(Error::Qp(qp::Error::Setting { value: found, .. })) => assert_eq!(found, value),
+            Err(Error::Linear(qp::LinearError::Setting { value: found, .. })) => assert_eq!(found, value),
             other => panic!("{elements:?} gave {other:?}"),
         }
     }
@@ -128,7 +128,7 @@ fn a_failed_write_is_reported_with_its_path_and_changes_nothing() {
     let refused = |path: &Path, sentence: String| {
         let error = write_atomically(path, b"lost").unwrap_err();
         assert!(
-            matches!(error, Error::Qp(qp::Error::File { .. })) && error.to_string().starts_with(&sentence),
+            matches!(error, Error::Linear(qp::LinearError::File { .. })) && error.to_string().starts_with(&sentence),
             "{error}"
         );
     };

@@ -83,7 +83,7 @@ fn png_has_the_size_of_the_drawing_times_its_scale() {
         assert_eq!([pixels.width(), pixels.height()], expected);
     }
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e4, 1e-9] {
-        assert!(matches!(drawing.png(scale), Err(Error::Qp(qp::Error::Setting { .. }))), "scale {scale}");
+        assert!(matches!(drawing.png(scale), Err(Error::Linear(qp::LinearError::Setting { .. }))), "scale {scale}");
     }
 }
 
@@ -172,14 +172,14 @@ fn arrays_of_wrong_length_are_refused_with_both_lengths() {
     assert!(sentence.contains("has length 17") && sentence.contains("18"), "{sentence}");
     let short_field = [FieldPanel { values: &body.stress[1..], ..fields[0].clone() }];
     let short = ContactPicture { fields: &short_field, ..good.clone() };
-    assert!(matches!(short.draw(), Err(Error::Qp(qp::Error::Length { found: 8, expected: 9, .. }))));
+    assert!(matches!(short.draw(), Err(Error::Linear(qp::LinearError::Length { found: 8, expected: 9, .. }))));
     let short = ContactPicture { closed: &body.closed[1..], ..good.clone() };
-    assert!(matches!(short.draw(), Err(Error::Qp(qp::Error::Length { found: 2, expected: 3, .. }))));
+    assert!(matches!(short.draw(), Err(Error::Linear(qp::LinearError::Length { found: 2, expected: 3, .. }))));
     let elements = [vec![0, 1, 9]];
     let wrong = ContactPicture { elements: &elements, ..good.clone() };
-    assert!(matches!(wrong.draw(), Err(Error::Qp(qp::Error::Setting { value: 9.0, .. }))));
+    assert!(matches!(wrong.draw(), Err(Error::Linear(qp::LinearError::Setting { value: 9.0, .. }))));
     let wrong = ContactPicture { candidates: &[0, 1, 100], ..good };
-    assert!(matches!(wrong.draw(), Err(Error::Qp(qp::Error::Setting { value: 100.0, .. }))));
+    assert!(matches!(wrong.draw(), Err(Error::Linear(qp::LinearError::Setting { value: 100.0, .. }))));
 }
 
 #[test]

@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use super::scales::{compliance_of_rows, energies};
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::linear::{
     Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, exponent,
     if_definite, ldexp,
 };
-use crate::watch::Watch;
+use crate::problem::ContactProblem;
 
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
 const LARGEST_SHARE: f64 = 0.25;
@@ -312,6 +314,144 @@ impl EnergyNorm {
     }
 }
 
+/// Springs D on rows C that press, or that are equalities: with them a singular K becomes `K_D = K + B_C' D B_C`.
+#[derive(Clone, Debug)]
+pub(super) struct Springs {
+    /// D of each row, zero on rows without a spring.
+    pub stiffness: Vec<f64>,
+    /// The rows that are equalities: at their gaps they stay there, whatever their force.
+    pub are_equalities: Vec<bool>,
+}
+
+impl Springs {
+    /// `K + B_C' D B_C`; `None` if no row presses.
+    pub fn added_to(
+        &self,
+        stiffness: &SymmetricMatrix,
+        contact: &SparseMatrix,
+    ) -> Result<Option<SymmetricMatrix>, Error> {
+        let closed: Vec<usize> = (0..contact.rows()).filter(|&row| self.stiffness[row] > 0.0).collect();
+        if closed.is_empty() {
+            return Ok(None);
+        }
+        let weights: Vec<f64> = closed.iter().map(|&row| self.stiffness[row]).collect();
+        Ok(Some(stiffness.plus_squares(&contact.select_rows(&closed), &weights)?))
+    }
+
+    /// `f + B' lambda - K_D u + B_C' D g_C`: the `residual` with springs of an answer with this `violation`.
+    pub fn residual(&self, contact: &SparseMatrix, residual: &[f64], violation: &[f64]) -> Vec<f64> {
+        let pull: Vec<f64> = (self.stiffness.iter().zip(violation))
+            .map(|(&stiffness, &violation)| if stiffness > 0.0 { -stiffness * violation } else { 0.0 })
+            .collect();
+        residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
+    }
+
+    /// Returns `true` if every row with a spring is `closed`, and its certain force exceeds twice the force that
+    /// `left(row)`, the dual norm of the forces left over on its part, could take off.
+    pub fn hold(&self, closed: &[bool], certain_force: impl Fn(usize) -> f64, left: impl Fn(usize) -> f64) -> bool {
+        let springs = self.stiffness.iter().enumerate().filter(|spring| *spring.1 != 0.0);
+        let presses = |row: usize, stiffness: f64| certain_force(row) > 2.0 * stiffness.sqrt() * left(row);
+        springs
+            .into_iter()
+            .all(|(row, &stiffness)| closed[row] && (self.are_equalities[row] || presses(row, stiffness)))
+    }
+
+    /// The same springs in other units of stiffness, `2^unit`.
+    pub fn in_unit(&self, unit: i32) -> Self {
+        let stiffness = self.stiffness.iter().map(|&value| ldexp(value, -unit)).collect();
+        Springs { stiffness, are_equalities: self.are_equalities.clone() }
+    }
+}
+
+/// A row presses if its force could do more than this share of the energy norm of its part.
+pub(super) const PRESSING: f64 = 1e-8;
+
+/// The energy norm of K; if K is semidefinite, that of K with springs on the rows that press, without the dofs that
+/// have neither stiffness nor a force. `None` if the springs do not hold the body, or if K has a negative
+/// eigenvalue, which springs would hide.
+pub fn norm_of_answer(
+    problem: &ContactProblem,
+    displacement: &[f64],
+    multiplier: &[f64],
+) -> Result<Option<EnergyNorm>, Error> {
+    if let Some(norm) = EnergyNorm::of(&problem.stiffness, &problem.contact)? {
+        return Ok(Some(norm));
+    }
+    let (mut stiffness, mut loose) = (problem.stiffness.clone(), None);
+    if let Some(found) = loose_dofs(problem, multiplier) {
+        let entries: Vec<_> = found.dofs.iter().enumerate().map(|(row, &dof)| (row, dof, 1.0)).collect();
+        let rows = SparseMatrix::from_triplets(entries.len(), problem.dofs(), &entries)?;
+        stiffness = stiffness.plus_squares(&rows, &vec![1.0; entries.len()])?;
+        loose = Some(Arc::new(found));
+        if let Some(norm) = EnergyNorm::of(&stiffness, &problem.contact)? {
+            return Ok(Some(EnergyNorm { loose, ..norm }));
+        }
+    }
+    let springs = springs_on(problem, displacement, multiplier);
+    let Some(held) = springs.added_to(&stiffness, &problem.contact)? else { return Ok(None) };
+    let Some(norm) = EnergyNorm::of(&held, &problem.contact)? else { return Ok(None) };
+    let springs = Some(Arc::new(springs));
+    Ok(problem.is_semidefinite()?.then_some(EnergyNorm { springs, loose, ..norm }))
+}
+
+/// The energy norm of a stiffness that is definite by itself, or with springs on equalities alone: it serves every
+/// answer. `None` if there is none.
+pub fn norm_on_equalities(problem: &ContactProblem) -> Result<Option<EnergyNorm>, Error> {
+    let (at_rest, forces) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
+    let norm = norm_of_answer(&problem.two_sided(&forces).0, &at_rest, &forces)?;
+    Ok(norm.filter(|norm| norm.loose_dofs() == 0))
+}
+
+/// The dofs without stiffness on which neither a load nor a row acts, if there are some.
+fn loose_dofs(problem: &ContactProblem, multiplier: &[f64]) -> Option<Loose> {
+    let mut is_loose: Vec<bool> = problem
+        .diagonal()
+        .values
+        .iter()
+        .zip(&problem.load)
+        .map(|(&stiffness, &f)| stiffness == 0.0 && f == 0.0)
+        .collect();
+    // A coupling on a diagonal of zero has negative energy.
+    for (row, column, _) in problem.stiffness.lower().triplets().filter(|entry| entry.2 != 0.0) {
+        (is_loose[row], is_loose[column]) = (false, false);
+    }
+    let acts = |row: usize| multiplier[row] != 0.0 || problem.is_two_sided(row);
+    let acting = problem.contact.triplets().filter(|&(row, _, b)| b != 0.0 && acts(row));
+    acting.for_each(|(_, dof, _)| is_loose[dof] = false);
+    let dofs: Vec<usize> = (0..problem.dofs()).filter(|&dof| is_loose[dof]).collect();
+    let mut rows = vec![false; problem.rows()];
+    problem.contact.triplets().filter(|&(_, dof, b)| b != 0.0 && is_loose[dof]).for_each(|(row, ..)| rows[row] = true);
+    (!dofs.is_empty()).then_some(Loose { dofs, rows })
+}
+
+/// Springs on the rows that press and on equalities, each as stiff as the row itself if only its own dofs move.
+pub fn springs_on(problem: &ContactProblem, displacement: &[f64], multiplier: &[f64]) -> Springs {
+    let parts = problem.parts();
+    let of_stiff = |square: f64, stiffness: f64| if stiffness > 0.0 { square / stiffness } else { 0.0 };
+    let compliance = compliance_of_rows(problem, of_stiff);
+    let sizes: Vec<f64> = energies(problem, true, displacement).0.iter().map(|energy| energy.max(0.0).sqrt()).collect();
+    let violation = problem.accurate_violation(displacement);
+    let spring = |row: usize| {
+        let (force, size) = (-multiplier[row], sizes[parts.of_row(row)]);
+        // A row that acts only on dofs without stiffness has no stiffness of its own: its force sets the scale.
+        let stiffness = match compliance[row] {
+            0.0 if size > 0.0 && force != 0.0 => (force / size).powi(2),
+            0.0 => 1.0,
+            compliance => 1.0 / compliance,
+        };
+        if problem.is_two_sided(row) {
+            return stiffness;
+        }
+        let presses = force > PRESSING * stiffness.sqrt() * size && force * compliance[row] >= -violation[row];
+        if presses { stiffness } else { 0.0 }
+    };
+    let has_one = |row: usize| multiplier[row] < 0.0 || problem.is_two_sided(row);
+    Springs {
+        stiffness: (0..problem.rows()).map(|row| if has_one(row) { spring(row) } else { 0.0 }).collect(),
+        are_equalities: (0..problem.rows()).map(|row| problem.is_two_sided(row)).collect(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -343,54 +483,5 @@ mod tests {
         let norm = norm(&pair(4.0, 0.5));
         assert!(!norm.is_over());
         assert!(norm.watched(&Watch::default().within(0.0)).is_over());
-    }
-}
-
-/// Springs D on rows C that press, or that are equalities: with them a singular K becomes `K_D = K + B_C' D B_C`.
-#[derive(Clone, Debug)]
-pub(super) struct Springs {
-    /// D of each row, zero on rows without a spring.
-    pub stiffness: Vec<f64>,
-    /// The rows that are equalities: at their gaps they stay there, whatever their force.
-    pub are_equalities: Vec<bool>,
-}
-
-impl Springs {
-    /// `K + B_C' D B_C`; `None` if no row presses.
-    pub fn added_to(
-        &self,
-        stiffness: &SymmetricMatrix,
-        contact: &SparseMatrix,
-    ) -> Result<Option<SymmetricMatrix>, Error> {
-        let closed: Vec<usize> = (0..contact.rows()).filter(|&row| self.stiffness[row] > 0.0).collect();
-        if closed.is_empty() {
-            return Ok(None);
-        }
-        let weights: Vec<f64> = closed.iter().map(|&row| self.stiffness[row]).collect();
-        stiffness.plus_squares(&contact.select_rows(&closed), &weights).map(Some)
-    }
-
-    /// `f + B' lambda - K_D u + B_C' D g_C`: the `residual` with springs of an answer with this `violation`.
-    pub fn residual(&self, contact: &SparseMatrix, residual: &[f64], violation: &[f64]) -> Vec<f64> {
-        let pull: Vec<f64> = (self.stiffness.iter().zip(violation))
-            .map(|(&stiffness, &violation)| if stiffness > 0.0 { -stiffness * violation } else { 0.0 })
-            .collect();
-        residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
-    }
-
-    /// Returns `true` if every row with a spring is `closed`, and its certain force exceeds twice the force that
-    /// `left(row)`, the dual norm of the forces left over on its part, could take off.
-    pub fn hold(&self, closed: &[bool], certain_force: impl Fn(usize) -> f64, left: impl Fn(usize) -> f64) -> bool {
-        let springs = self.stiffness.iter().enumerate().filter(|spring| *spring.1 != 0.0);
-        let presses = |row: usize, stiffness: f64| certain_force(row) > 2.0 * stiffness.sqrt() * left(row);
-        springs
-            .into_iter()
-            .all(|(row, &stiffness)| closed[row] && (self.are_equalities[row] || presses(row, stiffness)))
-    }
-
-    /// The same springs in other units of stiffness, `2^unit`.
-    pub fn in_unit(&self, unit: i32) -> Self {
-        let stiffness = self.stiffness.iter().map(|&value| ldexp(value, -unit)).collect();
-        Springs { stiffness, are_equalities: self.are_equalities.clone() }
     }
 }

@@ -1,13 +1,11 @@
 //! The certificate of an answer, recomputed from the problem by code that shares nothing with the methods.
 //!
 //! It recomputes the conditions of the solution, a bound on the error in energy, and the rows proven open or closed.
-//! For a problem without a unique answer it recomputes the rows that contradict each other and the modes that nothing
-//! holds.
+//! For a problem without a unique answer it recomputes the modes that nothing holds.
 
 mod bound;
 mod conditions;
 mod energy_norm;
-mod infeasible;
 mod mode;
 mod pressed;
 mod proof;
@@ -16,7 +14,111 @@ mod scales;
 mod units;
 mod verdict;
 
-pub(crate) use conditions::{Bounding, Evidence, Examined};
-pub(crate) use energy_norm::EnergyNorm;
-pub(crate) use mode::{NullMode, Rounding};
-pub(crate) use proof::WithEvidence;
+pub(crate) use bound::boundary::repaired;
+pub(crate) use conditions::{Bounding, Evidence, Examined, at_rest, with_rounding};
+pub(crate) use energy_norm::{EnergyNorm, norm_on_equalities};
+pub(crate) use mode::{NullMode, Rounding, mode_along, motion_along, not_convex_along};
+
+use std::borrow::Cow;
+
+use conditions::{energy_of, examined};
+use pressed::Pressed;
+use proof::{proven_by_cycles, proven_in};
+use units::{UnitExponents, far_units, in_units};
+
+use crate::error::Error;
+use crate::problem::{ContactProblem, Equality};
+use crate::solution::ProvenSet;
+
+/// An answer (u, lambda) of a problem, to be examined by these means.
+pub(crate) struct Examination<'a> {
+    problem: &'a ContactProblem,
+    displacement: &'a [f64],
+    /// Of all rows.
+    multiplier: Cow<'a, [f64]>,
+    by: &'a Bounding<'a>,
+}
+
+impl<'a> Examination<'a> {
+    pub fn of(
+        problem: &'a ContactProblem,
+        [displacement, multiplier]: [&'a [f64]; 2],
+        by: &'a Bounding<'a>,
+    ) -> Result<Self, Error> {
+        let multiplier = problem.of_all_rows(multiplier);
+        problem.check_answer(displacement, &multiplier)?;
+        // A hierarchy of one level is already a factor, with so few dofs that another one in double precision costs
+        // nothing.
+        let is_factor = matches!(by, Bounding::Cycles(multigrid, _) if multigrid.unknowns().len() <= 1);
+        Ok(Examination { problem, displacement, multiplier, by: if is_factor { &Bounding::OwnFactor } else { by } })
+    }
+
+    /// The certificate, with the evidence that a proof may take.
+    pub fn certificate(&self) -> Result<Examined, Error> {
+        let (u, lambda) = (self.displacement, &*self.multiplier);
+        let mut found = match self.in_far_units()? {
+            None => examined(self.problem, self.by, [u, lambda])?,
+            Some((units, problem, by)) => {
+                let found = examined(&problem, &by, [&units.displacement(u), &units.force(lambda)])?;
+                Examined { certificate: units.in_own(found.certificate), evidence: None, ..found }
+            }
+        };
+        if let Bounding::Pieces(pieces) = self.by {
+            found.certificate = found.certificate.with_bounds_of(pieces, &energy_of(self.problem, u));
+        }
+        Ok(found)
+    }
+
+    /// The rows that the answer proves open or closed, from the evidence of its certificate if there is any; `None` if
+    /// K is not positive definite by itself, except for travels that forces drive against rows, and if no bound is
+    /// known.
+    pub fn proof(&self, evidence: Option<Evidence>) -> Result<Option<ProvenSet>, Error> {
+        let mut proven = self.proven(evidence)?;
+        // The rows of equalities are closed in every answer.
+        for Equality { row, opposed, .. } in self.problem.equalities() {
+            proven.iter_mut().for_each(|proven| [row, opposed].into_iter().for_each(|&row| proven.closed.insert(row)));
+        }
+        Ok(proven)
+    }
+
+    fn proven(&self, mut evidence: Option<Evidence>) -> Result<Option<ProvenSet>, Error> {
+        let (problem, answer, far) = (self.problem, [self.displacement, &*self.multiplier], self.in_far_units()?);
+        let norm = match self.by {
+            Bounding::Nothing | Bounding::Pieces(_) => None,
+            Bounding::Cycles(multigrid, watch) => {
+                return Ok(evidence.and_then(|evidence| proven_by_cycles(problem, multigrid, watch, answer, evidence)));
+            }
+            Bounding::Factor(norm) => Some(norm.clone()),
+            Bounding::OwnFactor => match evidence.as_mut().and_then(|evidence| evidence.norm.take()) {
+                None if problem.without_stiffness().is_empty() => EnergyNorm::of(&problem.stiffness, &problem.contact)?,
+                None if far.is_none() => {
+                    let found = if evidence.is_some() { evidence } else { self.certificate()?.evidence };
+                    let pressed = found.map(|found| Pressed::of(problem, answer[0], found)).transpose()?.flatten();
+                    return Ok(pressed.and_then(|Pressed { body, norm, displacement, evidence }| {
+                        proven_in(&body, &norm, [&displacement, answer[1]], Some(evidence))
+                    }));
+                }
+                norm => norm,
+            },
+        };
+        Ok(norm.and_then(|norm| match far {
+            Some((units, problem, _)) => {
+                let answer = [&*units.displacement(answer[0]), &*units.force(answer[1])];
+                proven_in(&problem, &norm.with_unit(units.stiffness), answer, None)
+            }
+            None => proven_in(problem, &norm, answer, evidence),
+        }))
+    }
+
+    /// The units in which the answer is of order one, if forces or energies would over- or underflow in its own, with
+    /// the problem and the means in these units.
+    fn in_far_units(&self) -> Result<Option<(UnitExponents, ContactProblem, Bounding<'static>)>, Error> {
+        let Some(units) = far_units(self.problem, self.displacement) else { return Ok(None) };
+        let by = match self.by {
+            Bounding::OwnFactor => Bounding::OwnFactor,
+            Bounding::Factor(norm) => Bounding::Factor(norm.with_unit(units.stiffness)),
+            _ => Bounding::Nothing,
+        };
+        Ok(Some((units, in_units(self.problem, &units)?, by)))
+    }
+}

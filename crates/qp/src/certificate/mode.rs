@@ -1,6 +1,6 @@
 //! Statements on a problem without a unique answer, rechecked in the problem itself with twice the working precision.
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::{NullSpace, Twice, largest, twice};
 use crate::problem::ContactProblem;
 
@@ -77,68 +77,67 @@ impl NullMode {
     }
 }
 
-impl ContactProblem {
-    /// The null mode along a direction, if it is one: `K d` vanishes in every dof. There is no mode if it is not
-    /// certain whether the direction closes, opens or slides along a row.
-    pub(crate) fn mode_along(&self, direction: &[Twice], rounding: Rounding) -> Option<NullMode> {
-        let by_size = |a: &&Twice, b: &&Twice| a.rounded().abs().total_cmp(&b.rounded().abs());
-        let size = direction.iter().max_by(by_size)?.abs();
-        if !(size.rounded() > 0.0 && size.rounded().is_finite()) {
+/// The null mode along a direction, if it is one: `K d` vanishes in every dof. There is no mode if it is not
+/// certain whether the direction closes, opens or slides along a row.
+pub fn mode_along(problem: &ContactProblem, direction: &[Twice], rounding: Rounding) -> Option<NullMode> {
+    let by_size = |a: &&Twice, b: &&Twice| a.rounded().abs().total_cmp(&b.rounded().abs());
+    let size = direction.iter().max_by(by_size)?.abs();
+    if !(size.rounded() > 0.0 && size.rounded().is_finite()) {
+        return None;
+    }
+    let whole: Vec<Twice> = direction.iter().map(|&value| value / size).collect();
+    let kept = |&value: &Twice| if value.rounded().abs() > rounding.entry { value } else { Twice::ZERO };
+    let cleaned = whole.iter().map(kept).collect();
+    let is_free = |direction: &Vec<Twice>| {
+        let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
+        !problem.stiffness.resistance(direction).iter().any(resists)
+    };
+    // Small entries may be rounded zeros or part of the mode.
+    let direction = [cleaned, whole].into_iter().find(is_free)?;
+    let by_row = problem.contact.transposed();
+    let mut approach = vec![0.0; problem.rows()];
+    for row in (0..problem.rows()).filter(|&row| problem.gap[row].is_finite()) {
+        let terms = || by_row.column(row).map(|(dof, b)| Twice::from(b) * direction[dof]);
+        approach[row] = twice::sum(terms(), rounding.zero).rounded();
+        if approach[row] != 0.0 && twice::sum(terms(), rounding.sure) == Twice::ZERO {
             return None;
         }
-        let whole: Vec<Twice> = direction.iter().map(|&value| value / size).collect();
-        let kept = |&value: &Twice| if value.rounded().abs() > rounding.entry { value } else { Twice::ZERO };
-        let cleaned = whole.iter().map(kept).collect();
-        let is_free = |direction: &Vec<Twice>| {
-            let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
-            !self.stiffness.resistance(direction).iter().any(resists)
-        };
-        // Small entries may be rounded zeros or part of the mode.
-        let direction = [cleaned, whole].into_iter().find(is_free)?;
-        let by_row = self.contact.transposed();
-        let mut approach = vec![0.0; self.rows()];
-        for row in (0..self.rows()).filter(|&row| self.gap[row].is_finite()) {
-            let terms = || by_row.column(row).map(|(dof, b)| Twice::from(b) * direction[dof]);
-            approach[row] = twice::sum(terms(), rounding.zero).rounded();
-            if approach[row] != 0.0 && twice::sum(terms(), rounding.sure) == Twice::ZERO {
-                return None;
-            }
-        }
-        let work = || self.load.iter().zip(&direction).map(|(&f, &d)| Twice::from(f) * d);
-        let terms: f64 = work().map(|term| term.rounded().abs()).sum();
-        let left = twice::sum(work(), IDLE).rounded();
-        let work = if left == 0.0 { 0.0 } else { left / terms };
-        let direction = direction.into_iter().map(Twice::rounded).collect();
-        Some(NullMode { direction, approach, work, resistance: rounding.vanishes })
     }
+    let work = || problem.load.iter().zip(&direction).map(|(&f, &d)| Twice::from(f) * d);
+    let terms: f64 = work().map(|term| term.rounded().abs()).sum();
+    let left = twice::sum(work(), IDLE).rounded();
+    let work = if left == 0.0 { 0.0 } else { left / terms };
+    let direction = direction.into_iter().map(Twice::rounded).collect();
+    Some(NullMode { direction, approach, work, resistance: rounding.vanishes })
+}
 
-    /// The error to report for a direction along which the problem without its equalities has no answer or several, if
-    /// it is a null mode up to the rounding of entries, and the equalities let it be.
-    pub(crate) fn motion_along(&self, direction: &[Twice]) -> Option<Error> {
-        // The small entries of a motion that meets the equalities are part of it.
-        let found = self.mode_along(direction, Rounding { entry: 0.0, ..Rounding::OF_ROUNDED })?;
-        if self.equalities().iter().any(|pair| found.approach[pair.row] != 0.0 || found.approach[pair.opposed] != 0.0) {
-            return None;
-        }
-        let (is_driven, mode, direction) = (found.work > DRIVES, found.in_words(), found.direction);
-        Some(if is_driven { Error::Unbounded { mode, direction } } else { Error::UnderHeld { mode, direction } })
+/// The error to report for a direction along which the problem without its equalities has no answer or several, if
+/// it is a null mode up to the rounding of entries, and the equalities let it be.
+pub fn motion_along(problem: &ContactProblem, direction: &[Twice]) -> Option<Error> {
+    // The small entries of a motion that meets the equalities are part of it.
+    let found = mode_along(problem, direction, Rounding { entry: 0.0, ..Rounding::OF_ROUNDED })?;
+    if problem.equalities().iter().any(|pair| found.approach[pair.row] != 0.0 || found.approach[pair.opposed] != 0.0) {
+        return None;
     }
+    let (is_driven, mode, direction) = (found.work > DRIVES, found.in_words(), found.direction);
+    Some(if is_driven { Error::Unbounded { mode, direction } } else { Error::UnderHeld { mode, direction } })
+}
 
-    /// The error to report for a direction p of negative energy, if `p'K p` is negative beyond rounding.
-    pub(crate) fn not_convex_along(&self, p: &[f64]) -> Option<Error> {
-        let size = largest(p);
-        let p: Vec<f64> = p.iter().map(|value| value / size).collect();
-        let forces = self.accurate_forces(&p).into_sums();
-        let energy: f64 = forces.iter().zip(&p).map(|(force, p)| force * p).sum();
-        let terms: f64 = self.stiffness.mul_abs(&p).iter().zip(&p).map(|(force, p)| force * p.abs()).sum();
-        let dof = p.iter().position(|value| value.abs() == 1.0).unwrap_or(0);
-        (energy < -NEGATIVE * terms).then(|| Error::NotConvex {
-            evidence: format!(
-                "a direction p with largest entry one, at dof {dof} (indices from 0), has p'Kp = {energy:.3e}, beyond {NEGATIVE:.0e} \
-                 of its terms, {terms:.3e}"
-            ),
-        })
-    }
+/// The error to report for a direction p of negative energy, if `p'K p` is negative beyond rounding.
+pub fn not_convex_along(problem: &ContactProblem, p: &[f64]) -> Option<Error> {
+    let size = largest(p);
+    let p: Vec<f64> = p.iter().map(|value| value / size).collect();
+    let forces = problem.accurate_forces(&p).into_sums();
+    let energy: f64 = forces.iter().zip(&p).map(|(force, p)| force * p).sum();
+    let terms: f64 = problem.stiffness.mul_abs(&p).iter().zip(&p).map(|(force, p)| force * p.abs()).sum();
+    let dof = p.iter().position(|value| value.abs() == 1.0).unwrap_or(0);
+    let evidence = || {
+        format!(
+            "a direction p with largest entry one, at dof {dof} (indices from 0), has p'Kp = {energy:.3e}, beyond {NEGATIVE:.0e} \
+             of its terms, {terms:.3e}"
+        )
+    };
+    (energy < -NEGATIVE * terms).then(|| LinearError::NotConvex { evidence: evidence() }.into())
 }
 
 #[cfg(test)]

@@ -6,14 +6,12 @@
 //! reach r of each row in the body, each term is known up to `r E / c`, and so is their least one. The proof is then
 //! that of the body alone, with rows that this uncertainty brings nearer.
 
-use super::EnergyNorm;
-use super::conditions::{Bounding, Evidence};
-use super::energy_norm::ROUNDED_BOUND;
-use super::proof::{ComplianceFactor, WithEvidence};
+use super::conditions::Evidence;
+use super::energy_norm::{EnergyNorm, ROUNDED_BOUND};
+use super::reach::ComplianceFactor;
 use crate::error::Error;
 use crate::linear::SymmetricMatrix;
 use crate::problem::ContactProblem;
-use crate::solution::ProvenSet;
 
 /// Rows that may be the least are swept one by one up to this number.
 const MOST_SWEPT: usize = 200;
@@ -27,56 +25,53 @@ struct Travel {
     rows: Vec<(usize, f64)>,
 }
 
-impl ContactProblem {
-    /// As [`ContactProblem::prove`], if dofs without stiffness are travels, and the rest is definite by itself; `None`
-    /// otherwise.
-    pub(super) fn prove_pressed(&self, answer: WithEvidence) -> Result<Option<ProvenSet>, Error> {
-        let (Some(travels), None) = (self.travels(), self.far_units(answer.displacement)) else { return Ok(None) };
+/// The body alone.
+pub(super) struct Pressed {
+    pub body: ContactProblem,
+    pub norm: EnergyNorm,
+    pub displacement: Vec<f64>,
+    pub evidence: Evidence,
+}
+
+impl Pressed {
+    /// The body under the obstacles of `problem`, as the proof of this answer takes it; `None` if dofs without
+    /// stiffness are no travels, or if the rest is not definite by itself.
+    pub fn of(problem: &ContactProblem, displacement: &[f64], evidence: Evidence) -> Result<Option<Self>, Error> {
+        let Some(travels) = travels(problem).filter(|_| evidence.error.is_finite()) else { return Ok(None) };
         let is_body = |dof: &usize| travels.iter().all(|travel| travel.dof != *dof);
-        let dofs: Vec<usize> = (0..self.dofs()).filter(is_body).collect();
-        let mut place = vec![None; self.dofs()];
+        let dofs: Vec<usize> = (0..problem.dofs()).filter(is_body).collect();
+        let mut place = vec![None; problem.dofs()];
         dofs.iter().enumerate().for_each(|(index, &dof)| place[dof] = Some(index));
         let of_body = |values: &[f64]| dofs.iter().map(|&dof| values[dof]).collect::<Vec<f64>>();
-        let lower = self.stiffness.lower().select(dofs.len(), |row| place[row], dofs.iter().copied());
-        let contact = self.contact.select(self.rows(), Some, dofs.iter().copied());
+        let lower = problem.stiffness.lower().select(dofs.len(), |row| place[row], dofs.iter().copied());
+        let contact = problem.contact.select(problem.rows(), Some, dofs.iter().copied());
         let stiffness = SymmetricMatrix::from_lower(lower)?;
-        let body = ContactProblem::computed(stiffness, of_body(&self.load), contact, self.gap.clone())?;
+        let body = ContactProblem::computed(stiffness, of_body(&problem.load), contact, problem.gap.clone())?;
         let Some(norm) = EnergyNorm::of(&body.stiffness, &body.contact)? else { return Ok(None) };
-        let evidence = match answer.evidence {
-            Some(evidence) => Some(evidence),
-            None => self.examine(&Bounding::OwnFactor, answer.displacement, answer.multiplier)?.evidence,
-        };
-        let Some(evidence) = evidence.filter(|evidence| evidence.error.is_finite()) else { return Ok(None) };
-        let displacement = of_body(answer.displacement);
+        let displacement = of_body(displacement);
         let mut violation = body.accurate_violation(&displacement);
-        let error = ROUNDED_BOUND * evidence.error;
         for travel in &travels {
-            travel.bring_near(&body, &norm, error, &mut violation);
+            travel.bring_near(&body, &norm, ROUNDED_BOUND * evidence.error, &mut violation);
         }
-        let residual = of_body(&evidence.residual);
-        let (reach, error) = (body.least_reach(), evidence.error);
-        let evidence = Evidence { residual, violation, reach, error, measured: None, norm: None };
-        let of_rows =
-            WithEvidence { displacement: &displacement, multiplier: answer.multiplier, evidence: Some(evidence) };
-        // Rows that are opposite in the body alone are no equalities of the problem.
-        Ok(body.prove_in(&norm, of_rows).map(|proven| self.with_equalities_closed(proven)))
+        let evidence = Evidence { residual: of_body(&evidence.residual), violation, measured: None, ..evidence };
+        Ok(Some(Pressed { body, norm, displacement, evidence }))
     }
+}
 
-    /// The travels; `None` without any, or if a dof without stiffness is none: all of its rows stop the same sense of
-    /// it, no other travel is in them, and a force drives it against them.
-    fn travels(&self) -> Option<Vec<Travel>> {
-        let dofs = self.without_stiffness();
-        let mut is_taken = vec![false; self.rows()];
-        let of_dof = |&dof: &usize| {
-            let sense = self.load[dof].signum();
-            let rows: Vec<(usize, f64)> =
-                self.contact.column(dof).filter(|entry| entry.1 != 0.0).map(|(row, c)| (row, sense * c)).collect();
-            let is_own = |&(row, c): &(usize, f64)| c > 0.0 && !std::mem::replace(&mut is_taken[row], true);
-            (self.load[dof] != 0.0 && rows.iter().all(is_own)).then_some(Travel { dof, rows })
-        };
-        let travels: Vec<Travel> = dofs.iter().map(of_dof).collect::<Option<_>>()?;
-        (!travels.is_empty()).then_some(travels)
-    }
+/// The travels; `None` without any, or if a dof without stiffness is none: all of its rows stop the same sense of
+/// it, no other travel is in them, and a force drives it against them.
+fn travels(problem: &ContactProblem) -> Option<Vec<Travel>> {
+    let dofs = problem.without_stiffness();
+    let mut is_taken = vec![false; problem.rows()];
+    let of_dof = |&dof: &usize| {
+        let sense = problem.load[dof].signum();
+        let rows: Vec<(usize, f64)> =
+            problem.contact.column(dof).filter(|entry| entry.1 != 0.0).map(|(row, c)| (row, sense * c)).collect();
+        let is_own = |&(row, c): &(usize, f64)| c > 0.0 && !std::mem::replace(&mut is_taken[row], true);
+        (problem.load[dof] != 0.0 && rows.iter().all(is_own)).then_some(Travel { dof, rows })
+    };
+    let travels: Vec<Travel> = dofs.iter().map(of_dof).collect::<Option<_>>()?;
+    (!travels.is_empty()).then_some(travels)
 }
 
 impl Travel {

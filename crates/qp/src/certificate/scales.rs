@@ -1,7 +1,7 @@
 //! The scales of an answer: the size of its norm for each part, the forces on each part, and the reach of each row.
 
 use crate::linear::Accumulator;
-use crate::problem::{ContactProblem, Parts};
+use crate::problem::{Balance, ContactProblem};
 
 /// The scales that the errors of an answer are measured against.
 pub(super) struct Scales {
@@ -9,18 +9,6 @@ pub(super) struct Scales {
     pub reach: Vec<f64>,
     pub of_parts: Vec<OfPart>,
     pub whole: OfPart,
-}
-
-/// The forces on each dof at a displacement u, with twice the working precision.
-pub(super) struct Balance {
-    /// `f + B' lambda - K u` at the displacement u, one entry per dof.
-    pub residual: Vec<f64>,
-    /// `|K u|`.
-    pub elastic: Vec<f64>,
-    /// `u' K u`.
-    pub strain: f64,
-    /// `|K| |u|`, the terms of the elastic forces and the scale of rounding in them.
-    pub terms: Vec<f64>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -65,12 +53,12 @@ impl OfPart {
 }
 
 /// The larger of two numbers; NaN is larger than all.
-pub(super) fn larger(a: f64, b: f64) -> f64 {
+pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 
 /// `value / scale`, with 0 / 0 = 0.
-pub(super) fn relative(value: f64, scale: f64) -> f64 {
+pub fn relative(value: f64, scale: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / scale }
 }
 
@@ -79,9 +67,9 @@ impl Scales {
     /// `|f| + |B' lambda|`.
     pub fn of(problem: &ContactProblem, [u, multiplier]: [&[f64]; 2], balance: &Balance, applied: &[f64]) -> Self {
         let (parts, diagonal) = (problem.parts(), problem.diagonal());
-        let strains = if parts.count() == 1 { vec![balance.strain] } else { problem.energies(parts, u) };
+        let strains = if parts.count() == 1 { vec![balance.strain] } else { energies(problem, true, u).0 };
         let mut of_parts = vec![OfPart::default(); parts.count()];
-        let (couplings, is_taken) = (problem.couplings(parts, u, applied), problem.taken_alone(multiplier));
+        let (couplings, is_taken) = (couplings(problem, u, applied), taken_alone(problem, multiplier));
         for (dof, &root) in diagonal.roots.iter().enumerate() {
             let part = &mut of_parts[parts.of_dof(dof)];
             part.terms += u[dof].abs() * balance.terms[dof];
@@ -102,7 +90,7 @@ impl Scales {
         }
         of_parts.iter_mut().zip(&strains).for_each(|(part, &strain)| part.strain = strain);
         let whole = OfPart { strain: balance.strain, ..OfPart::together(&of_parts) };
-        Scales { reach: problem.least_reach(), of_parts, whole }
+        Scales { reach: least_reach(problem), of_parts, whole }
     }
 
     /// The distance by which rounding of the forces on its `part`, if that rests, could move a single dof of a row, of
@@ -116,111 +104,121 @@ impl Scales {
 }
 
 /// A dof without stiffness and load, and a row with gap zero, have no scale of their own: rows give them one, which
-/// they share with the dofs that they couple them to.
-impl ContactProblem {
-    /// The lengths of the rows; of those with gap zero at least those that rows to dofs with stiffness give to their
-    /// dofs without stiffness.
-    pub(super) fn coupled_lengths(&self, own: Vec<f64>) -> Vec<f64> {
-        let roots = &self.diagonal().roots;
-        if roots.iter().all(|&root| root > 0.0) {
-            return own;
-        }
-        let entries = || {
-            let counts =
-                |&(row, dof, b): &(usize, usize, f64)| b != 0.0 && roots[dof] == 0.0 && self.gap[row].is_finite();
-            self.contact.triplets().filter(counts)
-        };
-        let mut is_stiff = vec![false; self.rows()];
-        self.contact
-            .triplets()
-            .filter(|&(_, dof, b)| b != 0.0 && roots[dof] > 0.0)
-            .for_each(|(row, ..)| is_stiff[row] = true);
-        let mut of_dofs = vec![0.0; self.dofs()];
-        let known = entries().filter(|entry| is_stiff[entry.0]);
-        known.for_each(|(row, dof, b)| of_dofs[dof] = larger(own[row] / b.abs(), of_dofs[dof]));
-        let mut coupled = own;
-        let without_scale = entries().filter(|entry| self.gap[entry.0] == 0.0);
-        without_scale.for_each(|(row, dof, b)| coupled[row] = larger(b.abs() * of_dofs[dof], coupled[row]));
-        coupled
+/// they share with the dofs that they couple them to. The lengths of the rows; of those with gap zero at least those
+/// that rows to dofs with stiffness give to their dofs without stiffness.
+pub fn coupled_lengths(problem: &ContactProblem, own: Vec<f64>) -> Vec<f64> {
+    let roots = &problem.diagonal().roots;
+    if roots.iter().all(|&root| root > 0.0) {
+        return own;
     }
-
-    /// The forces that balance on each dof; on one without stiffness and load at least those that its rows pass on from
-    /// dofs with stiffness.
-    pub(super) fn balanced_forces(&self, own: Vec<f64>) -> Vec<f64> {
-        let roots = &self.diagonal().roots;
-        if roots.iter().all(|&root| root > 0.0) {
-            return own;
-        }
-        let entries = |is_stiff: bool| {
-            self.contact.triplets().filter(move |&(_, dof, b)| b != 0.0 && (roots[dof] > 0.0) == is_stiff)
-        };
-        let mut of_rows = vec![0.0; self.rows()];
-        entries(true).for_each(|(row, dof, b)| of_rows[row] = larger(own[dof] / b.abs(), of_rows[row]));
-        let mut balanced = own;
-        let without_scale = entries(false).filter(|entry| self.load[entry.1] == 0.0);
-        without_scale.for_each(|(row, dof, b)| balanced[dof] = larger(b.abs() * of_rows[row], balanced[dof]));
-        balanced
-    }
+    let entries = || {
+        let counts =
+            |&(row, dof, b): &(usize, usize, f64)| b != 0.0 && roots[dof] == 0.0 && problem.gap[row].is_finite();
+        problem.contact.triplets().filter(counts)
+    };
+    let mut is_stiff = vec![false; problem.rows()];
+    problem
+        .contact
+        .triplets()
+        .filter(|&(_, dof, b)| b != 0.0 && roots[dof] > 0.0)
+        .for_each(|(row, ..)| is_stiff[row] = true);
+    let mut of_dofs = vec![0.0; problem.dofs()];
+    let known = entries().filter(|entry| is_stiff[entry.0]);
+    known.for_each(|(row, dof, b)| of_dofs[dof] = larger(own[row] / b.abs(), of_dofs[dof]));
+    let mut coupled = own;
+    let without_scale = entries().filter(|entry| problem.gap[entry.0] == 0.0);
+    without_scale.for_each(|(row, dof, b)| coupled[row] = larger(b.abs() * of_dofs[dof], coupled[row]));
+    coupled
 }
 
-impl ContactProblem {
-    /// `true` for each dof on which a pressing row acts that acts on no other: its force takes what rounding leaves.
-    fn taken_alone(&self, multiplier: &[f64]) -> Vec<bool> {
-        let (mut dofs, mut is_taken) = (vec![0_u32; self.rows()], vec![false; self.dofs()]);
-        let count = |dofs: &mut u32, b: f64| *dofs += u32::from(b != 0.0);
-        (0..self.dofs()).for_each(|dof| self.contact.with_rows(dof, &mut dofs, count));
-        let is_alone = |row: usize| dofs[row] == 1 && multiplier[row] != 0.0;
-        if (0..self.rows()).any(is_alone) {
-            let alone = self.contact.triplets().filter(|&(row, _, b)| b != 0.0 && is_alone(row));
-            alone.for_each(|(_, dof, _)| is_taken[dof] = true);
-        }
-        is_taken
+/// The forces that balance on each dof; on one without stiffness and load at least those that its rows pass on from
+/// dofs with stiffness.
+pub fn balanced_forces(problem: &ContactProblem, own: Vec<f64>) -> Vec<f64> {
+    let roots = &problem.diagonal().roots;
+    if roots.iter().all(|&root| root > 0.0) {
+        return own;
     }
+    let entries = |is_stiff: bool| {
+        problem.contact.triplets().filter(move |&(_, dof, b)| b != 0.0 && (roots[dof] > 0.0) == is_stiff)
+    };
+    let mut of_rows = vec![0.0; problem.rows()];
+    entries(true).for_each(|(row, dof, b)| of_rows[row] = larger(own[dof] / b.abs(), of_rows[row]));
+    let mut balanced = own;
+    let without_scale = entries(false).filter(|entry| problem.load[entry.1] == 0.0);
+    without_scale.for_each(|(row, dof, b)| balanced[dof] = larger(b.abs() * of_rows[row], balanced[dof]));
+    balanced
+}
 
-    /// `w_p' K_pp w_p` of each part p: twice its energy under the displacement w, without couplings to other parts.
-    pub(super) fn energies(&self, parts: &Parts, w: &[f64]) -> Vec<f64> {
-        self.rounded_energies(|dof| parts.of_dof(dof), parts.count(), w).0
+/// `true` for each dof on which a pressing row acts that acts on no other: its force takes what rounding leaves.
+fn taken_alone(problem: &ContactProblem, multiplier: &[f64]) -> Vec<bool> {
+    let (mut dofs, mut is_taken) = (vec![0_u32; problem.rows()], vec![false; problem.dofs()]);
+    let count = |dofs: &mut u32, b: f64| *dofs += u32::from(b != 0.0);
+    (0..problem.dofs()).for_each(|dof| problem.contact.with_rows(dof, &mut dofs, count));
+    let is_alone = |row: usize| dofs[row] == 1 && multiplier[row] != 0.0;
+    if (0..problem.rows()).any(is_alone) {
+        let alone = problem.contact.triplets().filter(|&(row, _, b)| b != 0.0 && is_alone(row));
+        alone.for_each(|(_, dof, _)| is_taken[dof] = true);
     }
+    is_taken
+}
 
-    /// The same for `count` groups of dofs, and `|w|' |K| |w|` of each, the scale of its rounding in twice the working
-    /// precision.
-    pub(super) fn rounded_energies(
-        &self,
-        group: impl Fn(usize) -> usize,
-        count: usize,
-        w: &[f64],
-    ) -> (Vec<f64>, Vec<f64>) {
-        let within = |column: usize| {
-            let own = group(column);
-            let group = &group;
-            self.stiffness.lower().column(column).filter(move |entry| group(entry.0) == own)
-        };
-        let mut sums = Accumulator::new(&vec![0.0; w.len()]);
-        let terms = sums.add_matrix_product(within, w);
-        let mut magnitudes = vec![0.0; count];
-        for (dof, (terms, w)) in terms.iter().zip(w).enumerate() {
-            magnitudes[group(dof)] += terms * w.abs();
-        }
-        (sums.products_by(w, &group, count), magnitudes)
+/// `w_p' K_pp w_p` of each part p, or of the whole: twice its energy under the displacement w, without couplings to
+/// other parts; and `|w|' |K| |w|` of each, the scale of its rounding in twice the working precision.
+pub fn energies(problem: &ContactProblem, by_parts: bool, w: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let parts = problem.parts();
+    let (group, count) =
+        (|dof: usize| if by_parts { parts.of_dof(dof) } else { 0 }, if by_parts { parts.count() } else { 1 });
+    let within =
+        |column: usize| problem.stiffness.lower().column(column).filter(move |entry| group(entry.0) == group(column));
+    let mut sums = Accumulator::new(&vec![0.0; w.len()]);
+    let terms = sums.add_matrix_product(within, w);
+    let mut magnitudes = vec![0.0; count];
+    for (dof, (terms, w)) in terms.iter().zip(w).enumerate() {
+        magnitudes[group(dof)] += terms * w.abs();
     }
+    (sums.products_by(w, group, count), magnitudes)
+}
 
-    /// The forces on each dof by other parts: by their displacements u, and by those that `forces` could give each of
-    /// their dofs alone. Empty if there is one part.
-    fn couplings(&self, parts: &Parts, u: &[f64], forces: &[f64]) -> Vec<f64> {
-        if parts.count() == 1 {
-            return Vec::new();
+/// The forces on each dof by other parts: by their displacements u, and by those that `forces` could give each of
+/// their dofs alone. Empty if there is one part.
+fn couplings(problem: &ContactProblem, u: &[f64], forces: &[f64]) -> Vec<f64> {
+    let parts = problem.parts();
+    if parts.count() == 1 {
+        return Vec::new();
+    }
+    let diagonal = &problem.diagonal().values;
+    let moved = |dof: usize| u[dof].abs() + if diagonal[dof] > 0.0 { forces[dof] / diagonal[dof] } else { 0.0 };
+    let mut couplings = vec![0.0; problem.dofs()];
+    for (row, column, value) in problem.stiffness.lower().triplets() {
+        if parts.of_dof(row) != parts.of_dof(column) {
+            couplings[row] += value.abs() * moved(column);
+            couplings[column] += value.abs() * moved(row);
         }
-        let diagonal = &self.diagonal().values;
-        let moved = |dof: usize| u[dof].abs() + if diagonal[dof] > 0.0 { forces[dof] / diagonal[dof] } else { 0.0 };
-        let mut couplings = vec![0.0; self.dofs()];
-        for (row, column, value) in self.stiffness.lower().triplets() {
-            if parts.of_dof(row) != parts.of_dof(column) {
-                couplings[row] += value.abs() * moved(column);
-                couplings[column] += value.abs() * moved(row);
+    }
+    couplings
+}
+
+/// Lower bounds on `sqrt(G_ii)` of every row, `max |b_ij| / sqrt(K_jj)` over the dofs with stiffness: the distance
+/// by which unit energy norm of a single dof moves it.
+pub fn least_reach(problem: &ContactProblem) -> Vec<f64> {
+    let (roots, mut least) = (&problem.diagonal().roots, vec![0.0_f64; problem.rows()]);
+    for (dof, &root) in roots.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
+        problem.contact().with_rows(dof, &mut least, |least, b| *least = least.max(b.abs() / root));
+    }
+    least
+}
+
+/// The sum over the entries b of each row of `of_entry(b^2, K_jj)`, the compliance of a row if its dofs stand alone.
+pub fn compliance_of_rows(problem: &ContactProblem, of_entry: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let mut compliance = vec![0.0; problem.rows()];
+    for (dof, &stiffness) in problem.diagonal().values.iter().enumerate() {
+        problem.contact().with_rows(dof, &mut compliance, |sum, b| {
+            if b != 0.0 {
+                *sum += of_entry(b * b, stiffness);
             }
-        }
-        couplings
+        });
     }
+    compliance
 }
 
 #[cfg(test)]
@@ -237,18 +235,18 @@ mod tests {
     #[test]
     fn a_row_with_gap_zero_on_a_dof_without_stiffness_has_the_length_of_the_row_that_joins_the_dof_to_another() {
         // The first row moves the second dof by 8 over 1/2, which moves the second row by three times as much.
-        assert_eq!(joined(0.0).coupled_lengths(vec![8.0, 1e-31, 1e-31]), [8.0, 48.0, 1e-31]);
+        assert_eq!(coupled_lengths(&joined(0.0), vec![8.0, 1e-31, 1e-31]), [8.0, 48.0, 1e-31]);
         // A row that is longer by itself stays as it is, and so does every row of a body with stiffness everywhere.
-        assert_eq!(joined(0.0).coupled_lengths(vec![8.0, 100.0, 0.0]), [8.0, 100.0, 0.0]);
+        assert_eq!(coupled_lengths(&joined(0.0), vec![8.0, 100.0, 0.0]), [8.0, 100.0, 0.0]);
         let stiff =
             ContactProblem::of_entries(&[(0, 0, 4.0), (1, 1, 1.0)], &[0.0; 2], &[(0, 0, 1.0), (1, 1, 1.0)], &[0.0; 2]);
-        assert_eq!(stiff.coupled_lengths(vec![8.0, 1e-31]), [8.0, 1e-31]);
+        assert_eq!(coupled_lengths(&stiff, vec![8.0, 1e-31]), [8.0, 1e-31]);
     }
 
     #[test]
     fn forces_on_a_dof_without_stiffness_and_load_have_the_scale_of_the_dof_that_a_row_joins_it_to() {
         // A force of 10 on the first dof is 5 along the row, and 5/2 on the second.
-        assert_eq!(joined(0.0).balanced_forces(vec![10.0, 1e-33]), [10.0, 2.5]);
-        assert_eq!(joined(1e-20).balanced_forces(vec![10.0, 1e-20]), [10.0, 1e-20]);
+        assert_eq!(balanced_forces(&joined(0.0), vec![10.0, 1e-33]), [10.0, 2.5]);
+        assert_eq!(balanced_forces(&joined(1e-20), vec![10.0, 1e-20]), [10.0, 1e-20]);
     }
 }

@@ -42,34 +42,37 @@ impl UnitExponents {
 }
 
 /// `2^length sqrt(2^stiffness) x`
-pub(super) fn ldexp_root(x: f64, stiffness: i32, length: i32) -> f64 {
+pub fn ldexp_root(x: f64, stiffness: i32, length: i32) -> f64 {
     let root = if stiffness % 2 == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
     ldexp(root * x, stiffness.div_euclid(2) + length)
 }
 
-impl ContactProblem {
-    /// The units in which an answer is of order one, if forces or energies would over- or underflow in its own units.
-    pub(super) fn far_units(&self, displacement: &[f64]) -> Option<UnitExponents> {
-        let stiffness = exponent(largest(&self.diagonal().values));
-        let (moved, load) = (largest(displacement), largest(&self.load));
-        let statics = exponent(load) - stiffness;
-        let length = match (moved > 0.0, load > 0.0) {
-            (true, true) => exponent(moved).max(statics + NOTHING),
-            (true, false) => exponent(moved),
-            (false, _) => statics,
-        };
-        let is_far = |power: i32| power.abs() > FAR;
-        // A force, of the power stiffness + length, is far only if the stiffness or an energy is.
-        let far = is_far(stiffness) || is_far(length) || is_far(stiffness + 2 * length);
-        far.then_some(UnitExponents { stiffness, length })
-    }
+/// The units in which an answer is of order one, if forces or energies would over- or underflow in its own units.
+pub fn far_units(problem: &ContactProblem, displacement: &[f64]) -> Option<UnitExponents> {
+    let stiffness = exponent(largest(&problem.diagonal().values));
+    let (moved, load) = (largest(displacement), largest(&problem.load));
+    let statics = exponent(load) - stiffness;
+    let length = match (moved > 0.0, load > 0.0) {
+        (true, true) => exponent(moved).max(statics + NOTHING),
+        (true, false) => exponent(moved),
+        (false, _) => statics,
+    };
+    let is_far = |power: i32| power.abs() > FAR;
+    // A force, of the power stiffness + length, is far only if the stiffness or an energy is.
+    let far = is_far(stiffness) || is_far(length) || is_far(stiffness + 2 * length);
+    far.then_some(UnitExponents { stiffness, length })
+}
 
-    pub(super) fn in_units(&self, units: &UnitExponents) -> Result<Self, Error> {
-        let lower = self.stiffness.lower();
-        let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();
-        let stiffness = SymmetricMatrix::from_lower(lower.with_values(values))?;
-        Self::computed(stiffness, units.force(&self.load), self.contact.clone(), units.displacement(&self.gap))
-    }
+pub fn in_units(problem: &ContactProblem, units: &UnitExponents) -> Result<ContactProblem, Error> {
+    let lower = problem.stiffness.lower();
+    let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();
+    let stiffness = SymmetricMatrix::from_lower(lower.with_values(values))?;
+    ContactProblem::computed(
+        stiffness,
+        units.force(&problem.load),
+        problem.contact.clone(),
+        units.displacement(&problem.gap),
+    )
 }
 
 #[cfg(test)]
@@ -79,6 +82,6 @@ mod tests {
     #[test]
     fn a_gap_that_is_1e20_in_other_units_stays_a_gap() {
         let problem = ContactProblem::of_entries(&[(0, 0, 1.0)], &[1.0], &[(0, 0, 1.0)], &[ldexp(1e20, 900)]);
-        assert_eq!(problem.in_units(&UnitExponents { stiffness: 0, length: 900 }).unwrap().gap(), [1e20]);
+        assert_eq!(in_units(&problem, &UnitExponents { stiffness: 0, length: 900 }).unwrap().gap(), [1e20]);
     }
 }

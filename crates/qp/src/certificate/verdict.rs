@@ -130,13 +130,6 @@ impl Certificate {
         whole
     }
 
-    /// The certificate for a displacement of these scales that has the same energy but for its rounding.
-    pub(super) fn rounded_by(mut self, of: &OfPart) -> Self {
-        self.energy_error += of.rounding();
-        self.part_error_bound = larger(self.part_error_bound, relative(self.energy_error, of.certain_norm()));
-        self
-    }
-
     /// The tolerance that is met without the excuse of rounding or, if none is, with it.
     fn reached_without_excuse(&self) -> f64 {
         match self.imbalance.max(self.penetration).max(self.open_force).max(self.part_error_bound) {

@@ -8,7 +8,7 @@ mod smooth;
 use super::method::mprgp::takes_travels;
 use super::problem::ContactProblem;
 use crate::error::Error;
-use crate::watch::Watch;
+use crate::linear::watch::Watch;
 use direct::{BodyFactor, Direct};
 pub(crate) use direct::{NEAR_CYCLES, starts_near};
 pub(crate) use smooth::Smooth;

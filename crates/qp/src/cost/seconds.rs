@@ -4,9 +4,9 @@
 use std::hint::black_box;
 
 use crate::linear::selected_inverse::FACTORISATIONS;
+use crate::linear::watch::Watch;
 use crate::linear::{Analysis, SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
-use crate::watch::Watch;
 
 /// Seconds of a factorisation for a multiplication, and for a value of the factor. A multiplication takes what the
 /// products of large matrices take on one processor; the rest of a measured time is that of the values.

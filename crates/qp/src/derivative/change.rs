@@ -1,7 +1,7 @@
 //! Changes of the data, and what follows from them.
 
-use crate::error::Error;
-use crate::linear::{SparseMatrix, SymmetricMatrix, check_vector, dot};
+use crate::error::{Error, LinearError};
+use crate::linear::{SparseMatrix, SymmetricMatrix, check_finite, dot};
 use crate::problem::ContactProblem;
 
 /// A change of the data per unit of a parameter p, as it acts on an answer (u, lambda): out of balance by `load`, and
@@ -31,14 +31,14 @@ impl Change {
     /// length.
     ///
     /// # Errors
-    /// [`Error::Shape`] and [`Error::Length`] for numbers that do not fit.
+    /// [`LinearError::Shape`] and [`LinearError::Length`] for numbers that do not fit.
     pub fn with_stiffness(mut self, change: &SymmetricMatrix, displacement: &[f64]) -> Result<Self, Error> {
         let dofs = self.load.len();
         if change.dim() != dofs {
             let (found, expected) = ((change.dim(), change.dim()), (dofs, dofs));
-            return Err(Error::Shape { name: "change of the stiffness", found, expected });
+            return Err(LinearError::Shape { name: "change of the stiffness", found, expected }.into());
         }
-        Error::check_length("displacement", displacement.len(), dofs, "dofs")?;
+        LinearError::check_length("displacement", displacement.len(), dofs, "dofs")?;
         self.load.iter_mut().zip(change.mul(displacement)).for_each(|(load, force)| *load -= force);
         Ok(self)
     }
@@ -47,15 +47,15 @@ impl Change {
     /// multiplier lambda (in force, `<= 0`) of the answer; equality rows follow those of B.
     ///
     /// # Errors
-    /// [`Error::Shape`] and [`Error::Length`] for numbers that do not fit.
+    /// [`LinearError::Shape`] and [`LinearError::Length`] for numbers that do not fit.
     pub fn with_rows(mut self, change: &SparseMatrix, displacement: &[f64], multiplier: &[f64]) -> Result<Self, Error> {
         let expected = (self.distance.len(), self.load.len());
         let found = (change.rows(), change.columns());
         if found != expected {
-            return Err(Error::Shape { name: "change of the rows", found, expected });
+            return Err(LinearError::Shape { name: "change of the rows", found, expected }.into());
         }
-        Error::check_length("displacement", displacement.len(), expected.1, "dofs")?;
-        Error::check_length("multiplier", multiplier.len(), expected.0, "contact and equality rows")?;
+        LinearError::check_length("displacement", displacement.len(), expected.1, "dofs")?;
+        LinearError::check_length("multiplier", multiplier.len(), expected.0, "contact and equality rows")?;
         self.load.iter_mut().zip(change.mul_transposed(multiplier)).for_each(|(load, force)| *load += force);
         self.distance.iter_mut().zip(change.mul(displacement)).for_each(|(distance, moved)| *distance -= moved);
         Ok(self)
@@ -67,15 +67,9 @@ impl Change {
         Change { load: times(&self.load), distance: times(&self.distance) }
     }
 
-    pub(super) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
-        check_vector("change of the load", &self.load, (dofs, "dofs"), f64::is_finite, "finite")?;
-        check_vector(
-            "change of the gaps",
-            &self.distance,
-            (rows, "contact and equality rows"),
-            f64::is_finite,
-            "finite",
-        )
+    pub(super) fn check(&self, dofs: usize, rows: usize) -> Result<(), LinearError> {
+        check_finite("change of the load", &self.load, (dofs, "dofs"))?;
+        check_finite("change of the gaps", &self.distance, (rows, "contact and equality rows"))
     }
 }
 
@@ -141,9 +135,9 @@ impl Adjoint {
     /// diagonal stands for both of its places.
     ///
     /// # Errors
-    /// [`Error::Length`] for a problem of another size.
+    /// [`LinearError::Length`] for a problem of another size.
     pub fn of_stiffness(&self, problem: &ContactProblem) -> Result<SparseMatrix, Error> {
-        Error::check_length("adjoint", self.displacement.len(), problem.dofs(), "dofs")?;
+        LinearError::check_length("adjoint", self.displacement.len(), problem.dofs(), "dofs")?;
         let ([u, _], w) = (&self.answer, &self.displacement);
         let lower = problem.stiffness().lower();
         let of = |(i, j, _): (usize, usize, f64)| {
@@ -155,9 +149,9 @@ impl Adjoint {
     /// The derivatives with respect to the entries of the rows B (m x n), on their pattern.
     ///
     /// # Errors
-    /// [`Error::Length`] for a problem of another size.
+    /// [`LinearError::Length`] for a problem of another size.
     pub fn of_rows(&self, problem: &ContactProblem) -> Result<SparseMatrix, Error> {
-        Error::check_length("adjoint", self.displacement.len(), problem.dofs(), "dofs")?;
+        LinearError::check_length("adjoint", self.displacement.len(), problem.dofs(), "dofs")?;
         let (contact, _) = problem.inequalities_given();
         let ([u, lambda], w, nu) = (&self.answer, &self.displacement, &self.multiplier);
         let of = |(row, dof, _): (usize, usize, f64)| lambda[row] * w[dof] + nu[row] * u[dof];

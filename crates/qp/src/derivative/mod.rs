@@ -22,7 +22,6 @@
 //! J. Z. Kolter, *OptNet: differentiable optimization as a layer in neural networks*, ICML (2017), for the adjoint.
 
 mod change;
-mod held;
 mod verdict;
 
 pub use change::{Adjoint, Change, Tangent};
@@ -32,9 +31,11 @@ use std::sync::Arc;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+use crate::certificate::{Bounding, Examination};
 use crate::engine::{Engine, Factored};
 use crate::error::Error;
-use crate::linear::{check_vector, largest};
+use crate::linear::watch::Watch;
+use crate::linear::{check_finite, largest};
 use crate::method::Start;
 use crate::plan::WithFactor;
 use crate::prepared::Prepared;
@@ -42,7 +43,6 @@ use crate::problem::ContactProblem;
 use crate::run::solved;
 use crate::settings::{Method, Settings};
 use crate::solution::{ContactSet, Solution};
-use crate::watch::Watch;
 use verdict::{RowStates, rows_of};
 
 /// A derivative together with the verdict of the proven rows: whether the exact answer is smooth there.
@@ -173,36 +173,26 @@ pub struct Derivatives {
     problem: ContactProblem,
     engine: Arc<dyn Engine>,
     settings: Settings,
-    /// The displacement u of the answer, length n.
-    displacement: Vec<f64>,
-    /// The multipliers of all rows of the problem.
-    multiplier: Vec<f64>,
-    rows: RowStates,
+    /// The displacement u of the answer, length n, and its multipliers, of the rows of B and of the equality rows.
+    answer: [Vec<f64>; 2],
+    /// The rows of the exact answer, or why nothing is known.
+    rows: Result<RowStates, &'static str>,
 }
 
 impl Derivatives {
     /// The rows that are proven, or known exactly, to press; `None` if nothing is known.
     pub fn closed(&self) -> Option<ContactSet> {
-        let closed = match &self.rows {
-            RowStates::Smooth { closed } | RowStates::Kink { closed, .. } | RowStates::Undecided { closed, .. } => {
-                closed
-            }
-            RowStates::Unknown { .. } => return None,
-        };
-        Some(self.problem.of_inequalities(closed))
+        self.rows.as_ref().ok().map(|rows| self.problem.of_inequalities(&rows.closed))
     }
 
     /// The rows that are at a kink, or undecided, from 0; empty if every row is decided, or nothing is known.
     pub fn at_kink(&self) -> &[usize] {
-        match &self.rows {
-            RowStates::Kink { weak: rows, .. } | RowStates::Undecided { undecided: rows, .. } => rows,
-            RowStates::Smooth { .. } | RowStates::Unknown { .. } => &[],
-        }
+        self.rows.as_ref().map_or(&[], |rows| &rows.weak)
     }
 
     /// The reason, in words, if nothing is known about the rows.
     pub fn why_unknown(&self) -> Option<&str> {
-        if let RowStates::Unknown { why } = &self.rows { Some(why) } else { None }
+        self.rows.as_ref().err().copied()
     }
 
     /// The same under a watch that can stop the solves of its derivatives.
@@ -216,33 +206,21 @@ impl Derivatives {
     /// [`tangent`](Self::tangent) tells them apart.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit; [`Error::Numerical`] and
+    /// [`LinearError::Length`] and [`LinearError::NotFinite`] for vectors that do not fit; [`LinearError::Numerical`] and
     /// [`Error::Interrupted`] of the solve.
     pub fn adjoint(&self, by_displacement: &[f64], by_multiplier: &[f64]) -> Result<Derivative<Adjoint>, Error> {
         let (problem, rows) = (&self.problem, self.given_rows());
-        check_vector(
-            "derivative by displacement",
-            by_displacement,
-            (problem.dofs(), "dofs"),
-            f64::is_finite,
-            "finite",
-        )?;
-        check_vector(
-            "derivative by multiplier",
-            by_multiplier,
-            (rows, "contact and equality rows"),
-            f64::is_finite,
-            "finite",
-        )?;
+        check_finite("derivative by displacement", by_displacement, (problem.dofs(), "dofs"))?;
+        check_finite("derivative by multiplier", by_multiplier, (rows, "contact and equality rows"))?;
         let distances: Vec<f64> = self.on_first_rows(by_multiplier).iter().map(|value| 0.0 - value).collect();
         let of = |closed: &ContactSet| {
             let found = self.held(closed, by_displacement, &distances)?;
-            Ok(found.map(|held| Adjoint {
-                displacement: held.displacement,
-                multiplier: problem.split(held.multiplier).concat(),
-                answer: [self.displacement.clone(), problem.split(self.multiplier.clone()).concat()],
+            Ok(found.map(|Tangent { displacement, multiplier, error }| Adjoint {
+                displacement,
+                multiplier,
+                answer: self.answer.clone(),
                 inequalities: problem.inequalities(),
-                error: held.error,
+                error,
             }))
         };
         self.by_linear_system(of)
@@ -255,72 +233,50 @@ impl Derivatives {
     pub fn tangent(&self, change: &Change) -> Result<Derivative<Tangent>, Error> {
         change.check(self.problem.dofs(), self.given_rows())?;
         let distances = self.on_first_rows(&change.distance);
-        let of = |closed: &ContactSet| {
-            let found = self.held(closed, &change.load, &distances)?;
-            Ok(found.map(|held| Tangent {
-                displacement: held.displacement,
-                multiplier: self.problem.split(held.multiplier).concat(),
-                error: held.error,
-            }))
-        };
-        match &self.rows {
-            RowStates::Kink { closed, weak } => {
-                let side = |sign: f64| self.one_sided(closed, weak, &change.times(sign));
-                match (side(-1.0)?, side(1.0)?) {
-                    (Some(left), Some(right)) => Ok(Derivative::OneSided { left: left.times(-1.0), right }),
-                    _ => self.between(closed, weak, of),
-                }
+        if let Ok(rows) = &self.rows
+            && rows.is_kink
+        {
+            let side = |sign: f64| self.one_sided(rows, &change.times(sign));
+            if let (Some(left), Some(right)) = (side(-1.0)?, side(1.0)?) {
+                return Ok(Derivative::OneSided { left: left.times(-1.0), right });
             }
-            _ => self.by_linear_system(of),
         }
+        self.by_linear_system(|closed| self.held(closed, &change.load, &distances))
     }
 
-    /// What one linear system gives: at a kink, and for undecided rows, on the pieces on both sides.
+    /// What one linear system gives: at a kink, and for undecided rows, with all of them open, and with all closed.
     fn by_linear_system<T>(
         &self,
         of: impl Fn(&ContactSet) -> Result<Option<T>, Error>,
     ) -> Result<Derivative<T>, Error> {
-        match &self.rows {
-            RowStates::Smooth { closed } => Ok(match of(closed)? {
-                Some(found) => Derivative::Proven(found),
-                None => Derivative::Unknown { why: NOT_HELD.to_string() },
-            }),
-            RowStates::Kink { closed, weak: rows } | RowStates::Undecided { closed, undecided: rows } => {
-                self.between(closed, rows, of)
-            }
-            RowStates::Unknown { why } => Ok(Derivative::Unknown { why: why.clone() }),
-        }
-    }
-
-    /// The pieces with all of `rows` open, and with all of them closed.
-    fn between<T>(
-        &self,
-        closed: &ContactSet,
-        rows: &[usize],
-        of: impl Fn(&ContactSet) -> Result<Option<T>, Error>,
-    ) -> Result<Derivative<T>, Error> {
+        let RowStates { closed, weak, .. } = match &self.rows {
+            Ok(rows) => rows,
+            Err(why) => return Ok(Derivative::Unknown { why: why.to_string() }),
+        };
         let mut all = closed.clone();
-        rows.iter().for_each(|&row| all.insert(row));
-        let between: Vec<T> = [of(closed)?, of(&all)?].into_iter().flatten().collect();
-        Ok(match between.is_empty() {
-            true => Derivative::Unknown { why: NOT_HELD.to_string() },
-            false => Derivative::Undecided { between, rows: rows.to_vec() },
+        weak.iter().for_each(|&row| all.insert(row));
+        let sets = if weak.is_empty() { vec![closed] } else { vec![closed, &all] };
+        let mut found = sets.into_iter().filter_map(|set| of(set).transpose()).collect::<Result<Vec<T>, Error>>()?;
+        Ok(match found.pop() {
+            None => Derivative::Unknown { why: NOT_HELD.to_string() },
+            Some(only) if weak.is_empty() => Derivative::Proven(only),
+            Some(last) => {
+                found.push(last);
+                Derivative::Undecided { between: found, rows: weak.clone() }
+            }
         })
     }
 
     /// The tangent for a growing parameter at a kink: a contact problem of the weak rows, with the pressing rows held.
     /// `None` if its set is not confirmed.
-    fn one_sided(&self, closed: &ContactSet, weak: &[usize], change: &Change) -> Result<Option<Tangent>, Error> {
-        let problem = &self.problem;
+    fn one_sided(&self, rows: &RowStates, change: &Change) -> Result<Option<Tangent>, Error> {
+        let (problem, RowStates { closed, weak, .. }) = (&self.problem, rows);
         let distances = self.on_first_rows(&change.distance);
         let pick = |rows: &[usize]| rows.iter().map(|&row| distances[row]).collect::<Vec<f64>>();
         let held: Vec<usize> = closed.iter().collect();
         let contact = problem.contact().select_rows(weak);
-        let mut small =
-            ContactProblem::computed(problem.stiffness().clone(), change.load.clone(), contact, pick(weak))?;
-        if let Some(near_null) = problem.near_null() {
-            small = small.with_near_null(near_null.clone())?;
-        }
+        let small = ContactProblem::computed(problem.stiffness().clone(), change.load.clone(), contact, pick(weak))?;
+        let small = small.with_near_null_of(problem, <[f64]>::to_vec)?;
         let small = small.with_all_equalities(&problem.contact().select_rows(&held), pick(&held))?;
         let Settings { watch, memory, threads, .. } = self.settings.clone();
         let settings = Settings { watch, memory, threads, ..Settings::default() };
@@ -335,9 +291,61 @@ impl Derivatives {
             true => exact.multiplier[row] <= SIGN_TOLERANCE * forces,
             false => moved[row] - distances[row] <= SIGN_TOLERANCE * lengths,
         };
-        let multiplier = problem.split(exact.multiplier.clone()).concat();
-        let tangent = Tangent { displacement: exact.displacement.clone(), multiplier, error: exact.error };
-        Ok(weak.iter().all(is_met).then_some(tangent))
+        Ok(weak.iter().all(is_met).then_some(exact))
+    }
+
+    /// `K x - B_C' y = force`, `B_C x = distances` on the rows of `closed`: with a factor, corrected by residuals in
+    /// twice the precision. `None` if the rows do not hold the body, or follow from each other.
+    fn held(&self, closed: &ContactSet, force: &[f64], distances: &[f64]) -> Result<Option<Tangent>, Error> {
+        let watch = &self.settings.watch;
+        let is_exact = self.engine.hierarchy().is_none();
+        // Open rows have no part in the system; their distances only must fit the pattern of infinite gaps.
+        let distance = |row: usize| if closed.contains(row) { distances[row] } else { 0.0 };
+        let gap: Vec<f64> = (0..self.problem.rows()).map(distance).collect();
+        let linear = self.problem.with(force.to_vec(), gap)?;
+        let Some([mut x, mut y]) = self.engine.held(closed, linear.load(), linear.gap(), watch)? else {
+            return Ok(None);
+        };
+        let mut error = f64::INFINITY;
+        for _ in 0..if is_exact { MOST_CORRECTIONS } else { 0 } {
+            if watch.is_over() {
+                return Err(Error::Interrupted);
+            }
+            let rest = linear.accurate_residual(&x, &y);
+            let missing: Vec<f64> = linear.accurate_violation(&x).iter().map(|violation| -violation).collect();
+            let Some([dx, dy]) = self.engine.held(closed, &rest, &missing, watch)? else { return Ok(None) };
+            let step = relative(&dx, &x).max(relative(&dy, &y));
+            if step > 0.5 * error {
+                break;
+            }
+            x.iter_mut().zip(dx).for_each(|(x, dx)| *x += dx);
+            y.iter_mut().zip(dy).for_each(|(y, dy)| *y += dy);
+            error = step;
+            if step <= ENOUGH {
+                break;
+            }
+        }
+        if !is_exact {
+            error = self.bound_of(closed, force, distances, [&x, &y])?;
+        }
+        Ok(Some(Tangent { displacement: x, multiplier: self.problem.split(y).concat(), error }))
+    }
+
+    /// The relative bound on the error in the energy norm by the hierarchy.
+    fn bound_of(
+        &self,
+        closed: &ContactSet,
+        force: &[f64],
+        distances: &[f64],
+        [x, y]: [&[f64]; 2],
+    ) -> Result<f64, Error> {
+        let rows: Vec<usize> = closed.iter().collect();
+        let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
+        let linear = self.problem.without_rows()?.with_load(force.to_vec())?;
+        let linear = linear.with_all_equalities(&self.problem.contact().select_rows(&rows), pick(distances))?;
+        let by: Bounding = self.engine.bounding(&self.settings.watch);
+        let examined = Examination::of(&linear, [x, &pick(y)], &by)?.certificate()?;
+        Ok(examined.certificate.energy_error_bound)
     }
 
     /// Number of rows as they were given: those of B and the equality rows.
@@ -354,6 +362,17 @@ impl Derivatives {
     }
 }
 
+fn relative(step: &[f64], of: &[f64]) -> f64 {
+    let (step, size) = (largest(step), largest(of));
+    if step == 0.0 { 0.0 } else { step / size }
+}
+
+/// Corrections of a solution by its own residual, at most.
+const MOST_CORRECTIONS: usize = 8;
+
+/// A correction below this, relative, is the last: the next one would be about its square.
+const ENOUGH: f64 = 1e-9;
+
 /// Signs that are wrong by less than this, relative to the largest force or length, are rounding.
 const SIGN_TOLERANCE: f64 = 1e-10;
 
@@ -365,34 +384,24 @@ impl Prepared {
     /// prepared or of [`with_gap`](Self::with_gap). If the answer brings no proof of its rows, they are proven here.
     ///
     /// # Errors
-    /// [`Error::Length`] for an answer that does not fit, and those of the proof.
+    /// [`LinearError::Length`] for an answer that does not fit, and those of the proof.
     pub fn derivatives(&self, solution: &Solution) -> Result<Derivatives, Error> {
         let (problem, settings) = (&self.problem, self.settings.started()?);
         let engine: Arc<dyn Engine> = match &self.bench {
             Some(bench) => bench.engine.clone(),
             None => Arc::new(Factored::new(problem, &WithFactor::BY_RULES, &settings)?),
         };
-        let rows = rows_of(problem, engine.as_ref(), solution, &settings.watch)?;
         let given = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
-        Ok(Derivatives {
-            problem: problem.clone(),
-            engine,
-            settings,
-            displacement: solution.displacement.clone(),
-            multiplier: problem.of_all_rows(&given).into_owned(),
-            rows,
-        })
+        let (displacement, multiplier) = (solution.displacement.clone(), problem.of_all_rows(&given).into_owned());
+        let rows = rows_of(problem, engine.as_ref(), solution, [&displacement, &multiplier], &settings.watch)?;
+        let answer = [displacement, problem.split(multiplier).concat()];
+        Ok(Derivatives { problem: problem.clone(), engine, settings, answer, rows })
     }
 }
 
-impl ContactProblem {
-    /// The derivatives of an answer of this problem, with a factor or a hierarchy of their own.
-    ///
-    /// # Errors
-    /// As [`Prepared::new`] and [`Prepared::derivatives`].
-    pub fn derivatives(&self, solution: &Solution, settings: &Settings) -> Result<Derivatives, Error> {
-        // A derivative takes the method of its answer.
-        let method = if solution.method.starts_with("mprgp") { Method::Mprgp } else { Method::ActiveSet };
-        Prepared::new(self, &settings.clone().by(method))?.derivatives(solution)
-    }
+/// The derivatives of an answer of `problem`, with a factor or a hierarchy of their own.
+pub fn derivatives(problem: &ContactProblem, solution: &Solution, settings: &Settings) -> Result<Derivatives, Error> {
+    // A derivative takes the method of its answer.
+    let method = if solution.method.starts_with("mprgp") { Method::Mprgp } else { Method::ActiveSet };
+    Prepared::new(problem, &settings.clone().by(method))?.derivatives(solution)
 }

@@ -1,12 +1,12 @@
 //! The rows of an exact answer: pressing, with a gap, or neither.
 
-use crate::certificate::{Bounding, WithEvidence};
+use crate::certificate::{Bounding, Examination, norm_on_equalities};
 use crate::engine::Engine;
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::linear::{Dependence, ExactSum, largest};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet, Solution};
-use crate::watch::Watch;
 
 /// Corrections on the way to an answer that is exact in doubles.
 const MOST_CORRECTIONS: usize = 4;
@@ -17,62 +17,53 @@ const NEARLY: f64 = 1e-25;
 /// Values of an answer that may be a zero, relative to the largest. Whether they are is decided exactly.
 const DUST: f64 = 1e-20;
 
-/// What is known about the rows of the exact answer. Sets are those of all rows of the problem, one row of each
-/// equality included.
+/// The rows of the exact answer. Sets are those of all rows of the problem, one row of each equality included.
 #[derive(Clone, Debug)]
-pub(super) enum RowStates {
-    /// The rows of `closed` press, and all others have a gap.
-    Smooth { closed: ContactSet },
-    /// The rows of `closed` press, gap and force of the `weak` ones are exactly zero, and all others have a gap; closed
-    /// and weak rows are independent.
-    Kink { closed: ContactSet, weak: Vec<usize> },
-    /// The rows of `closed` press; the `undecided` ones may be open or closed.
-    Undecided { closed: ContactSet, undecided: Vec<usize> },
-    /// Nothing is known about the rows.
-    Unknown { why: String },
+pub(super) struct RowStates {
+    /// The rows that press.
+    pub closed: ContactSet,
+    /// The rows that may be open or closed; all others that do not press have a gap.
+    pub weak: Vec<usize>,
+    /// `true` if gap and force of the weak rows are exactly zero; closed and weak rows are then independent.
+    pub is_kink: bool,
 }
 
-/// The rows of the exact answer of `problem`, of which `solution` is the answer in doubles.
+/// The rows of the exact answer of `problem`, of which `solution` is the answer in doubles, with these multipliers of
+/// all rows; or why nothing is known.
 pub(super) fn rows_of(
     problem: &ContactProblem,
     engine: &dyn Engine,
     solution: &Solution,
+    answer: [&Vec<f64>; 2],
     watch: &Watch,
-) -> Result<RowStates, Error> {
-    let given = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
-    let multiplier = problem.of_all_rows(&given).into_owned();
-    let displacement = solution.displacement.clone();
-    problem.check_answer(&displacement, &multiplier)?;
+) -> Result<Result<RowStates, &'static str>, Error> {
+    problem.check_answer(answer[0], answer[1])?;
     let proven = match &solution.proven {
         Some(proven) => Some(proven.clone()),
-        None => proven_here(problem, engine, [&displacement, &multiplier], watch)?,
+        None => proven_here(problem, engine, answer.map(Vec::as_slice), watch)?,
     };
     let Some(ProvenSet { open, closed }) = proven else {
-        let why = match problem.has_free_mode() {
+        return Ok(Err(match problem.has_free_mode() {
             true => "contact alone holds the body: no row is proven",
             false => "no bound on the error of the answer is known: no row is proven",
-        };
-        return Ok(RowStates::Unknown { why: why.to_string() });
+        }));
     };
-    let of_rows = |row: &usize| !open.contains(*row) && !closed.contains(*row);
-    let undecided: Vec<usize> = (0..problem.inequalities()).filter(of_rows).collect();
+    let is_undecided = |row: &usize| !open.contains(*row) && !closed.contains(*row);
+    let weak: Vec<usize> = (0..problem.inequalities()).filter(is_undecided).collect();
     let closed = problem.with_equality_rows(&closed);
-    if undecided.is_empty() {
-        return Ok(RowStates::Smooth { closed });
+    if weak.is_empty() {
+        return Ok(Ok(RowStates { closed, weak, is_kink: false }));
     }
-    let start = [displacement, multiplier];
     let sets = [problem.with_equality_rows(&solution.contact_set), closed.clone()];
-    let exact = sets.iter().find_map(|set| exact_answer(problem, engine, set, &start, watch));
+    let exact = sets.iter().find_map(|set| exact_answer(problem, engine, set, answer, watch));
     let exact = exact.filter(|(closed, weak)| {
         let active: Vec<usize> = closed.iter().chain(weak.iter().copied()).collect();
         let found = Dependence::of(problem.contact(), &active, || watch.is_over());
         found.is_some_and(|found| found.independent.iter().all(|&is_independent| is_independent))
     });
-    Ok(match exact {
-        Some((closed, weak)) if weak.is_empty() => RowStates::Smooth { closed },
-        Some((closed, weak)) => RowStates::Kink { closed, weak },
-        None => RowStates::Undecided { closed, undecided },
-    })
+    let is_kink = exact.as_ref().is_some_and(|(_, weak)| !weak.is_empty());
+    let (closed, weak) = exact.unwrap_or((closed, weak));
+    Ok(Ok(RowStates { closed, weak, is_kink }))
 }
 
 /// The proof by the data of the engine, or by a factor of the certificate.
@@ -82,20 +73,23 @@ fn proven_here(
     [displacement, multiplier]: [&[f64]; 2],
     watch: &Watch,
 ) -> Result<Option<ProvenSet>, Error> {
-    let answer = || WithEvidence { displacement, multiplier, evidence: None };
+    let answer = [displacement, multiplier];
     // Travels have no bound by the data of an engine.
     if engine.hierarchy().is_none() && !problem.without_stiffness().is_empty() {
-        return problem.prove_alone(answer());
+        return Examination::of(problem, answer, &Bounding::OwnFactor)?.proof(None);
     }
     let by = engine.bounding(watch);
     let (two_sided, of_rows) = problem.two_sided(multiplier);
-    let evidence = two_sided.examine(&by, displacement, &of_rows)?.evidence;
-    match problem.prove_by(&by, WithEvidence { evidence, ..answer() }) {
-        Some(proven) => Ok(Some(proven)),
-        None if engine.hierarchy().is_some() => Ok(None),
-        // Equalities may hold what the stiffness does not.
-        None => Ok(problem.norm_on_equalities()?.and_then(|norm| problem.prove_by(&Bounding::Factor(norm), answer()))),
+    let evidence = Examination::of(&two_sided, [displacement, &of_rows], &by)?.certificate()?.evidence;
+    // Without a norm at hand there is no factor of the stiffness alone.
+    let by_engine = !matches!(by, Bounding::OwnFactor);
+    let proven = if by_engine { Examination::of(problem, answer, &by)?.proof(evidence)? } else { None };
+    if proven.is_some() || engine.hierarchy().is_some() {
+        return Ok(proven);
     }
+    // Equalities may hold what the stiffness does not.
+    let Some(norm) = norm_on_equalities(problem)? else { return Ok(None) };
+    Examination::of(problem, answer, &Bounding::Factor(norm))?.proof(None)
 }
 
 /// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: every force is in
@@ -105,7 +99,7 @@ fn exact_answer(
     problem: &ContactProblem,
     engine: &dyn Engine,
     set: &ContactSet,
-    [displacement, multiplier]: &[Vec<f64>; 2],
+    [displacement, multiplier]: [&Vec<f64>; 2],
     watch: &Watch,
 ) -> Option<(ContactSet, Vec<usize>)> {
     if engine.hierarchy().is_some() {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::factored::{Factored, Reduced};
 use super::interface::{Body, Expansion, OnBoundary, Task, Walk};
-use crate::certificate::Bounding;
+use crate::certificate::{Bounding, Examination};
 use crate::error::Error;
 use crate::linear::ldexp;
 use crate::method::parametric::ParametricLcp;
@@ -53,7 +53,8 @@ impl Factored {
         let Some(found) = self.find(task)? else { return Ok(None) };
         let Reduced { problem, outcome, .. } = &found;
         let by = if is_bounded { self.condensed_bounding(problem, &settings.watch) } else { Bounding::Nothing };
-        let certificate = problem.examine(&by, &outcome.displacement, &outcome.multiplier)?.certificate;
+        let answer = [&*outcome.displacement, &outcome.multiplier];
+        let certificate = Examination::of(problem, answer, &by)?.certificate()?.certificate;
         let is_met = match is_bounded {
             true => settings.goal().is_met_by(&certificate),
             false => certificate.conditions_hold(settings.goal().tolerance),

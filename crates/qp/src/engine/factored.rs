@@ -6,9 +6,10 @@ use super::interface::{Engine, Found, OnBoundary, Task, Walk};
 use super::loading::{Load, Loading};
 use super::reduction::{Norm, Reduction};
 use super::step::ScaledStep;
-use crate::certificate::{Bounding, EnergyNorm};
+use crate::certificate::{Bounding, EnergyNorm, Examination, repaired};
 use crate::cost::{bytes, check_time, seconds};
-use crate::error::Error;
+use crate::error::{Error, LinearError};
+use crate::linear::watch::Watch;
 use crate::linear::{Augmented, Equilibration, dot, ldexp};
 use crate::method::{Ending, Outcome, ScaledProblem, active_set};
 use crate::plan::{Means, Step, Tried};
@@ -16,7 +17,6 @@ use crate::problem::ContactProblem;
 use crate::settings::ByFactor;
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::transform::Condensation;
-use crate::watch::Watch;
 
 /// Factorisations for one step of a loop if K is not definite by itself.
 const SINGULAR: f64 = 3.0;
@@ -190,7 +190,7 @@ impl Factored {
         let start = task.start.contact_set.as_ref().map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let by = self.condensed_bounding(&problem, &settings.watch);
-            let examined = problem.examine(&by, displacement, multiplier);
+            let examined = Examination::of(&problem, [displacement, multiplier], &by).and_then(|of| of.certificate());
             let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
             let of_whole = self.share_of_boundary(&loading, unit, on_boundary);
             examined.map_or(f64::INFINITY, |examined| examined.certificate.energy_error_bound * of_whole)
@@ -255,7 +255,7 @@ impl Factored {
             Norm::Kept(norm) => norm.watched(&task.settings.watch.finishing()),
             _ => return None,
         };
-        let (displacement, multiplier) = task.problem.repaired(&norm, &best.displacement, &best.multiplier)?;
+        let (displacement, multiplier) = repaired(task.problem, &norm, &best.displacement, &best.multiplier)?;
         let contact_set = multiplier.iter().map(|&force| force < 0.0).collect();
         let at_rest = Outcome::at_rest(task.problem, Ending::Settled);
         Some(Found { outcome: Outcome { displacement, multiplier, contact_set, ..at_rest }, factor_seconds: 0.0 })
@@ -334,7 +334,8 @@ impl Factored {
             None => Ok(()),
             Some(row) => {
                 let allowed = "infinite in the same rows as when the problem was prepared";
-                Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value: gap[row], allowed })
+                Err(LinearError::NotFinite { name: "gap vector", at: format!("entry {row}"), value: gap[row], allowed }
+                    .into())
             }
         }
     }

@@ -7,13 +7,13 @@ use super::loading::Load;
 use crate::certificate::Bounding;
 use crate::error::Error;
 use crate::linear::multigrid::Multigrid;
+use crate::linear::watch::Watch;
 use crate::method::parametric::{Event, Piece};
 use crate::method::{Outcome, Start};
 use crate::plan::{Limits, Means, Step, Tried};
 use crate::problem::ContactProblem;
 use crate::settings::{ByFactor, Settings};
 use crate::solution::{Certificate, ContactSet, Seconds, Solution};
-use crate::watch::Watch;
 
 /// A step that an engine is to make.
 pub(crate) struct Task<'a> {

@@ -8,13 +8,13 @@ use crate::cost::{Kept, NEAR_CYCLES, bytes, check_memory, check_time, seconds};
 use crate::error::Error;
 use crate::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::linear::threads_of_machine;
+use crate::linear::watch::Watch;
 use crate::method::Start;
 use crate::method::mprgp::{Limits, Mprgp, takes_travels};
 use crate::plan::{Means, Tried};
 use crate::problem::ContactProblem;
 use crate::settings::{ByFactor, Method, Settings};
 use crate::solution::{ContactSet, Seconds};
-use crate::watch::Watch;
 
 /// With fewer dofs a second thread costs about what it saves.
 const WORTH_THREADS: usize = 50_000;

@@ -4,11 +4,9 @@
 //! along the rows that stop it, one after the other. So rows that are parallel except for their last bits leave exactly
 //! the directions that these doubles leave.
 
-use crate::error::Error;
 use crate::linear::{SparseMatrix, SymmetricMatrix, Twice, exponent, largest, ldexp};
+use crate::method::dual_active_set::dual_active_set;
 use crate::problem::ContactProblem;
-use crate::settings::Settings;
-use crate::solution::Solution;
 
 /// If a point of a cone is nearer to its tip than this share of c, it is the tip.
 const TIP: f64 = 1e-8;
@@ -21,9 +19,6 @@ const SOLVE_ROUNDING: f64 = 1e-10;
 
 /// Number of times that a vector is made orthogonal to others: the second removes the rounding of the first.
 const TURNS: usize = 2;
-
-/// Solves another problem that a question gives rise to.
-pub(crate) type Solve = fn(&ContactProblem, &Settings) -> Result<Solution, Error>;
 
 /// A linear function of the coordinates.
 #[derive(Clone, Debug)]
@@ -47,7 +42,6 @@ pub(super) struct Cone<'a> {
     pub rounding: f64,
     /// `false` if the rows themselves are rounded: then the point slides along all rows that it is close to in doubles.
     pub is_exact: bool,
-    pub solve: Solve,
 }
 
 impl Cone<'_> {
@@ -92,8 +86,7 @@ impl Cone<'_> {
         if dofs == 0 || !(size > 0.0 && size.is_finite()) {
             return None;
         }
-        let diagonal: Vec<(usize, usize, f64)> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
-        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal).ok()?).ok()?;
+        let stiffness = SymmetricMatrix::of_diagonal(vec![1.0; dofs]);
         let (mut entries, mut room) = (Vec::new(), Vec::new());
         for row in self.rows.iter().copied().chain(self.fixed).filter(|row| !row.is_zero()) {
             let values: Vec<f64> = row.values.iter().map(|value| value.rounded()).collect();
@@ -106,11 +99,7 @@ impl Cone<'_> {
         let contact = SparseMatrix::from_triplets(room.len(), dofs, &entries).ok()?;
         let load = c.iter().map(|value| value / size).collect();
         let problem = ContactProblem::computed(stiffness, load, contact, room).ok()?;
-        let nearest = match (self.solve)(&problem, &Settings::default()) {
-            Ok(solution) => solution.displacement,
-            Err(Error::NotCertified { solution, .. }) => solution.displacement,
-            Err(_) => return None,
-        };
+        let nearest = dual_active_set(&problem, true).ok()?.displacement;
         let distance = largest(&nearest);
         let kept = |value: &f64| if value.abs() > SOLVE_ROUNDING * distance { *value } else { 0.0 };
         (distance > TIP).then(|| nearest.iter().map(kept).collect())
@@ -160,7 +149,6 @@ fn size(vector: &[Twice]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve;
 
     fn row<const N: usize>(values: [f64; N]) -> Row {
         Row { values: values.map(Twice::from).to_vec(), terms: values.iter().map(|value| value.abs()).sum() }
@@ -170,7 +158,7 @@ mod tests {
     fn rows_that_differ_by_a_billionth_leave_a_point_between_them_if_they_are_exact() {
         // x <= 0 and x + 1e-9 y <= 0: nearest to (1, -1) is (0, -1), which the second row lets move by 1e-9.
         let rows = [row([1.0, 0.0]), row([1.0, 1e-9])];
-        let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-28, is_exact: true, solve };
+        let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-28, is_exact: true };
         let nearest: Vec<f64> = cone.nearest(&[1.0, -1.0]).unwrap().into_iter().map(Twice::rounded).collect();
         // The distance of the point has the precision of a solve in doubles; its place on the first row is exact.
         assert!(nearest[0] == 0.0 && (nearest[1] + 1.0).abs() < TIP, "{nearest:?}");
@@ -184,7 +172,7 @@ mod tests {
         let heights = [(0.0, 1e-12), (0.5, -2e-12), (1.0, 3e-12)];
         let rows: Vec<Row> =
             heights.iter().flat_map(|&(h, off)| [row([1.0, h, off]), row([-1.0, -h, 2.0 * off])]).collect();
-        let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-10, is_exact: false, solve };
+        let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-10, is_exact: false };
         let nearest: Vec<f64> = cone.nearest(&[0.3, 0.2, 1.0]).unwrap().into_iter().map(Twice::rounded).collect();
         assert!(nearest[0].abs().max(nearest[1].abs()) < 1e-10 && (nearest[2] - 1.0).abs() < 1e-10, "{nearest:?}");
     }

@@ -14,18 +14,14 @@
 //! working precision: what is found holds for the given doubles of the problem.
 
 mod cone;
-mod rigid;
 
-use cone::{Cone, ConeFace, Row, Solve};
-use rigid::{is_rigid, place_of_largest};
+use cone::{Cone, ConeFace, Row};
 
 use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
-use crate::certificate::{NullMode, Rounding};
+use crate::certificate::{NullMode, Rounding, mode_along, not_convex_along};
 use crate::error::Error;
-use crate::linear::{
-    Analysis, FactorError, NullSpace, SparseMatrix, SymmetricMatrix, Twice, generic, largest, subtract, twice,
-};
+use crate::linear::{Analysis, FactorError, NullSpace, Twice, generic, largest, norm, subtract, take_out, twice};
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
 use crate::transform::Scaling;
@@ -53,6 +49,10 @@ const SETTLED_TO: f64 = 1e-11;
 /// slender.
 const BENDS: f64 = 1e3;
 
+/// A direction is a rigid-body mode if it differs from one by less than this share of its length: null vectors of
+/// rounded entries have about ten digits.
+const RIGID: f64 = 1e-6;
+
 /// The analysis of the stiffness, if memory and time allow its factorisation.
 fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, Error> {
     check_memory(problem, Kept::Nothing, settings.memory)?;
@@ -62,37 +62,6 @@ fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, E
     check_memory(problem, kept, settings.memory)?;
     check_time(&settings.watch, seconds::factorisation(&analysis))?;
     Ok(analysis)
-}
-
-/// Checks that some displacement meets all contact rows of `problem`.
-///
-/// # Errors
-/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
-pub(super) fn check_rows(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<(), Error> {
-    problem.check_rows()?;
-    let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
-    nearest_to_rest(&scaling, problem, settings, solve)
-}
-
-/// Checks that some displacement meets the rows: the nearest to rest, in the units of `scaling`.
-///
-/// # Errors
-/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
-fn nearest_to_rest(
-    scaling: &Scaling,
-    problem: &ContactProblem,
-    settings: &Settings,
-    solve: Solve,
-) -> Result<(), Error> {
-    let diagonal: Vec<_> = scaling.identity(0).into_iter().enumerate().map(|(dof, value)| (dof, dof, value)).collect();
-    let dofs = problem.dofs();
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal)?)?;
-    let nearest =
-        ContactProblem::computed(stiffness, vec![0.0; dofs], problem.contact().clone(), problem.gap().to_vec())?;
-    match solve(&nearest, &settings.of_question()) {
-        Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
-        _ => Ok(()),
-    }
 }
 
 /// The problem in the units of `scaling`.
@@ -114,12 +83,11 @@ pub(super) struct Existence {
     /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with
     /// which.
     within_rounding: Option<(usize, f64)>,
-    solve: Solve,
 }
 
 impl Existence {
     /// The null space of the stiffness of `problem`; `None` if the range of doubles does not allow it.
-    pub fn of(problem: &ContactProblem, settings: &Settings, solve: Solve) -> Result<Option<Self>, Error> {
+    pub fn of(problem: &ContactProblem, settings: &Settings) -> Result<Option<Self>, Error> {
         let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
         let Ok(scaled) = scaled(problem, &scaling) else { return Ok(None) };
         let shifts = scaled.stiffness().shifts(analysed(&scaled, settings)?)?;
@@ -128,7 +96,7 @@ impl Existence {
             Ok(None) => return Ok(None),
             Err(FactorError::NotPositiveDefinite) => {
                 let direction = scaled.stiffness().negative_direction(&shifts, &settings.watch)?;
-                return direction.and_then(|p| scaled.not_convex_along(&p)).map_or(Ok(None), Err);
+                return direction.and_then(|p| not_convex_along(&scaled, &p)).map_or(Ok(None), Err);
             }
             Err(error) => return Err(error.into()),
         };
@@ -142,15 +110,15 @@ impl Existence {
         let dof = softest.map_or(0, |(_, vector)| place_of_largest(&expanded(vector)));
         let (null, share) = null.declared(|vector| is_rigid(problem, &expanded(vector), &bodies));
         let within_rounding = (share > 0.0).then_some((dof, share));
-        Ok(Some(Existence { within_rounding, ..Self::with(scaled, scaling, null, solve) }))
+        Ok(Some(Existence { within_rounding, ..Self::with(scaled, scaling, null) }))
     }
 
-    fn with(scaled: ContactProblem, scaling: Scaling, null: NullSpace, solve: Solve) -> Self {
+    fn with(scaled: ContactProblem, scaling: Scaling, null: NullSpace) -> Self {
         let (rounding, by_row) = (Rounding::of(&null), scaled.contact().transposed());
         let bounded = (0..scaled.rows()).filter(|&row| scaled.gap()[row].is_finite());
         let rows = bounded.map(|row| (row, coordinates(&null, || by_row.column(row), rounding))).collect();
         let against_load = coordinates(&null, || scaled.load().iter().map(|f| -f).enumerate(), rounding);
-        Existence { scaled, scaling, null, rounding, rows, against_load, within_rounding: None, solve }
+        Existence { scaled, scaling, null, rounding, rows, against_load, within_rounding: None }
     }
 
     /// Springs at as many dofs as there are motions without energy to rounding, which hold all of them: their entries
@@ -168,11 +136,10 @@ impl Existence {
         springs
     }
 
-    /// Checks that the load drives no mode without energy that no row stops.
-    pub fn check_bounded(&self, problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
-        let Some(mode) = self.escape() else { return Ok(()) };
-        nearest_to_rest(&self.scaling, problem, settings, self.solve)?;
-        Err(Error::Unbounded { mode: mode.in_words(), direction: self.expanded(&mode) })
+    /// The error if the load drives a mode without energy that no row stops, and some displacement meets the rows.
+    pub fn unbounded(&self) -> Option<Error> {
+        let mode = self.escape()?;
+        Some(Error::Unbounded { mode: mode.in_words(), direction: self.expanded(&mode) })
     }
 
     /// The reason why existence is not decided, if the stiffness holds a motion by no more than the rounding of its
@@ -288,8 +255,7 @@ impl Existence {
     /// The cone of the modes that close none of these rows.
     fn cone<'b>(&'b self, stops: &dyn Fn(usize) -> bool) -> Cone<'b> {
         let rows = self.rows.iter().filter(|(row, _)| stops(*row)).map(|(_, row)| row).collect();
-        let (rounding, is_exact) = (self.rounding.vanishes, self.null.is_exact());
-        Cone { rows, fixed: None, rounding, is_exact, solve: self.solve }
+        Cone { rows, fixed: None, rounding: self.rounding.vanishes, is_exact: self.null.is_exact() }
     }
 
     fn mode(&self, coordinates: &[Twice]) -> Option<NullMode> {
@@ -297,7 +263,7 @@ impl Existence {
         for (&a, vector) in coordinates.iter().zip(&self.null.vectors) {
             direction.iter_mut().zip(vector).for_each(|(d, &value)| *d = *d + a * value);
         }
-        self.scaled.mode_along(&direction, self.rounding)
+        mode_along(&self.scaled, &direction, self.rounding)
     }
 }
 
@@ -335,9 +301,47 @@ fn shares_of_forces(problem: &ContactProblem, solution: &Solution) -> Vec<f64> {
     shares
 }
 
+/// Returns `true` if a displacement, of one body, is one of the rigid-body modes that the problem declares. `bodies`
+/// gives the body of each dof.
+fn is_rigid(problem: &ContactProblem, displacement: &[f64], bodies: &[usize]) -> bool {
+    let Some(modes) = problem.near_null() else { return false };
+    let body = bodies[place_of_largest(displacement)];
+    let own = |values: &[f64]| -> Vec<f64> {
+        values.iter().zip(bodies).filter(|entry| *entry.1 == body).map(|entry| *entry.0).collect()
+    };
+    let mut directions: Vec<Vec<f64>> = Vec::new();
+    for mode in modes.vectors() {
+        let mode = own(mode);
+        let mut left = across(&directions, mode.clone());
+        let length = norm(&left);
+        if length > RIGID * norm(&mode) {
+            left.iter_mut().for_each(|value| *value /= length);
+            directions.push(left);
+        }
+    }
+    let elsewhere = displacement.iter().zip(bodies).filter(|entry| *entry.1 != body).map(|entry| entry.0.abs());
+    let left = norm(&across(&directions, own(displacement))) + elsewhere.sum::<f64>();
+    left <= RIGID * norm(displacement)
+}
+
+/// The part of a vector that is orthogonal to some directions.
+fn across(directions: &[Vec<f64>], mut vector: Vec<f64>) -> Vec<f64> {
+    // The second turn removes the rounding of the first.
+    for direction in directions.iter().chain(directions) {
+        take_out(&mut vector, direction);
+    }
+    vector
+}
+
+fn place_of_largest(values: &[f64]) -> usize {
+    let by_size = |a: &(usize, &f64), b: &(usize, &f64)| a.1.abs().total_cmp(&b.1.abs());
+    values.iter().enumerate().max_by(by_size).map_or(0, |entry| entry.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::multigrid::NearNullSpace;
     use crate::solve;
 
     /// A dof of stiffness 2 under a force of 4 before a wall at 1, with that dof alone or with a second one that only a
@@ -353,7 +357,7 @@ mod tests {
         let scaled = scaled(problem, &scaling).unwrap();
         let shifts = scaled.stiffness().shifts(Analysis::of(scaled.stiffness()).unwrap()).unwrap();
         let null = scaled.stiffness().null_space(&shifts).unwrap().unwrap();
-        (Existence::with(scaled, scaling.clone(), null, solve), scaling)
+        (Existence::with(scaled, scaling.clone(), null), scaling)
     }
 
     /// Returns `true` if `freedom` finds a mode for this displacement of the first dof and this force of its wall; the
@@ -394,5 +398,23 @@ mod tests {
         let problem = ContactProblem::of_entries(&springs, &[4.0, 16.0, 1.0], &rows, &[1.0, 1.0]);
         // 4 / 2 through a coefficient of three, and 16 / 8; the third dof has no stiffness, and moves nothing.
         assert_eq!(moved_by_residual(&problem, &[0.0; 3], &[0.0; 2]), [BENDS * (3.0 * 2.0 + 2.0), 0.0]);
+    }
+
+    #[test]
+    fn a_motion_is_rigid_if_it_is_one_of_those_declared_on_its_own_body() {
+        // Two bodies of three dofs on a line, with a translation and a rotation of the whole space.
+        let problem = ContactProblem::of_entries(&[(0, 0, 1.0)], &[0.0; 6], &[], &[]);
+        let bodies = [0, 0, 0, 1, 1, 1];
+        let translation = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
+        assert!(!is_rigid(&problem, &translation, &bodies));
+        let modes = vec![vec![1.0; 6], vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0]];
+        let problem = problem.with_near_null(NearNullSpace::new(modes, 6).unwrap()).unwrap();
+        assert!(is_rigid(&problem, &translation, &bodies));
+        assert!(is_rigid(&problem, &[0.0, 0.0, 0.0, -1.0, 1.0, 3.0], &bodies));
+        // A bend, and motions of both bodies.
+        assert!(!is_rigid(&problem, &[1.0, 0.0, 1.0, 0.0, 0.0, 0.0], &bodies));
+        assert!(!is_rigid(&problem, &[1.0; 6], &bodies));
+        let nearly = |share: f64| [1.0, 1.0 + share, 1.0, 0.0, 0.0, 0.0];
+        assert!(is_rigid(&problem, &nearly(RIGID), &bodies) && !is_rigid(&problem, &nearly(1e2 * RIGID), &bodies));
     }
 }

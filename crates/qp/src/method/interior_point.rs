@@ -6,12 +6,12 @@ use clarabel::solver::{
 };
 
 use super::{Ending, Outcome, ScaledProblem};
-use crate::error::Error;
+use crate::error::{Error, LinearError};
+use crate::linear::panics::guarded;
+use crate::linear::watch::Watch;
 use crate::linear::{SparseMatrix, exponent, largest, ldexp};
-use crate::panics::guarded;
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
-use crate::watch::Watch;
 
 /// A gap this many times the displacement is out of reach: the row is left out, because it would only spoil the scale.
 const OUT_OF_REACH: f64 = 1e12;
@@ -126,7 +126,7 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
         solver.solve();
         Ok(solver.solution)
     });
-    let failed = |reason: String| Error::Numerical { step: "Clarabel", reason };
+    let failed = |reason: String| LinearError::Numerical { step: "Clarabel", reason };
     let answer = solved.map_err(failed)?.map_err(|error: SolverError| failed(error.to_string()))?;
     Ok(read_off(problem, &answer, &rows, unit))
 }

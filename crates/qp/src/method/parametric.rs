@@ -15,10 +15,10 @@
 //! pivoting).
 
 use super::SIGN_TOLERANCE;
-use crate::error::Error;
+use crate::error::{Error, LinearError};
+use crate::linear::watch::Watch;
 use crate::linear::{UpperTriangle, dot, largest, subtract};
 use crate::solution::ContactSet;
-use crate::watch::Watch;
 
 /// A row depends on the rows before it if its compliance with those rows held is this small, relative.
 const DEPENDENT_COMPLIANCE: f64 = 1e-10;
@@ -101,10 +101,11 @@ impl ParametricLcp {
     fn respond(&self, closed: &ContactSet) -> Result<Linear, Error> {
         let (list, factor) = self.independent(closed);
         if list.len() < closed.count() {
-            return Err(Error::Numerical {
+            return Err(LinearError::Numerical {
                 step: "the exact path",
                 reason: format!("the {} rows that would be closed together depend on each other", closed.count()),
-            });
+            }
+            .into());
         }
         let part = |b: &[f64]| self.part(&factor, &list, b);
         Ok(Linear { closed: closed.clone(), constant: part(&self.constant), slope: part(&self.slope) })
@@ -162,7 +163,7 @@ impl ParametricLcp {
             }
         }
         let reason = format!("the set still changes at {now} of the way after {} changes", events.len());
-        Err(Error::Numerical { step: "the exact path", reason })
+        Err(LinearError::Numerical { step: "the exact path", reason }.into())
     }
 
     /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found from

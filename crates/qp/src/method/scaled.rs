@@ -4,10 +4,10 @@ use std::cell::{Cell, OnceCell};
 use std::time::Instant;
 
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::linear::{Augmented, AugmentedMatrix, Cholesky, Compliance, SymmetricMatrix, if_definite};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
-use crate::watch::Watch;
 
 /// Differences below this, relative to the largest displacement or multiplier, are rounding. Without this tolerance on
 /// signs a weakly active row would close and open without end.
@@ -65,7 +65,7 @@ impl<'a> ScaledProblem<'a> {
         let clock = Instant::now();
         let factor = if_definite(self.augmented()?.factor(matrix));
         self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
-        factor
+        Ok(factor?)
     }
 }
 

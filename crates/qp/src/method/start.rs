@@ -1,6 +1,6 @@
 //! The start of an iteration.
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Solution};
 
@@ -61,13 +61,13 @@ impl Start {
         ];
         for (name, found, expected, of) in lengths {
             if let Some(found) = found.filter(|&found| found != expected) {
-                return Err(Error::Length { name, found, expected, of });
+                return Err(LinearError::Length { name, found, expected, of }.into());
             }
         }
         let values = self.displacement.iter().flatten();
         if let Some((dof, &value)) = values.enumerate().find(|entry| !entry.1.is_finite()) {
             let (name, at) = ("the displacement to start from", format!("entry {dof}"));
-            return Err(Error::NotFinite { name, at, value, allowed: "finite" });
+            return Err(LinearError::NotFinite { name, at, value, allowed: "finite" }.into());
         }
         Ok(())
     }

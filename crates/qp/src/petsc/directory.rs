@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::source::{INTEGER, REAL, RowReader, dense_columns, indices, vector};
 use super::{BLOCK_SIZE, CONTACT, COORDINATES, EQUALITIES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS, VALUES};
-use crate::error::Error;
-use crate::file::read_text_capped;
+use crate::error::{Error, LinearError};
+use crate::linear::file::read_text_capped;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, SymmetricLines, SymmetricMatrix};
 use crate::problem::ContactProblem;
@@ -25,7 +25,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let (size, columns) = stiffness.shape;
     if columns != size {
         let message = format!("the stiffness is {size} x {columns}; it must have as many columns as rows");
-        return Err(stiffness.wrong_shape(message));
+        return Err(stiffness.wrong_shape(message).into());
     }
     let places = Places::of(indices(&directory.join(FREE), size)?, size);
     let load = places.load(&directory.join(LOAD))?;
@@ -41,7 +41,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
 }
 
 /// The gaps, or values, of all rows of another file.
-fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, Error> {
+fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, LinearError> {
     let is_allowed = |gap: f64| gap > f64::NEG_INFINITY;
     let mut gap = vector(file, is_allowed, "a finite gap, or 1e20 or more for a row without obstacle")?;
     if gap.len() != rows {
@@ -53,8 +53,8 @@ fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, Error> {
 }
 
 /// The error of a vector of wrong size.
-fn fault(file: &Path, message: String) -> Error {
-    Error::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
+fn fault(file: &Path, message: String) -> LinearError {
+    LinearError::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
 }
 
 /// The places of the free dofs in the stiffness.
@@ -72,7 +72,7 @@ impl Places {
         Places { free, dof }
     }
 
-    fn load(&self, file: &Path) -> Result<Vec<f64>, Error> {
+    fn load(&self, file: &Path) -> Result<Vec<f64>, LinearError> {
         let load = vector(file, f64::is_finite, "finite")?;
         if load.len() != self.dof.len() {
             let message = format!("it has length {}, but {STIFFNESS} has {} rows", load.len(), self.dof.len());
@@ -82,14 +82,14 @@ impl Places {
         if let Some((place, value)) = load.iter().enumerate().find(supported) {
             let message = format!("value {place} is {value} (from 0), but {FREE} does not name it: it must be 0");
             let byte = (2 * INTEGER + REAL * place as u64) as usize;
-            return Err(Error::FileBytes { file: file.to_path_buf(), byte, message });
+            return Err(LinearError::FileBytes { file: file.to_path_buf(), byte, message });
         }
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }
 
     /// Leaves out the entries of supported components, which must be zero, in the last row, of the stiffness that of
     /// place `own`; what stands on its diagonal has no meaning.
-    fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), Error> {
+    fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), LinearError> {
         let mut kept = 0;
         for entry in 0..rows.columns.len() {
             let (column, value) = (rows.columns[entry] as usize, rows.values[entry]);
@@ -107,7 +107,7 @@ impl Places {
         Ok(())
     }
 
-    fn rows(&self, mut rows: RowReader) -> Result<SparseMatrix, Error> {
+    fn rows(&self, mut rows: RowReader) -> Result<SparseMatrix, LinearError> {
         if rows.shape.1 != self.dof.len() {
             let found = format!("it has {} columns, but {STIFFNESS} has {} rows", rows.shape.1, self.dof.len());
             return Err(rows.wrong_shape(found));
@@ -132,7 +132,7 @@ impl Places {
         problem.with_equalities(&rows, gap(&values, (EQUALITIES, rows.rows()))?)
     }
 
-    fn stiffness(&self, mut rows: RowReader) -> Result<SymmetricMatrix, Error> {
+    fn stiffness(&self, mut rows: RowReader) -> Result<SymmetricMatrix, LinearError> {
         let mut matrix = SymmetricLines::of_rows(self.free.len(), rows.entries)?;
         while rows.read()? {
             let own = rows.row();
@@ -145,8 +145,8 @@ impl Places {
     }
 
     /// Two triangles that differ, at their places in the file.
-    fn located(&self, error: Error, rows: &RowReader) -> Error {
-        let Error::NotSymmetric { row, column, value, mirrored } = error else { return error };
+    fn located(&self, error: LinearError, rows: &RowReader) -> LinearError {
+        let LinearError::NotSymmetric { row, column, value, mirrored } = error else { return error };
         let [row, column] = [row, column].map(|dof| self.free[dof]);
         let entries = format!("entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is {mirrored:e}");
         let allowed = "they may differ by 1e-10 of the diagonal";
@@ -155,7 +155,7 @@ impl Places {
 
     /// The near-null space: `near_null.petsc`, a column for each vector, or else the rigid-body modes of the nodes in
     /// `coordinates.petsc`. The latter are not exact if components are in a local frame.
-    fn near_null(&self, directory: &Path) -> Result<Option<NearNullSpace>, Error> {
+    fn near_null(&self, directory: &Path) -> Result<Option<NearNullSpace>, LinearError> {
         let of_free = |vector: &Vec<f64>| self.free.iter().map(|&place| vector[place as usize]).collect();
         let file = directory.join(NEAR_NULL);
         if file.exists() {
@@ -180,7 +180,7 @@ impl Places {
 }
 
 /// The number of dofs of a node, from `K.petsc.info`.
-fn block_size(directory: &Path) -> Result<usize, Error> {
+fn block_size(directory: &Path) -> Result<usize, LinearError> {
     let file = directory.join(INFO);
     let text = read_text_capped(&file, MOST_OF_INFO)?;
     let mut words = text.split_whitespace().skip_while(|&word| word != BLOCK_SIZE).skip(1);
@@ -188,7 +188,7 @@ fn block_size(directory: &Path) -> Result<usize, Error> {
         Some(size @ 1..=3) => Ok(size),
         _ => {
             let message = format!("it must have the line `{BLOCK_SIZE} D`, with 1, 2 or 3 dofs for each node");
-            Err(Error::FileSyntax { file, line: 1, message })
+            Err(LinearError::FileSyntax { file, line: 1, message })
         }
     }
 }

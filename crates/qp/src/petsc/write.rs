@@ -6,7 +6,7 @@ use super::{
     BLOCK_SIZE, CONTACT, COORDINATES, Class, DENSE, EQUALITIES, FREE, GAP, INDICES, INFO, LOAD, MATRIX, NEAR_NULL,
     STIFFNESS, TOO_MANY, VALUES, VECTOR,
 };
-use crate::file::Streamed;
+use crate::linear::file::Streamed;
 use crate::linear::{SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
 

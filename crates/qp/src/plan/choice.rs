@@ -2,7 +2,7 @@
 
 use crate::cost::{Estimate, Smooth};
 use crate::error::Error;
-use crate::memory::in_words as written;
+use crate::linear::memory::in_words as written;
 use crate::problem::ContactProblem;
 use crate::settings::Method;
 use crate::settings::Settings;

@@ -2,7 +2,7 @@
 
 use super::attempt::{Limits, Next, Place, Step, Tried};
 use crate::certificate::Evidence;
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::method::Ending;
 use crate::solution::{Certificate, Goal, Seconds, Solution};
 
@@ -27,7 +27,7 @@ impl Ended {
     pub fn by(error: Error) -> Self {
         match error {
             Error::TooLarge { .. } | Error::OutOfTime { .. } => Ended::Refused(error),
-            Error::Numerical { .. } | Error::NotConvex { .. } => Ended::Failed(error),
+            Error::Linear(LinearError::Numerical { .. } | LinearError::NotConvex { .. }) => Ended::Failed(error),
             _ => Ended::Decided(error),
         }
     }

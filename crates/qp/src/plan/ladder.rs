@@ -225,8 +225,7 @@ fn pieces_of(problem: &ContactProblem, settings: &Settings) -> Option<Pieces> {
             (count, dofs) = (count + 1, 0);
         }
     }
-    let of_dof = parts.of_dofs().iter().map(|&part| of_part[part]).collect();
-    (count > 0).then(|| Pieces::of(problem, of_dof, count + 1))
+    (count > 0).then(|| Pieces::of(problem, &of_part, count + 1))
 }
 
 #[cfg(test)]

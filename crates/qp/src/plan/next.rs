@@ -4,10 +4,10 @@ use super::attempt::{Attempt, From, Limits, Means, Next, PATIENCE, Place, Rung, 
 use super::history::{Answered, Ended, History, Record};
 use super::ladder::Ladder;
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::method::interior_point::InteriorPoint;
 use crate::settings::Method;
 use crate::solution::Certificate;
-use crate::watch::Watch;
 
 /// Refinements of an answer, one after the other: each gains as many digits as the factor has left.
 const MOST_REFINEMENTS: usize = 6;

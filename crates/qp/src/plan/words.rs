@@ -8,7 +8,7 @@ use super::history::{Ended, History, Record};
 use super::ladder::Ladder;
 use super::layout::Layout;
 use crate::error::Error;
-use crate::memory::in_words as memory;
+use crate::linear::memory::in_words as memory;
 use crate::problem::ContactProblem;
 use crate::settings::Settings;
 use crate::solution::Why;

@@ -13,15 +13,14 @@
 use super::reuse::Prepared;
 use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{Kept, check_memory};
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::existence::Existence;
-use crate::linear::{SparseMatrix, SymmetricMatrix, check_vector, dot, subtract};
+use crate::linear::watch::Watch;
+use crate::linear::{SparseMatrix, SymmetricMatrix, check_finite, dot, subtract};
 use crate::memory;
 use crate::problem::ContactProblem;
-use crate::run::solve_any;
 use crate::settings::{Method, Settings};
 use crate::transform::{Elimination, RowSelection};
-use crate::watch::Watch;
 
 /// Corrections of a displacement by its residual in twice the working precision.
 const CORRECTIONS: usize = 2;
@@ -66,8 +65,8 @@ impl Prepared {
     /// ```
     ///
     /// # Errors
-    /// [`Error::TooLarge`] before M, which is dense, is made; [`Error::Infeasible`] and [`Error::NotConvex`] as
-    /// [`solve`](crate::solve()); [`Error::Numerical`] for a stiffness that is not definite to working precision
+    /// [`Error::TooLarge`] before M, which is dense, is made; [`Error::Infeasible`] and [`LinearError::NotConvex`] as
+    /// [`solve`](crate::solve()); [`LinearError::Numerical`] for a stiffness that is not definite to working precision
     /// without a motion, or with more than 256; those of [`Prepared::new`].
     pub fn delassus(&self) -> Result<Delassus, Error> {
         let (problem, settings) = (&self.problem, &self.settings.started()?);
@@ -85,9 +84,9 @@ impl Prepared {
         let (held, norm, springs) = match at_hand.map(|engine| engine.bounding(&Watch::default())) {
             Some(Bounding::Factor(norm)) => (with(rest.stiffness().clone())?, norm, Vec::new()),
             _ => {
-                let failed = |reason: String| Error::Numerical { step: "the Delassus operator", reason };
+                let failed = |reason| Error::from(LinearError::Numerical { step: "the Delassus operator", reason });
                 let many = || failed("the stiffness has more than 256 motions, or leaves the range of doubles".into());
-                let existence = Existence::of(&rest, settings, solve_any)?.ok_or_else(many)?;
+                let existence = Existence::of(&rest, settings)?.ok_or_else(many)?;
                 let springs = existence.springs();
                 let added = SparseMatrix::from_triplets(rest.dofs(), rest.dofs(), &springs)?;
                 let held = with(rest.stiffness().combined(1.0, 1.0, &SymmetricMatrix::from_lower(added)?)?)?;
@@ -172,9 +171,9 @@ impl Delassus {
     /// `K+ (f - B'z) + R a`.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for an x that does not fit.
+    /// [`LinearError::Length`] and [`LinearError::NotFinite`] for an x that does not fit.
     pub fn displacement(&self, x: &[f64]) -> Result<Vec<f64>, Error> {
-        check_vector("unknowns x", x, (self.offset.len(), "rows of M"), f64::is_finite, "finite")?;
+        check_finite("unknowns x", x, (self.offset.len(), "rows of M"))?;
         let (z, a) = x.split_at(self.rows.len());
         let u = self.moved(self.held.load(), &z.iter().map(|z| -z).collect::<Vec<_>>())?;
         let mut u = self.elimination.as_ref().map_or_else(|| u.clone(), |elimination| elimination.displacement(&u));

@@ -13,10 +13,10 @@ use std::sync::{Arc, OnceLock};
 use opposed::{OpposedRows, settle, without_entries};
 use parts::Diagonal;
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::equations::Following;
 use crate::linear::multigrid::NearNullSpace;
-use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_vector};
+use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_finite, check_vector};
 
 /// Frictionless unilateral contact as a convex quadratic program:
 ///
@@ -104,8 +104,8 @@ impl ContactProblem {
     /// [`warnings`](Self::warnings).
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
-    /// finite or a gap that is NaN or minus infinity, [`Error::NotConvex`] for a negative diagonal entry of K.
+    /// [`LinearError::Length`] and [`LinearError::Shape`] for sizes that do not fit, [`LinearError::NotFinite`] for a load that is not
+    /// finite or a gap that is NaN or minus infinity, [`LinearError::NotConvex`] for a negative diagonal entry of K.
     pub fn new(
         stiffness: SymmetricMatrix,
         load: Vec<f64>,
@@ -127,12 +127,15 @@ impl ContactProblem {
         let dofs = stiffness.dim();
         if contact.columns() != dofs {
             let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
-            return Err(Error::Shape { name: "contact matrix", found, expected });
+            return Err(LinearError::Shape { name: "contact matrix", found, expected }.into());
         }
         check_load(&load, dofs)?;
         check_gap(&gap, contact.rows())?;
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
-            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
+            return Err(LinearError::NotConvex {
+                evidence: format!("diagonal entry {dof} is {value:e}, indices from 0"),
+            }
+            .into());
         }
         let without_entries: Arc<[usize]> = without_entries(&contact).into();
         Ok(ContactProblem {
@@ -159,14 +162,25 @@ impl ContactProblem {
     /// the rigid-body modes.
     ///
     /// # Errors
-    /// [`Error::Length`] if they are for another number of dofs.
+    /// [`LinearError::Length`] if they are for another number of dofs.
     pub fn with_near_null(self, near_null: impl Into<Arc<NearNullSpace>>) -> Result<Self, Error> {
         let near_null = near_null.into();
         let (found, expected) = (near_null.dofs(), self.dofs());
         if found != expected {
-            return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
+            return Err(LinearError::Length { name: "near-null vector", found, expected, of: "dofs" }.into());
         }
         Ok(ContactProblem { near_null: Some(near_null), free_motions: FoundOnce::default(), ..self })
+    }
+
+    /// The same with the near-null space of another problem, each of its vectors made one `of` these dofs; those that
+    /// vanish are left out.
+    pub(crate) fn with_near_null_of(self, other: &Self, of: impl Fn(&[f64]) -> Vec<f64>) -> Result<Self, Error> {
+        let vectors = other.near_null().map_or(&[][..], |modes| modes.vectors()).iter().map(|mode| of(mode));
+        let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
+        match NearNullSpace::of_modes(vectors.filter(moves).collect()) {
+            Some(modes) => self.with_near_null(modes),
+            None => Ok(self),
+        }
     }
 
     /// The near-null space, if one was given.
@@ -357,9 +371,7 @@ impl ContactProblem {
         }
         violation
     }
-}
 
-impl ContactProblem {
     /// The work f'd of the load on a mode d, as a share of its terms `|f|'|d|`, between -1 and 1.
     pub(crate) fn share_of_work(&self, mode: &[f64]) -> f64 {
         let mut work = Accumulator::new(&[0.0]);
@@ -367,17 +379,101 @@ impl ContactProblem {
         let terms: f64 = self.load.iter().zip(mode).map(|(f, d)| (f * d).abs()).sum();
         if terms > 0.0 { work.into_sums()[0] / terms } else { 0.0 }
     }
+
+    /// Checks that the vectors of an answer have the lengths of the problem.
+    pub(crate) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
+        let length = LinearError::check_length;
+        length("displacement", displacement.len(), self.dofs(), "dofs")?;
+        let (found, of) =
+            (multiplier.len(), if self.equality_rows() == 0 { "contact rows" } else { "contact and equality rows" });
+        if found == self.rows() {
+            Ok(())
+        } else {
+            Ok(length("multiplier", found, self.inequalities() + self.equality_rows(), of)?)
+        }
+    }
+
+    /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
+    pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+        self.accurate_residual_of(u, &[lambda])
+    }
+
+    /// The same for multipliers that are given as sums, which are not rounded.
+    pub(crate) fn accurate_residual_of(&self, u: &[f64], multipliers: &[&[f64]]) -> Vec<f64> {
+        self.accurate_balance(u, multipliers).residual
+    }
+
+    /// The same, with its terms.
+    pub(crate) fn accurate_balance(&self, u: &[f64], multipliers: &[&[f64]]) -> Balance {
+        // Summed with opposite sign, K u first: if a body moves far and bends little, its energy is so small that
+        // forces rounded first would leave nothing of that energy.
+        let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
+        let terms = sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
+        let strain = sums.products_by(u, |_| 0, 1)[0];
+        let elastic = sums.sums().map(f64::abs).collect();
+        self.load.iter().enumerate().for_each(|(dof, &load)| sums.add_product(dof, load, -1.0));
+        for lambda in multipliers {
+            let against: Vec<f64> = lambda.iter().map(|lambda| -lambda).collect();
+            sums.add_transposed(|dof| self.contact.column(dof), &against);
+        }
+        Balance { residual: sums.sums().map(|sum| -sum).collect(), elastic, strain, terms }
+    }
+
+    /// `B u - g` of the given doubles, with twice the working precision; `-inf` for a row without obstacle.
+    pub(crate) fn accurate_violation(&self, u: &[f64]) -> Vec<f64> {
+        Distances::of(self).moved(u)
+    }
+
+    /// The forces `K u` of the given doubles, with twice the working precision.
+    pub(crate) fn accurate_forces(&self, u: &[f64]) -> Accumulator {
+        let mut sums = Accumulator::new(&vec![0.0; u.len()]);
+        sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
+        sums
+    }
+}
+
+/// The forces on each dof at a displacement u, with twice the working precision.
+pub(crate) struct Balance {
+    /// `f + B' lambda - K u` at the displacement u, one entry per dof.
+    pub residual: Vec<f64>,
+    /// `|K u|`.
+    pub elastic: Vec<f64>,
+    /// `u' K u`.
+    pub strain: f64,
+    /// `|K| |u|`, the terms of the elastic forces and the scale of rounding in them.
+    pub terms: Vec<f64>,
+}
+
+/// The distances `B u - g` of a displacement that is a sum, which is not rounded.
+pub(crate) struct Distances<'a> {
+    problem: &'a ContactProblem,
+    sums: Accumulator,
+}
+
+impl<'a> Distances<'a> {
+    /// Those of no displacement.
+    pub fn of(problem: &'a ContactProblem) -> Self {
+        let start: Vec<f64> = problem.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
+        Distances { problem, sums: Accumulator::new(&start) }
+    }
+
+    /// Adds a displacement. Returns the distances, with twice the working precision; `-inf` for a row without obstacle.
+    pub fn moved(&mut self, by: &[f64]) -> Vec<f64> {
+        self.sums.add_columns(|dof| self.problem.contact.column(dof), by);
+        let with_obstacle = |(sum, gap): (f64, &f64)| if gap.is_finite() { sum } else { f64::NEG_INFINITY };
+        self.sums.sums().zip(&self.problem.gap).map(with_obstacle).collect()
+    }
 }
 
 /// Checks that `load` has the right length and allowed values.
 pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
-    check_vector("load vector", load, (dofs, "dofs"), f64::is_finite, "finite")
+    Ok(check_finite("load vector", load, (dofs, "dofs"))?)
 }
 
 /// Checks that `gap` has the right length and allowed values.
 pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
     let allowed = "finite, or +inf for a row without obstacle";
-    check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)
+    Ok(check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)?)
 }
 
 #[cfg(test)]

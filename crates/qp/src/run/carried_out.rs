@@ -5,15 +5,17 @@ use std::time::Instant;
 
 use super::elimination::{self, KeptRest, Rest};
 use super::pieces;
-use crate::certificate::{Bounding, Examined};
+use crate::certificate::{Bounding, Examination, Examined, at_rest, with_rounding};
 use crate::engine::{Engine, Factored, Found, Hierarchical, Load, Task};
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::existence::Existence;
+use crate::linear::SymmetricMatrix;
 use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Answered, Attempt, Best, Ended, From, History, Known, Ladder, Means, Next, Record, Step, Tried};
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
 use crate::solution::{Certificate, Seconds, Solution, Why};
+use crate::transform::Scaling;
 
 /// The answer of `problem` from a start, by the ladder of `settings`.
 pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
@@ -107,7 +109,9 @@ impl<'a> Run<'a> {
             let mut record = Record::of(next, step);
             record.ended = match self.made_step(&next, attempt, &mut record) {
                 Ok(ended) => ended,
-                Err(error @ Error::NotConvex { .. }) if step == Step::Existence => Ended::Decided(error),
+                Err(error @ Error::Linear(LinearError::NotConvex { .. })) if step == Step::Existence => {
+                    Ended::Decided(error)
+                }
                 Err(error) => Ended::by(error),
             };
             record.seconds = clock.elapsed().as_secs_f64();
@@ -225,10 +229,11 @@ impl<'a> Run<'a> {
     pub(super) fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
         let clock = Instant::now();
         let Solution { displacement, multiplier, .. } = &answer.solution;
-        let Examined { certificate, evidence, may_rest } = self.problem.examine(by, displacement, multiplier)?;
+        let examination = Examination::of(self.problem, [displacement, multiplier], by)?;
+        let Examined { certificate, evidence, may_rest } = examination.certificate()?;
         record.stages.certificate += clock.elapsed().as_secs_f64();
         let wants_best = answer.tried.is_none_or(|tried| tried.method.wants_best());
-        let at_rest = self.problem.at_rest(displacement, &may_rest).filter(|_| wants_best);
+        let at_rest = at_rest(self.problem, displacement, &may_rest).filter(|_| wants_best);
         let at_rest = at_rest.map(|displacement| Best {
             solution: Solution { displacement, ..answer.solution.clone() },
             ending: answer.ending.clone(),
@@ -277,7 +282,7 @@ impl<'a> Run<'a> {
             record.stages.factor += factor;
             record.stages.certificate += certificate;
             // An error has the same energy in the rest, but for the rounding of the displacement.
-            let of_rest = of_rest.map(|rest| [self.problem.with_rounding(rest, &answer.displacement)]);
+            let of_rest = of_rest.map(|rest| [with_rounding(self.problem, rest, &answer.displacement)]);
             self.is_cut = of_rest.is_some();
             let norm = self.rest.and_then(|kept| kept.norm.clone());
             let by_norm = || norm.map_or(Bounding::OwnFactor, Bounding::Factor);
@@ -293,8 +298,11 @@ impl<'a> Run<'a> {
 
     /// Whether an answer exists.
     fn looked_at_existence(&mut self) -> Result<Ended, Error> {
-        let Some(existence) = Existence::of(self.problem, self.settings, solve_any)? else { return Ok(Ended::Empty) };
-        existence.check_bounded(self.problem, self.settings)?;
+        let Some(existence) = Existence::of(self.problem, self.settings)? else { return Ok(Ended::Empty) };
+        if let Some(unbounded) = existence.unbounded() {
+            check_rows(self.problem, self.settings)?;
+            return Err(unbounded);
+        }
         self.existence = Some(existence);
         Ok(Ended::MayExist)
     }
@@ -331,9 +339,19 @@ pub(super) fn without_certificate(outcome: Outcome, name: &str) -> Solution {
     }
 }
 
-/// An answer for another problem, with a regular stiffness, that the question of existence gives rise to.
-pub(crate) fn solve_any(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    by(problem, &Start::default(), settings, Ladder::without_existence)
+/// Checks that some displacement meets all contact rows of `problem`: the nearest to rest, in units of equal stiffness.
+///
+/// # Errors
+/// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
+pub(crate) fn check_rows(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+    problem.check_rows()?;
+    let (contact, rest) = (problem.contact().clone(), vec![0.0; problem.dofs()]);
+    let stiffness = SymmetricMatrix::of_diagonal(Scaling::of(problem.stiffness(), &contact)?.identity(0));
+    let nearest = ContactProblem::computed(stiffness, rest, contact, problem.gap().to_vec())?;
+    match by(&nearest, &Start::default(), &settings.of_question(), Ladder::without_existence) {
+        Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

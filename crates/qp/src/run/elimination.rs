@@ -1,6 +1,6 @@
 //! The answer of a problem whose equalities are eliminated.
 
-use crate::certificate::EnergyNorm;
+use crate::certificate::{EnergyNorm, motion_along};
 use crate::error::Error;
 use crate::method::Start;
 use crate::problem::ContactProblem;
@@ -53,7 +53,7 @@ pub(super) fn solved(
             return if is_proven { Err(problem.infeasible(&rows, &weights)) } else { Ok(Rest::Open) };
         }
         Err(error) => {
-            let moves = |direction| problem.motion_along(&elimination.motion(direction));
+            let moves = |direction| motion_along(problem, &elimination.motion(direction));
             return Ok(error.direction().and_then(moves).map_or(Rest::Open, Rest::Moves));
         }
     };

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::carried_out::{Run, solved, without_certificate};
-use crate::certificate::{Bounding, WithEvidence};
+use crate::certificate::{Bounding, Examination};
 use crate::error::Error;
 use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Answered, Best, Ended, Record, Step};
@@ -82,8 +82,8 @@ impl Run<'_> {
             Err(_) => return Ok(None),
         };
         let multiplier = [&found.multiplier[..], &found.equality_multiplier].concat();
-        let examined = self.problem.examine(&Bounding::OwnFactor, &found.displacement, &multiplier)?;
-        found.certificate = examined.certificate.judged(self.settings.goal());
+        let certificate = self.problem.certify(&found.displacement, &multiplier)?;
+        found.certificate = certificate.judged(self.settings.goal());
         found.seconds.solve = self.clock.elapsed().as_secs_f64();
         Ok(found.certificate.met.is_some().then_some(found))
     }
@@ -129,8 +129,9 @@ impl Run<'_> {
         match (errors.last(), self.settings.watch.cut()) {
             (Some(Error::OutOfTime { .. }), cut_short) | (Some(_), cut_short @ Some(_)) => {
                 let at_rest = without_certificate(Outcome::at_rest(self.problem, Ending::Unsettled), "none");
-                let (u, lambda) = (&at_rest.displacement, &at_rest.multiplier);
-                let certificate = self.problem.examine(&Bounding::Nothing, u, lambda)?.certificate;
+                let answer = [&*at_rest.displacement, &at_rest.multiplier];
+                let examined = Examination::of(self.problem, answer, &Bounding::Nothing)?.certificate()?;
+                let certificate = examined.certificate;
                 let at_rest = self.problem.in_given_rows(Solution { certificate, cut_short, ..at_rest });
                 Ok(fallen_short(at_rest, self.settings.goal()))
             }
@@ -139,31 +140,31 @@ impl Run<'_> {
         }
     }
 
-    /// The rows that the best answer proves, and the seconds that this took.
+    /// The rows that the best answer proves, and the seconds that this took: by the prepared data, or with a factor of
+    /// its own if the problem has equalities and no data were prepared.
     fn proven(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
-        let nothing = (None, 0.0);
-        let Some(bench) = self.made.as_ref().or(self.kept) else {
-            return if self.settings.prove && best.tried.is_none() { self.proven_alone(best) } else { nothing };
+        let (watch, equalities) = (&self.settings.watch, self.problem.equalities());
+        let by = match self.made.as_ref().or(self.kept) {
+            _ if !self.settings.prove => Bounding::Nothing,
+            None if best.tried.is_some() || equalities.is_empty() || self.is_cut || watch.is_over() => {
+                Bounding::Nothing
+            }
+            None => Bounding::OwnFactor,
+            Some(bench) if watch.acknowledge() || !watch.allows(bench.engine.proof_seconds()) => Bounding::Nothing,
+            // Without a norm at hand there is no factor of the stiffness alone.
+            Some(bench) => match bench.engine.bounding(&watch.finishing()) {
+                Bounding::OwnFactor if self.problem.without_stiffness().is_empty() => Bounding::Nothing,
+                by => by,
+            },
         };
-        let watch = &self.settings.watch;
-        if !self.settings.prove || watch.acknowledge() || !watch.allows(bench.engine.proof_seconds()) {
-            return nothing;
+        if matches!(by, Bounding::Nothing) {
+            return (None, 0.0);
         }
         let clock = Instant::now();
-        let by = bench.engine.bounding(&watch.finishing());
-        let Solution { displacement, multiplier, .. } = &best.solution;
-        let evidence = best.evidence.take();
-        (self.problem.prove_by(&by, WithEvidence { displacement, multiplier, evidence }), clock.elapsed().as_secs_f64())
-    }
-
-    /// The same for an answer without prepared data, with a factor of its own.
-    fn proven_alone(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
-        let clock = Instant::now();
-        let is_due = !self.problem.equalities().is_empty() && !self.is_cut && !self.settings.watch.is_over();
         let Best { solution: Solution { displacement, multiplier, .. }, evidence, .. } = best;
-        let answer = WithEvidence { displacement, multiplier, evidence: evidence.take() };
-        let proven = if is_due { self.problem.prove_alone(answer).ok().flatten() } else { None };
-        (proven, clock.elapsed().as_secs_f64())
+        let examination = Examination::of(self.problem, [displacement, multiplier], &by);
+        let proven = examination.and_then(|examination| examination.proof(evidence.take()));
+        (proven.ok().flatten(), clock.elapsed().as_secs_f64())
     }
 
     /// The attempts that did not give the best answer, each with the ending of its own best.

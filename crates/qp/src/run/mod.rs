@@ -7,7 +7,6 @@ mod ending;
 mod pieces;
 mod proximal;
 
-pub(super) use carried_out::solve_any;
 pub use carried_out::solved;
-pub(super) use carried_out::{Run, Workbench, engine_by};
+pub(super) use carried_out::{Run, Workbench, check_rows, engine_by};
 pub(super) use elimination::KeptRest;

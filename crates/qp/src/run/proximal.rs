@@ -6,7 +6,7 @@ use super::carried_out::{Run, Workbench};
 use crate::certificate::Bounding;
 use crate::engine::Load;
 use crate::error::Error;
-use crate::linear::{SparseMatrix, SymmetricMatrix};
+use crate::linear::SymmetricMatrix;
 use crate::method::Start;
 use crate::plan::{Answered, Best, Ended, Known, Ladder, Record};
 use crate::problem::ContactProblem;
@@ -63,7 +63,7 @@ impl Run<'_> {
 fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>, Error> {
     let added = scaling.identity(STEP);
     let (load, gap) = (problem.load(), problem.gap().to_vec());
-    let stiffness = with_diagonal(problem.stiffness(), &added)?;
+    let stiffness = problem.stiffness().combined(1.0, 1.0, &SymmetricMatrix::of_diagonal(added.clone()))?;
     let mut of_step = ContactProblem::computed(stiffness, load.to_vec(), problem.contact().clone(), gap)?;
     let settings = &settings.of_question();
     let known = Known { gaps: MOST_STEPS, is_whole: true };
@@ -104,12 +104,6 @@ fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> 
     Ok(last)
 }
 
-fn with_diagonal(stiffness: &SymmetricMatrix, added: &[f64]) -> Result<SymmetricMatrix, Error> {
-    let diagonal = added.iter().enumerate().map(|(dof, &value)| (dof, dof, value));
-    let entries: Vec<(usize, usize, f64)> = stiffness.lower().triplets().chain(diagonal).collect();
-    SymmetricMatrix::from_lower(SparseMatrix::from_triplets(added.len(), added.len(), &entries)?)
-}
-
 /// The answer of a step: unchanged, without forces that come from the added diagonal and the rounding of the
 /// displacement, and also without the displacements that such forces cause.
 fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: &[f64]) -> [(Vec<f64>, Vec<f64>); 3] {
@@ -139,7 +133,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::watch::Watch;
+    use crate::linear::watch::Watch;
 
     /// Two dofs, each with its own row: `stiffness` on the diagonal.
     fn two(stiffness: [f64; 2], load: [f64; 2], gap: [f64; 2]) -> ContactProblem {

@@ -11,8 +11,8 @@
 //! A body that only its contact rows hold has a singular K. In that case `K + B'B` is factorised; its Schur complement
 //! is `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
 
-use crate::error::Error;
-use crate::linear::{Analysis, Cholesky, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
+use crate::error::{Error, LinearError};
+use crate::linear::{Analysis, Cholesky, Compliance, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
 
 /// If contact dofs exceed this share of all, condensing removes too little.
 const LARGEST_SHARE: f64 = 0.25;
@@ -117,24 +117,9 @@ impl Condensation {
 
     /// The compliance B S^-1 B' of the contact rows (m x m, column by column), if K is definite.
     pub fn compliance(&self) -> Vec<f64> {
-        let (rows, size) = (self.contact.rows(), self.contact_dofs.len());
-        let by_row = self.contact.transposed();
-        // The columns of L_tt^-1 B_t', one for each row.
-        let half = |row: usize| {
-            let mut half = vec![0.0; size];
-            by_row.column(row).for_each(|(dof, value)| half[dof] += value);
-            self.trailing.forward(half)
-        };
-        let halves: Vec<Vec<f64>> = (0..rows).map(half).collect();
-        let mut compliance = vec![0.0; rows * rows];
-        for i in 0..rows {
-            for j in 0..=i {
-                let value = dot(&halves[i], &halves[j]);
-                compliance[i * rows + j] = value;
-                compliance[j * rows + i] = value;
-            }
-        }
-        compliance
+        let rows = self.contact.rows();
+        let compliance = Compliance::on(&self.cholesky, self.contact.transposed());
+        (0..rows * rows).map(|place| compliance.product(place / rows, place % rows)).collect()
     }
 
     /// The displacement of the whole body from that of the contact dofs.
@@ -177,7 +162,7 @@ fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
     }
     if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
         let at = "the condensed stiffness".to_string();
-        return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+        return Err(LinearError::NotFinite { name: "matrix", at, value, allowed: "finite" }.into());
     }
     Ok(SparseMatrix::from_parts(size, starts, rows, values))
 }

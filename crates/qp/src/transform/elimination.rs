@@ -13,9 +13,8 @@
 //! unknown in the place of one of them, and the sum over some of these sums, until a short equality of sums is left.
 
 use crate::error::Error;
-use crate::linear::equations::{FOLLOWS, PIVOT, Pivot, Pivots, Remainder, Sparse, Sum, Sums, largest};
-use crate::linear::multigrid::NearNullSpace;
-use crate::linear::{SparseMatrix, SymmetricMatrix, Twice, exponent, ldexp};
+use crate::linear::equations::{FOLLOWS, PIVOT, Pivot, Pivots, Remainder, Solved, Sparse, Sum, Sums, largest};
+use crate::linear::{SparseMatrix, Twice, exponent, ldexp};
 use crate::problem::{ContactProblem, Equality};
 use crate::solution::{ContactSet, Iteration, Solution};
 
@@ -41,13 +40,11 @@ const NO_PIVOT: f64 = 1.0 / 32.0;
 #[derive(Clone, Debug)]
 pub struct Elimination {
     equalities: Vec<Equality>,
-    pivots: Vec<Pivot>,
+    /// Dofs, and then sums.
+    solved: Solved,
     /// The sums that are unknowns: their numbers follow those of the dofs, and those of sums before them.
     sums: Vec<Sparse>,
-    /// The number of each dof, and of each sum, among those that stay, or that of its pivot.
-    place: Vec<Result<usize, usize>>,
-    /// The dofs and sums, and the rows, that stay, in increasing order.
-    dofs: Vec<usize>,
+    /// The rows that stay, in increasing order.
     pub rows: Vec<usize>,
 }
 
@@ -85,9 +82,8 @@ impl Elimination {
         let rank = |dof: usize| (of_equalities.get(dof).copied().unwrap_or(0), columns.get(dof).copied().unwrap_or(0));
         for number in order {
             let row = equalities[number].row;
-            let entries: Sparse =
-                by_row.column(row).filter(|entry| entry.1 != 0.0).map(|(dof, b)| (dof, b.into())).collect();
-            match found.reduced(&entries, problem.gap()[row].into(), (number, FOLLOWS)) {
+            let entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
+            match found.reduced(entries, problem.gap()[row].into(), (number, FOLLOWS)) {
                 Remainder::Row(mut pivot) => {
                     let mut solve_for = |pivot: Pivot, share: f64| {
                         let dof = pivot.best(share, rank)?;
@@ -127,47 +123,34 @@ impl Elimination {
                 Remainder::Unclear => return Ok(None),
             }
         }
-        Ok(Some(Self::with(problem, equalities, (found.pivots, all_sums))))
-    }
-
-    fn with(problem: &ContactProblem, equalities: Vec<Equality>, (pivots, sums): (Vec<Pivot>, Vec<Sparse>)) -> Self {
-        let mut place = vec![Ok(0); problem.dofs() + sums.len()];
-        pivots.iter().enumerate().for_each(|(number, pivot)| place[pivot.dof] = Err(number));
-        let dofs: Vec<usize> = (0..place.len()).filter(|&dof| place[dof].is_ok()).collect();
-        dofs.iter().enumerate().for_each(|(number, &dof)| place[dof] = Ok(number));
         let mut is_equality = vec![false; problem.rows()];
         equalities.iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| is_equality[row] = true);
         let rows = (0..problem.rows()).filter(|&row| !is_equality[row]).collect();
-        Elimination { equalities, pivots, sums, place, dofs, rows }
+        let solved = Solved::of(found.pivots, problem.dofs() + all_sums.len());
+        Ok(Some(Elimination { equalities, solved, sums: all_sums, rows }))
     }
 
     pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
-        let (stiffness, load) = (self.stiffness(problem)?, self.load(problem));
+        let (stiffness, load) = (self.solved.congruent(problem.stiffness())?, self.load(problem));
         let (by_row, mut sums) = (problem.contact().transposed(), Sums::default());
         let mut entries = Vec::with_capacity(by_row.entries());
         for (number, &row) in self.rows.iter().enumerate() {
             for (dof, b) in by_row.column(row) {
-                self.staying_for(dof).for_each(|(place, a)| sums.at(place).add(Twice::from(b) * a));
+                self.solved.row(dof).for_each(|(place, a)| sums.at(place).add(Twice::from(b) * a));
             }
             // What is left within the rounding of the entries of a row is no row of its own.
             entries.extend(sums.taken().map(|(place, sum)| (number, place, sum.beyond(FOLLOWS).rounded())));
         }
-        let contact = SparseMatrix::from_triplets(self.rows.len(), self.dofs.len(), &entries)?;
+        let contact = SparseMatrix::from_triplets(self.rows.len(), self.solved.stays.len(), &entries)?;
         let gap = self.gap(problem, &contact);
-        let reduced = ContactProblem::computed(stiffness, load, contact, gap)?;
-        let Some(modes) = problem.near_null() else { return Ok(reduced) };
-        let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
-        match NearNullSpace::of_modes(modes.vectors().iter().map(|mode| self.staying(mode)).filter(moves).collect()) {
-            Some(modes) => reduced.with_near_null(modes),
-            None => Ok(reduced),
-        }
+        ContactProblem::computed(stiffness, load, contact, gap)?.with_near_null_of(problem, |mode| self.staying(mode))
     }
 
     /// `g - B u_0` of the rows that stay; `contact` is the matrix of their rest.
     pub fn gap(&self, problem: &ContactProblem, contact: &SparseMatrix) -> Vec<f64> {
         let mut distances: Vec<Sum> = vec![Sum::default(); problem.rows()];
         distances.iter_mut().zip(problem.gap()).for_each(|(distance, &gap)| distance.add(gap.into()));
-        for pivot in self.pivots.iter().filter(|pivot| pivot.dof < problem.dofs()) {
+        for pivot in self.solved.pivots.iter().filter(|pivot| pivot.dof < problem.dofs()) {
             let along = problem.contact().column(pivot.dof);
             along.for_each(|(row, b)| distances[row].add(-(Twice::from(b) * pivot.constant)));
         }
@@ -190,58 +173,21 @@ impl Elimination {
             && (0..problem.rows()).all(is_alike)
     }
 
-    /// The dofs that stay on which a dof depends, itself if it stays: their places and coefficients, a row of Z.
-    fn staying_for(&self, dof: usize) -> impl Iterator<Item = (usize, Twice)> + '_ {
-        let own = self.place[dof].ok().map(|place| (place, 1.0.into()));
-        let others = self.place[dof].err().map_or(&[][..], |pivot| &self.pivots[pivot].others);
-        own.into_iter().chain(others.iter().map(|&(other, a)| (self.place[other].unwrap_or(0), a)))
-    }
-
-    /// `Z'K Z`, column by column; entries between dofs that no equality joins stay bit by bit.
-    fn stiffness(&self, problem: &ContactProblem) -> Result<SymmetricMatrix, Error> {
-        let (lower, upper) = (problem.stiffness().lower(), problem.stiffness().upper());
-        let mut columns: Vec<Sparse> = vec![Sparse::new(); self.dofs.len()];
-        for dof in 0..problem.dofs() {
-            self.staying_for(dof).for_each(|(place, a)| columns[place].push((dof, a)));
-        }
-        let (mut forces, mut sums) = (Sums::default(), Sums::default());
-        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
-        for (column, moved) in columns.into_iter().enumerate() {
-            // K z, then Z' times that.
-            for (dof, a) in moved {
-                let above = upper.column(dof).filter(|entry| entry.0 != dof);
-                lower.column(dof).chain(above).for_each(|(row, k)| forces.at(row).add(Twice::from(k) * a));
-            }
-            for (dof, force) in forces.taken() {
-                let below = self.staying_for(dof).filter(|entry| entry.0 >= column);
-                below.for_each(|(place, a)| sums.at(place).add_share(a, force));
-            }
-            for (row, sum) in sums.taken() {
-                rows.push(row);
-                values.push(sum.settled().rounded());
-            }
-            starts.push(rows.len());
-        }
-        SymmetricMatrix::from_lower(SparseMatrix::from_csc(self.dofs.len(), starts, rows, values)?)
-    }
-
     /// `Z'(f - K u_0)`.
     pub fn load(&self, problem: &ContactProblem) -> Vec<f64> {
-        let constant = |dof: usize| self.place[dof].err().map_or(Twice::ZERO, |pivot| self.pivots[pivot].constant);
-        let mut forces: Vec<Sum> = vec![Sum::default(); self.place.len()];
+        let Solved { pivots, stays, .. } = &self.solved;
+        let mut forces: Vec<Sum> = vec![Sum::default(); problem.dofs() + self.sums.len()];
         forces.iter_mut().zip(problem.load()).for_each(|(force, &f)| force.add(f.into()));
         for (row, column, value) in problem.stiffness().lower().triplets() {
             let value = Twice::from(value);
-            forces[row].add(-(value * constant(column)));
+            forces[row].add(-(value * self.solved.constant(column)));
             if row != column {
-                forces[column].add(-(value * constant(row)));
+                forces[column].add(-(value * self.solved.constant(row)));
             }
         }
-        let mut load: Vec<Sum> = self.dofs.iter().map(|&dof| forces[dof]).collect();
-        for pivot in &self.pivots {
-            for &(dof, a) in &pivot.others {
-                load[self.place[dof].unwrap_or(0)].add(a * forces[pivot.dof].value);
-            }
+        let mut load: Vec<Sum> = stays.iter().map(|&dof| forces[dof]).collect();
+        for pivot in pivots {
+            pivot.others.iter().for_each(|&(place, a)| load[place].add(a * forces[pivot.dof].value));
         }
         load.into_iter().map(|sum| sum.settled().rounded()).collect()
     }
@@ -252,7 +198,7 @@ impl Elimination {
         for sum in &self.sums {
             all.push(sum.iter().fold(Twice::ZERO, |all_terms, &(dof, a)| all_terms + a * all[dof].into()).rounded());
         }
-        self.dofs.iter().map(|&dof| all[dof]).collect()
+        self.solved.stays.iter().map(|&dof| all[dof]).collect()
     }
 
     /// The set of the rows that stay, from one of all rows.
@@ -260,39 +206,20 @@ impl Elimination {
         self.rows.iter().map(|&row| set.contains(row)).collect()
     }
 
-    /// `Z y` of all dofs, length n, and `u_0` this many times.
-    fn of_all(&self, y: &[f64], times: f64) -> impl Iterator<Item = Twice> {
-        let given = move |pivot: &Pivot| {
-            let of = |&(dof, a): &(usize, Twice)| a * y[self.place[dof].unwrap_or(0)].into();
-            pivot.others.iter().map(of).fold(pivot.constant * times.into(), |sum, term| sum + term)
-        };
-        let value = move |place: &Result<usize, usize>| match *place {
-            Ok(place) => y[place].into(),
-            Err(pivot) => given(&self.pivots[pivot]),
-        };
-        self.place[..self.place.len() - self.sums.len()].iter().map(value)
-    }
-
     /// The displacement of all dofs, length n, from that of those that stay.
     pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
-        self.of_all(y, 1.0).map(Twice::rounded).collect()
+        self.of_dofs(y, 1.0).map(Twice::rounded).collect()
     }
 
     /// The motion of all dofs, length n, along a direction of those that stay.
     pub fn motion(&self, direction: &[f64]) -> Vec<Twice> {
-        self.of_all(direction, 0.0).collect()
+        self.of_dofs(direction, 0.0).collect()
     }
 
-    /// The multipliers of the equalities, one for each, that balance these forces on the pivots.
-    fn balancing(&self, force: &[f64]) -> Vec<f64> {
-        // No force acts on a sum, and the equalities that define sums are none of the problem.
-        let mut multipliers = vec![Twice::ZERO; self.equalities.len() + self.sums.len()];
-        for pivot in self.pivots.iter().filter(|pivot| pivot.dof < force.len()) {
-            for &(number, weight) in &pivot.weights {
-                multipliers[number] = multipliers[number] + weight * force[pivot.dof].into();
-            }
-        }
-        multipliers[..self.equalities.len()].iter().map(|sum| sum.rounded()).collect()
+    /// `Z y` of the dofs alone, and `u_0` this many times.
+    fn of_dofs(&self, y: &[f64], times: f64) -> impl Iterator<Item = Twice> {
+        let dofs = self.solved.stays.len() + self.solved.pivots.len() - self.sums.len();
+        self.solved.of_all(y, times).take(dofs)
     }
 
     /// An answer in the dofs that stay as one of the whole, without a certificate.
@@ -301,7 +228,7 @@ impl Elimination {
         let mut multiplier = vec![0.0; problem.rows()];
         self.rows.iter().zip(&answer.multiplier).for_each(|(&row, &force)| multiplier[row] = force);
         let left: Vec<f64> = problem.accurate_residual(&displacement, &multiplier).iter().map(|force| -force).collect();
-        for (pair, mu) in self.equalities.iter().zip(self.balancing(&left)) {
+        for (pair, mu) in self.equalities.iter().zip(self.solved.balancing(&left, self.equalities.len())) {
             if mu <= 0.0 { multiplier[pair.row] = mu } else { multiplier[pair.opposed] = -mu / pair.ratio }
         }
         let set = |of: &ContactSet| {
@@ -324,7 +251,8 @@ impl Elimination {
         let mut pressed = vec![0.0; problem.rows()];
         rows.iter().zip(weights).for_each(|(&row, weight)| pressed[self.rows[row]] += weight);
         let left: Vec<f64> = problem.contact().mul_transposed(&pressed).iter().map(|force| -force).collect();
-        let of_equalities = self.balancing(&left).into_iter().map(Twice::from).enumerate().collect();
+        let of_equalities = self.solved.balancing(&left, self.equalities.len());
+        let of_equalities = of_equalities.into_iter().map(Twice::from).enumerate().collect();
         let (mut all, mut of_all) = signed(&self.equalities, &of_equalities);
         all.extend(rows.iter().map(|&row| self.rows[row]));
         of_all.extend(weights);
@@ -418,7 +346,7 @@ mod tests {
         let rows = SparseMatrix::from_triplets(3, 4, &entries).unwrap();
         let follows = plain.with_equalities(&rows, vec![1.0, 5.0, -3.0]).unwrap();
         // Two of these, and the tie.
-        assert_eq!(Elimination::of(&follows).unwrap().unwrap().pivots.len(), 3);
+        assert_eq!(Elimination::of(&follows).unwrap().unwrap().solved.pivots.len(), 3);
         let contradicts = plain.with_equalities(&rows, vec![1.0, 5.0, -4.0]).unwrap();
         let Err(Error::Infeasible { rows, weights, overlap, .. }) = Elimination::of(&contradicts) else {
             panic!("nothing is found")

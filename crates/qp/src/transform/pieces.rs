@@ -1,7 +1,6 @@
 //! A problem split into pieces without coupling: each piece is a separate problem, and the answers are joined.
 
 use crate::error::Error;
-use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
@@ -20,13 +19,11 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// The pieces of `problem`, given by the piece of each dof, from 0 to `count - 1`. A row without dofs belongs to
-    /// the first.
-    pub fn of(problem: &ContactProblem, of_dof: Vec<usize>, count: usize) -> Self {
-        let mut of_row = vec![0; problem.rows()];
-        for (dof, &piece) in of_dof.iter().enumerate() {
-            problem.contact().column(dof).filter(|entry| entry.1 != 0.0).for_each(|(row, _)| of_row[row] = piece);
-        }
+    /// The pieces of `problem`, given by the piece of each of its parts, from 0 to `count - 1`.
+    pub fn of(problem: &ContactProblem, of_part: &[usize], count: usize) -> Self {
+        let parts = problem.parts();
+        let of_dof: Vec<usize> = parts.of_dofs().iter().map(|&part| of_part[part]).collect();
+        let of_row: Vec<usize> = (0..problem.rows()).map(|row| of_part[parts.of_row(row)]).collect();
         let (place_of_dof, dofs) = members(&of_dof, count);
         let (place_of_row, rows) = members(&of_row, count);
         Pieces { of_dof, of_row, place_of_dof, place_of_row, dofs, rows }
@@ -52,13 +49,7 @@ impl Pieces {
         let load = dofs.iter().map(|&dof| problem.load()[dof]).collect();
         let gap = rows.iter().map(|&row| problem.gap()[row]).collect();
         let own = ContactProblem::computed(SymmetricMatrix::from_lower(lower)?, load, contact, gap)?;
-        let Some(modes) = problem.near_null() else { return Ok(own) };
-        let of_piece = |mode: &Vec<f64>| dofs.iter().map(|&dof| mode[dof]).collect::<Vec<f64>>();
-        let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
-        match NearNullSpace::of_modes(modes.vectors().iter().map(of_piece).filter(moves).collect()) {
-            Some(modes) => own.with_near_null(modes),
-            None => Ok(own),
-        }
+        own.with_near_null_of(problem, |mode| dofs.iter().map(|&dof| mode[dof]).collect())
     }
 
     /// One value for each dof, from those of the pieces.

@@ -12,7 +12,7 @@
 
 use std::sync::OnceLock;
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::{Equilibration, SparseMatrix, SymmetricMatrix, exponent, ldexp};
 
 /// Powers of two with exponents up to this size are doubles that lose no digit.
@@ -60,7 +60,7 @@ impl Scaling {
         let contact = contact.times_powers(&rows, |dof| d[dof]);
         if let Some((place, &value)) = contact.values().iter().enumerate().find(|entry| !entry.1.is_finite()) {
             let at = contact.triplets().nth(place).map_or_else(String::new, |(row, dof, _)| format!("({row}, {dof})"));
-            return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+            return Err(LinearError::NotFinite { name: "matrix", at, value, allowed: "finite" }.into());
         }
         Ok(Scaling { equilibration, rows, unscaled: stiffness.clone(), stiffness: OnceLock::new(), contact })
     }

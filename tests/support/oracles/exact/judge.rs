@@ -1,6 +1,6 @@
 //! Compares the program's answers and claims with the exact ones.
 
-use signorini::qp::Error;
+use signorini::qp::{Error, LinearError};
 use signorini::{Certificate, ContactProblem, Goal, ProvenSet, Solution};
 
 use nalgebra::DMatrix;
@@ -221,7 +221,7 @@ impl<'a> Judge<'a> {
                 Outcome::Infeasible { is_driven, .. } => !is_driven,
                 Outcome::Solved(_) => true,
             },
-            Err(Error::NotConvex { .. }) => !matches!(self.outcome, Outcome::Indefinite { .. }),
+            Err(Error::Linear(LinearError::NotConvex { .. })) => !matches!(self.outcome, Outcome::Indefinite { .. }),
             Err(Error::UnderHeld { .. }) => matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique),
             _ => false,
         };

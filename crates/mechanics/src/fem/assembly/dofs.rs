@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::COORDINATES;
 use crate::fem::mesh::Mesh;
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 /// Takes the place of the number at a supported dof.
 const SUPPORTED: usize = usize::MAX;
@@ -52,14 +52,14 @@ impl DofMap {
     /// displacement, in length along the positive axis, or `None` for a free dof.
     ///
     /// # Errors
-    /// [`qp::Error::NotFinite`] for a prescribed displacement that is not finite.
+    /// [`linear::Error::NotFinite`] for a prescribed displacement that is not finite.
     pub fn new(prescribed: Vec<Option<f64>>) -> Result<Self, Error> {
         let (mut number, mut free) = (Vec::with_capacity(prescribed.len()), Vec::new());
         for (dof, value) in prescribed.iter().enumerate() {
             match *value {
                 Some(value) if !value.is_finite() => {
                     let (name, at) = ("prescribed displacement", format!("dof {dof}"));
-                    return Err(qp::Error::NotFinite { name, at, value, allowed: "finite" }.into());
+                    return Err(linear::Error::NotFinite { name, at, value, allowed: "finite" }.into());
                 }
                 Some(_) => number.push(SUPPORTED),
                 None => {
@@ -233,7 +233,7 @@ impl DofMap {
     /// dof, in length); supported dofs take their prescribed values.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if `free` does not have one entry per free dof.
+    /// [`linear::Error::Length`] if `free` does not have one entry per free dof.
     pub fn expand(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
         self.expand_with(free, |dof| self.prescribed(dof).unwrap_or(0.0))
     }
@@ -248,7 +248,7 @@ impl DofMap {
     }
 
     fn expand_with(&self, free: &[f64], supported: impl Fn(usize) -> f64) -> Result<Vec<f64>, Error> {
-        qp::Error::check_length("displacement", free.len(), self.free.len(), "free dofs")?;
+        linear::Error::check_length("displacement", free.len(), self.free.len(), "free dofs")?;
         let value = |(dof, &number): (usize, &usize)| if number == SUPPORTED { supported(dof) } else { free[number] };
         let mut nodal: Vec<f64> = self.number.iter().enumerate().map(value).collect();
         self.turn_back(&mut nodal);
@@ -260,7 +260,7 @@ impl DofMap {
     /// dof, in force.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if `nodal` does not have one entry per nodal dof.
+    /// [`linear::Error::Length`] if `nodal` does not have one entry per nodal dof.
     pub fn restrict(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
         let local = self.turned_in(nodal)?;
         Ok(self.free.iter().map(|&dof| local[dof]).collect())
@@ -286,7 +286,7 @@ impl DofMap {
 
     /// Nodal forces as forces on coefficients; the entries of nodes with frames run along the axes of the frame.
     fn turned_in<'a>(&self, nodal: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
-        qp::Error::check_length("nodal vector", nodal.len(), self.nodal_count(), "nodal dofs")?;
+        linear::Error::check_length("nodal vector", nodal.len(), self.nodal_count(), "nodal dofs")?;
         let mut local = Cow::Borrowed(nodal);
         if !self.basis.is_nodal() {
             self.basis.gather(local.to_mut(), self.dimension);

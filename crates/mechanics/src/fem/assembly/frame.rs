@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::fem::geometry::{COORDINATES, dot, unit};
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 /// Given axes of unit length at right angles are accepted to within this.
 const ORTHONORMAL: f64 = 1e-12;
@@ -18,14 +18,14 @@ impl Frame {
     /// right angles, zero beyond the dimension.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] if they are not, or if there are more axes than coordinates.
+    /// [`linear::Error::Setting`] if they are not, or if there are more axes than coordinates.
     pub fn completing(given: &[[f64; 3]], dimension: usize) -> Result<Self, Error> {
         let wrong =
-            |value: f64| qp::Error::Setting { name: "frame", value, allowed: "orthonormal: off by 1e-12 at most" };
+            |value: f64| linear::Error::Setting { name: "frame", value, allowed: "orthonormal: off by 1e-12 at most" };
         let dimension = dimension.min(3);
         if given.len() > dimension {
             let allowed = "of as many axes as there are coordinates at most";
-            return Err(qp::Error::Setting { name: "frame", value: given.len() as f64, allowed }.into());
+            return Err(linear::Error::Setting { name: "frame", value: given.len() as f64, allowed }.into());
         }
         for (i, a) in given.iter().enumerate() {
             for (j, b) in given[..=i].iter().enumerate() {

@@ -16,7 +16,7 @@ use crate::fem::threads::in_order;
 /// strain.
 ///
 /// # Errors
-/// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
+/// [`linear::Error::Length`](signorini_linear::Error::Length) if the displacement does not have `dim` entries per node.
 pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f64>, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let tables = body.tabulated();

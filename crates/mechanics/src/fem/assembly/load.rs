@@ -206,7 +206,7 @@ fn add_force_at(
 /// stresses.
 ///
 /// # Errors
-/// [`qp::Error::Length`](signorini_qp::Error::Length) if load or dofs do not belong to the mesh.
+/// [`linear::Error::Length`](signorini_linear::Error::Length) if load or dofs do not belong to the mesh.
 pub fn free_load(body: &ElasticBody, dofs: &DofMap, nodal: &[f64]) -> Result<Vec<f64>, Error> {
     let mut load = nodal.to_vec();
     let is_moved = || (0..dofs.nodal_count()).any(|dof| dofs.prescribed(dof).is_some_and(|value| value != 0.0));

@@ -9,7 +9,7 @@ use super::redistribution::{ElementMass, Redistribution};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::geometry::dot;
-use signorini_qp::{SparseMatrix, SymmetricMatrix};
+use signorini_linear::{SparseMatrix, SymmetricMatrix};
 
 /// The form of a mass matrix: it decides on the waves in the mesh, and on the inertia of nodes in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -58,9 +58,9 @@ impl MassForm {
 /// revolution.
 ///
 /// # Errors
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a material without density,
-/// [`qp::Error::Length`](signorini_qp::Error::Length) if `dofs` does not belong to the mesh, [`Error::Mesh`] for a mesh
-/// too coarse to redistribute its mass, [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) if the mass overflows.
+/// [`linear::Error::Setting`](signorini_linear::Error::Setting) for a material without density,
+/// [`linear::Error::Length`](signorini_linear::Error::Length) if `dofs` does not belong to the mesh, [`Error::Mesh`] for a mesh
+/// too coarse to redistribute its mass, [`linear::Error::NotFinite`](signorini_linear::Error::NotFinite) if the mass overflows.
 ///
 /// # Source
 /// H. B. Khenous, P. Laborde, Y. Renard, *Mass redistribution method for finite element contact problems in

@@ -4,7 +4,7 @@
 use super::element_stiffness;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use signorini_qp::SparseMatrix;
+use signorini_linear::SparseMatrix;
 
 /// Marks a node that is not among the requested ones.
 const OTHER: usize = usize::MAX;

@@ -10,8 +10,8 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{COORDINATES, length, unit};
 use crate::fem::mesh::Boundary;
-use signorini_qp as qp;
-use signorini_qp::{SparseMatrix, SymmetricMatrix};
+use signorini_linear as linear;
+use signorini_linear::{SparseMatrix, SymmetricMatrix};
 
 /// Forces on some nodes, in force.
 pub(crate) type NodalForces = BTreeMap<usize, [f64; 3]>;
@@ -132,7 +132,7 @@ impl Springs {
         }
         if let Some((row, _, value)) = entries.iter().find(|entry| !entry.2.is_finite()) {
             let at = format!("row {row}");
-            return Err(qp::Error::NotFinite { name: "stiffness", at, value: *value, allowed: "finite" }.into());
+            return Err(linear::Error::NotFinite { name: "stiffness", at, value: *value, allowed: "finite" }.into());
         }
         Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(stiffness.dim(), stiffness.dim(), &entries)?)?)
     }

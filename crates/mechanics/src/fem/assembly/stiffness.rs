@@ -11,8 +11,8 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::element::MAX_NODES;
 use crate::fem::threads::{on_parts, parts};
-use signorini_qp as qp;
-use signorini_qp::{SparseMatrix, SymmetricMatrix};
+use signorini_linear as linear;
+use signorini_linear::{SparseMatrix, SymmetricMatrix};
 
 /// The free dofs of one node: the number of the first, how many there are, and the axis of each: of the frame if the
 /// node has one.
@@ -43,7 +43,7 @@ impl<'a> FreeAxes<'a> {
 /// The stiffness K of the free dofs (n x n), in force per length; only its lower triangle is ever built.
 ///
 /// # Errors
-/// [`qp::Error::Length`] if `dofs` does not belong to the mesh, [`qp::Error::NotFinite`] if the stiffness overflows.
+/// [`linear::Error::Length`] if `dofs` does not belong to the mesh, [`linear::Error::NotFinite`] if the stiffness overflows.
 pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let (starts, rows) = lower_pattern(body.mesh(), dofs);
@@ -68,7 +68,7 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
     });
     if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
         let at = format!("row {}", rows[entry]);
-        return Err(qp::Error::NotFinite { name: "stiffness", at, value: values[entry], allowed: "finite" }.into());
+        return Err(linear::Error::NotFinite { name: "stiffness", at, value: values[entry], allowed: "finite" }.into());
     }
     Ok(SymmetricMatrix::from_lower(SparseMatrix::from_parts(dofs.free().len(), starts, rows, values))?)
 }

@@ -15,7 +15,7 @@ pub use region::Region;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 use crate::error::Error;
 use crate::fem::dense::DenseMatrix;
@@ -77,7 +77,7 @@ impl ElasticBody {
     /// The body of `mesh` and `material` in `formulation`, with [`Integration::Standard`].
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for an area or thickness that is not positive and finite, or a Poisson's ratio that the
+    /// [`linear::Error::Setting`] for an area or thickness that is not positive and finite, or a Poisson's ratio that the
     /// formulation does not allow; [`Error::Mesh`] for a mesh of another dimension, an element whose Jacobian is not
     /// positive, a node of a body of revolution at a negative radius.
     pub fn new(mesh: Mesh, material: Material, formulation: Formulation) -> Result<Self, Error> {
@@ -433,7 +433,7 @@ impl ElasticBody {
 
     /// Checks that a nodal vector has `dimension` entries per node.
     pub(crate) fn check_nodal(&self, name: &'static str, found: usize) -> Result<(), Error> {
-        Ok(qp::Error::check_length(name, found, self.nodal_dofs(), "nodal dofs")?)
+        Ok(linear::Error::check_length(name, found, self.nodal_dofs(), "nodal dofs")?)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, dot};
 use crate::fem::material::{Law, Material, back, local};
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 /// A material and its law in the formulation of the body, and its stress without strain.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,9 +99,9 @@ impl Phase {
     pub(super) fn with_temperature(self, temperature: Temperature) -> Result<Self, Error> {
         let [x, y, z] = temperature.gradient;
         if let Some(&value) = [temperature.value, x, y, z].iter().find(|value| !value.is_finite()) {
-            return Err(qp::Error::Setting { name: "temperature", value, allowed: "finite" }.into());
+            return Err(linear::Error::Setting { name: "temperature", value, allowed: "finite" }.into());
         }
-        let missing = qp::Error::Setting { name: "expansion", value: f64::NAN, allowed: "finite" };
+        let missing = linear::Error::Setting { name: "expansion", value: f64::NAN, allowed: "finite" };
         let per_degree = self.law.holding(&self.material.expansion().ok_or(missing)?);
         let own = self.own.unwrap_or(OwnStress::NONE);
         Ok(Phase { own: Some(OwnStress { per_degree, temperature, ..own }), ..self })
@@ -111,11 +111,11 @@ impl Phase {
         let has = |component: usize| formulation.stresses().contains(&component);
         for (component, value) in initial.into_iter().enumerate() {
             if !value.is_finite() {
-                return Err(qp::Error::Setting { name: "initial stress", value, allowed: "finite" }.into());
+                return Err(linear::Error::Setting { name: "initial stress", value, allowed: "finite" }.into());
             }
             if value != 0.0 && !has(component) {
                 let allowed = "zero in a component that the formulation does not have";
-                return Err(qp::Error::Setting { name: "initial stress", value, allowed }.into());
+                return Err(linear::Error::Setting { name: "initial stress", value, allowed }.into());
             }
         }
         Ok(Phase { own: Some(OwnStress { initial, ..self.own.unwrap_or(OwnStress::NONE) }), ..self })

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::fem::geometry::Symmetric;
 use crate::fem::material::Material;
 use crate::fem::mesh::fail;
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 impl ElasticBody {
     /// The same body with another material in some `elements`: their indices, from 0, in any order.
@@ -25,7 +25,7 @@ impl ElasticBody {
     /// temperature of an element.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a material without coefficients of expansion, or numbers that are not finite;
+    /// [`linear::Error::Setting`] for a material without coefficients of expansion, or numbers that are not finite;
     /// [`Error::Mesh`] as [`with_material`](Self::with_material).
     pub fn with_temperature(self, elements: &[usize], value: f64, gradient: [f64; 3]) -> Result<Self, Error> {
         let temperature = Temperature { value, gradient };
@@ -36,7 +36,7 @@ impl ElasticBody {
     /// (indices from 0, in any order) that acts without strain. It replaces an earlier initial stress of an element.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a component that is not finite, or that the formulation does not have;
+    /// [`linear::Error::Setting`] for a component that is not finite, or that the formulation does not have;
     /// [`Error::Mesh`] as [`with_material`](Self::with_material).
     pub fn with_initial_stress(self, elements: &[usize], stress: Symmetric) -> Result<Self, Error> {
         let formulation = self.formulation;
@@ -112,7 +112,7 @@ impl ElasticBody {
 
     /// The density of the material of every element, in the order of [`elements`](Self::elements).
     pub(crate) fn densities(&self) -> Result<Vec<f64>, Error> {
-        let missing = || qp::Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
+        let missing = || linear::Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
         let of_phases: Vec<f64> =
             self.phases.iter().map(|phase| phase.material().density().ok_or_else(missing)).collect::<Result<_, _>>()?;
         Ok(self.of_elements.iter().map(|&phase| of_phases[phase as usize]).collect())

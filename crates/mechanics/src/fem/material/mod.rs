@@ -7,7 +7,7 @@ mod orthotropic;
 pub use cylinder::Cylinder;
 pub use law::{Lame, Law, Matrices, Matrix, Stiffness, back, engineering, local};
 use orthotropic::Orthotropic;
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 use crate::error::Error;
 use crate::fem::formulation::{Formulation, positive};
@@ -32,13 +32,16 @@ impl Material {
     /// The isotropic material of Young's modulus (force per area) and Poisson's ratio.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a modulus that is not positive and finite, or a ratio outside -1 < nu <= 0.5.
+    /// [`linear::Error::Setting`] for a modulus that is not positive and finite, or a ratio outside -1 < nu <= 0.5.
     pub fn new(young: f64, poisson: f64) -> Result<Self, Error> {
         positive("young", young)?;
         if !(poisson > -1.0 && poisson <= 0.5) {
-            return Err(
-                qp::Error::Setting { name: "poisson", value: poisson, allowed: "above -1 and at most 0.5" }.into()
-            );
+            return Err(linear::Error::Setting {
+                name: "poisson",
+                value: poisson,
+                allowed: "above -1 and at most 0.5",
+            }
+            .into());
         }
         Ok(Material { elasticity: Elasticity::Isotropic { young, poisson }, density: None, expansion: None })
     }
@@ -49,7 +52,7 @@ impl Material {
     /// Tension along i contracts the material along j by nu_ij times its extension, and `nu_ij / E_i = nu_ji / E_j`.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a modulus that is not positive and finite, or a stiffness that is not positive
+    /// [`linear::Error::Setting`] for a modulus that is not positive and finite, or a stiffness that is not positive
     /// definite.
     pub fn orthotropic(young: [f64; 3], poisson: [f64; 3], shear: [f64; 3]) -> Result<Self, Error> {
         let elasticity = Elasticity::Orthotropic(Orthotropic::new(young, poisson, shear)?);
@@ -61,7 +64,7 @@ impl Material {
     /// material has no axes, and stays as it is.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for vectors that span no plane.
+    /// [`linear::Error::Setting`] for vectors that span no plane.
     pub fn along(self, first: [f64; 3], second: [f64; 3]) -> Result<Self, Error> {
         let elasticity = match self.elasticity {
             Elasticity::Orthotropic(own) => Elasticity::Orthotropic(own.along(first, second)?),
@@ -75,13 +78,13 @@ impl Material {
     /// axes, and stays as it is.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a point or a vector that is not finite, and for a vector without a length.
+    /// [`linear::Error::Setting`] for a point or a vector that is not finite, and for a vector without a length.
     pub fn around(self, point: [f64; 3], along: [f64; 3]) -> Result<Self, Error> {
         let (name, allowed) = ("orthotropic.around", "finite, with a direction that has a length");
         if let Some(&value) = point.iter().chain(&along).find(|part| !part.is_finite()) {
-            return Err(qp::Error::Setting { name, value, allowed }.into());
+            return Err(linear::Error::Setting { name, value, allowed }.into());
         }
-        let line = Cylinder::new(point, along).ok_or(qp::Error::Setting { name, value: 0.0, allowed })?;
+        let line = Cylinder::new(point, along).ok_or(linear::Error::Setting { name, value: 0.0, allowed })?;
         let elasticity = match self.elasticity {
             Elasticity::Orthotropic(own) => Elasticity::Orthotropic(own.around(line)),
             isotropic => isotropic,
@@ -92,7 +95,7 @@ impl Material {
     /// The same material with a density (mass per volume), which motions and inertia forces need.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a density that is not positive and finite.
+    /// [`linear::Error::Setting`] for a density that is not positive and finite.
     pub fn with_density(self, density: f64) -> Result<Self, Error> {
         positive("density", density)?;
         Ok(Material { density: Some(density), ..self })
@@ -102,10 +105,10 @@ impl Material {
     /// isotropic material along x, y and z; temperatures need them.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a coefficient that is not finite.
+    /// [`linear::Error::Setting`] for a coefficient that is not finite.
     pub fn with_expansion(self, along: [f64; 3]) -> Result<Self, Error> {
         match along.iter().find(|value| !value.is_finite()) {
-            Some(&value) => Err(qp::Error::Setting { name: "expansion", value, allowed: "finite" }.into()),
+            Some(&value) => Err(linear::Error::Setting { name: "expansion", value, allowed: "finite" }.into()),
             None => Ok(Material { expansion: Some(along), ..self }),
         }
     }
@@ -154,7 +157,7 @@ impl Material {
     /// The law of stress and strain in `formulation`.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for nu = 0.5 if the formulation would preserve the volume: plane strain, axisymmetric
+    /// [`linear::Error::Setting`] for nu = 0.5 if the formulation would preserve the volume: plane strain, axisymmetric
     /// bodies and space; for orthotropic axes out of the plane of a plane model; for an orthotropic stiffness that
     /// overflows.
     pub fn law(&self, formulation: &Formulation) -> Result<Law, Error> {
@@ -202,7 +205,7 @@ fn lame(young: f64, nu: f64, formulation: &Formulation) -> Result<Lame, Error> {
     let mu = young / (1.0 + nu) / 2.0;
     let volumetric = |allowed| match nu < 0.5 {
         true => Ok(Lame { lambda: young * nu / (1.0 + nu) / (1.0 - 2.0 * nu), mu }),
-        false => Err(qp::Error::Setting { name: "poisson", value: nu, allowed }.into()),
+        false => Err(linear::Error::Setting { name: "poisson", value: nu, allowed }.into()),
     };
     match formulation {
         Formulation::Bar { .. } => Ok(Lame { lambda: 0.0, mu: young / 2.0 }),

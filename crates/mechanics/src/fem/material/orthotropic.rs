@@ -1,6 +1,6 @@
 //! Orthotropic elasticity: three planes of symmetry, eps = S sigma along the axes of the material.
 
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 use super::cylinder::Cylinder;
 use super::law::{Matrices, Matrix};
@@ -53,12 +53,12 @@ impl Orthotropic {
         if let Some(&(name, value, _)) = pairs.iter().find(|&&(_, one, other)| !is_small(one, other)) {
             let allowed = "of a square below the ratio of the two Young's moduli, nu_ij^2 < E_i/E_j: the stiffness is not positive \
                            definite";
-            return Err(qp::Error::Setting { name, value, allowed }.into());
+            return Err(linear::Error::Setting { name, value, allowed }.into());
         }
         let determinant = 1.0 - nu12 * nu21 - nu23 * nu32 - nu13 * nu31 - 2.0 * nu21 * nu32 * nu13;
         if determinant.is_nan() || determinant <= 0.0 {
             return Err(
-                qp::Error::Setting { name: "orthotropic.poisson", value: determinant, allowed: DEFINITE }.into()
+                linear::Error::Setting { name: "orthotropic.poisson", value: determinant, allowed: DEFINITE }.into()
             );
         }
         Ok(Orthotropic { young, poisson, shear, axes: COORDINATES, around: None })
@@ -71,7 +71,7 @@ impl Orthotropic {
         let sine = length(across);
         if sine.is_nan() || sine <= SAME_DIRECTION {
             let allowed = "above 1e-9, which is the sine between the two axes: they must span a plane";
-            return Err(qp::Error::Setting { name: "orthotropic.axes", value: sine, allowed }.into());
+            return Err(linear::Error::Setting { name: "orthotropic.axes", value: sine, allowed }.into());
         }
         let third = unit(across);
         Ok(Orthotropic { axes: [first, cross(third, first), third], around: None, ..self })
@@ -94,7 +94,7 @@ impl Orthotropic {
         let lean = dot(third, third) - third[2].powi(2);
         if is_plane && lean > SAME_DIRECTION * SAME_DIRECTION {
             let allowed = "zero, which is the square of the sine between the third axis and the normal of the plane";
-            return Err(qp::Error::Setting { name: "orthotropic.axes", value: lean, allowed }.into());
+            return Err(linear::Error::Setting { name: "orthotropic.axes", value: lean, allowed }.into());
         }
         let compliance = self.compliance();
         // The compliance of the components with stress is inverted if the other stresses vanish, the stiffness of the
@@ -108,7 +108,7 @@ impl Orthotropic {
 
     fn overflow(&self) -> Error {
         let allowed = "of a size that leaves the inverse of the stiffness finite";
-        qp::Error::Setting { name: "orthotropic.young[0]", value: self.young[0], allowed }.into()
+        linear::Error::Setting { name: "orthotropic.young[0]", value: self.young[0], allowed }.into()
     }
 
     /// A tensor with these normal components along the axes of the material.

@@ -88,7 +88,7 @@ impl Mesh {
     /// The number of the piece of each element: elements of one piece are joined by common faces.
     pub(crate) fn pieces(&self) -> Vec<usize> {
         let mut first_at: HashMap<Key, usize> = HashMap::new();
-        let mut forest = signorini_qp::Forest::new(self.element_count());
+        let mut forest = signorini_linear::Forest::new(self.element_count());
         for (element, nodes) in self.elements().enumerate() {
             for face in self.kind_of(element).reference().faces {
                 forest.join(*first_at.entry(key(face.iter().map(|&local| nodes[local]))).or_insert(element), element);

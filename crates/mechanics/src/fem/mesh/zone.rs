@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 use super::axis::MAX_LINES;
 use crate::error::Error;
@@ -35,7 +35,7 @@ const SMALLEST: f64 = 1e-8;
 
 impl Zone {
     pub(crate) fn check(&self, radius: f64) -> Result<(), Error> {
-        let fail = |name, value, allowed| Err(qp::Error::Setting { name, value, allowed }.into());
+        let fail = |name, value, allowed| Err(linear::Error::Setting { name, value, allowed }.into());
         positive("radius", radius)?;
         if !(self.width > 0.0 && self.width <= radius) {
             return fail("zone.width", self.width, "positive, and at most the radius");
@@ -85,7 +85,7 @@ impl Zone {
             growing.push(next);
             if growing.len() > MAX_LINES {
                 let (name, allowed) = ("zone.growth", "larger: the cells are more than the nodes that are allowed");
-                return Err(qp::Error::Setting { name, value: self.growth, allowed }.into());
+                return Err(linear::Error::Setting { name, value: self.growth, allowed }.into());
             }
         }
         // All growing cells are scaled by one factor, so that the last line is at `length`.

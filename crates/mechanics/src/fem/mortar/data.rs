@@ -1,6 +1,6 @@
 //! Two surfaces, and the rows between them: plain data.
 
-use signorini_qp::SparseMatrix;
+use signorini_linear::SparseMatrix;
 
 use super::facet::SurfaceMesh;
 use super::skin::TwoSkins;

@@ -40,7 +40,7 @@ use corners::{Sided, named};
 use coverage::{Covered, Part, kept, parts};
 use facet::{Facet, SurfaceMesh};
 use search::{Distances, Sides, Sight};
-use signorini_qp::SparseMatrix;
+use signorini_linear::SparseMatrix;
 
 pub(crate) use data::{Found, MortarRow, Opposite};
 pub use data::{Mortar, MortarRows};

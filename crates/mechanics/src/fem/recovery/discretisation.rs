@@ -7,7 +7,7 @@ use crate::fem::body::ElasticBody;
 use crate::fem::element::{MAX_NODES, PerNode, Rule, Tabulated, TabulatedPoint};
 use crate::fem::geometry::Symmetric;
 use crate::fem::threads::each;
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 /// Estimates the relative error in energy norm of the nodal displacement `displacement` (length `dim * n_nodes`), whose
 /// stress is `field`, against the solution of the continuum:
@@ -22,7 +22,7 @@ use signorini_qp as qp;
 /// 1992.
 ///
 /// # Errors
-/// [`qp::Error::Length`] if displacement or field do not belong to the body.
+/// [`linear::Error::Length`] if displacement or field do not belong to the body.
 pub fn discretisation_error(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<f64, Error> {
     Ok(EstimatedError::of(body, displacement, field)?.relative())
 }
@@ -45,7 +45,7 @@ impl EstimatedError {
     /// As [`discretisation_error`].
     pub fn of(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<Self, Error> {
         body.check_nodal("nodal displacement", displacement.len())?;
-        qp::Error::check_length("nodal stress", field.nodes.len(), body.mesh().nodes().len(), "nodes")?;
+        linear::Error::check_length("nodal stress", field.nodes.len(), body.mesh().nodes().len(), "nodes")?;
         // The rule for bodies of revolution also integrates the squares of linear differences.
         let tables = body.per_kind(|reference| Tabulated::new(reference, Rule::Revolved));
         let standard = body.tabulated();

@@ -8,7 +8,7 @@ use crate::fem::formulation::Formulation;
 use crate::fem::geometry::Symmetric;
 use crate::fem::material::Law;
 use crate::fem::threads::each;
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 /// The strain at each node, of all elements around it: recovered as the stress of [`super::StressField`].
 pub(crate) fn nodal_strain(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<Symmetric>, Error> {
@@ -37,7 +37,7 @@ pub(crate) fn at_points(
     });
     let values = |&index: &usize| {
         let allowed = "smaller than the number of elements (indices from 0)";
-        let missing = qp::Error::Setting { name: "element", value: index as f64, allowed };
+        let missing = linear::Error::Setting { name: "element", value: index as f64, allowed };
         let element = body.element(index).ok_or(missing)?;
         let strained = body.strained(&tables, displacement, &element);
         let layer: Vec<[Symmetric; 2]> =

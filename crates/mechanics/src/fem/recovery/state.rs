@@ -17,7 +17,7 @@ use crate::fem::threads::{each, in_order};
 /// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
 ///
 /// # Errors
-/// [`qp::Error::Length`](signorini_qp::Error::Length) if the displacement does not have `dim` entries per node.
+/// [`linear::Error::Length`](signorini_linear::Error::Length) if the displacement does not have `dim` entries per node.
 pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
     Ok(State::of(body, displacement)?.stress)
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 /// Coordinates larger than this are refused: products of three would overflow.
 const LARGEST: f64 = 1e90;
@@ -74,8 +74,8 @@ impl Facets {
     pub fn fault(&self, place: usize, message: impl Into<String>) -> Error {
         let (file, message) = (self.file.clone(), message.into());
         match self.unit {
-            Unit::Lines => qp::Error::FileSyntax { file, line: place.max(1), message }.into(),
-            Unit::Bytes => qp::Error::FileBytes { file, byte: place, message }.into(),
+            Unit::Lines => linear::Error::FileSyntax { file, line: place.max(1), message }.into(),
+            Unit::Bytes => linear::Error::FileBytes { file, byte: place, message }.into(),
         }
     }
 

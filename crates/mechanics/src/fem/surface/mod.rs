@@ -22,8 +22,8 @@ pub(crate) use triangle::distance_from;
 
 use crate::error::Error;
 use crate::fem::formulation::positive;
-use signorini_qp as qp;
-use signorini_qp::file::read_capped;
+use signorini_linear as linear;
+use signorini_linear::file::read_capped;
 
 /// Most bytes of a surface: twenty million triangles.
 const MOST_OF_SURFACE: u64 = 1 << 30;
@@ -33,8 +33,8 @@ impl ClosedSurface {
     /// coordinates are multiplied by `scale` and moved by `origin` (`[x, y, z]`, in length).
     ///
     /// # Errors
-    /// [`qp::Error::File`] for a file that cannot be read, [`qp::Error::Setting`] for a scale that is not positive and
-    /// finite; [`qp::Error::FileSyntax`] with a line, or [`qp::Error::FileBytes`] with an offset, for a file of another
+    /// [`linear::Error::File`] for a file that cannot be read, [`linear::Error::Setting`] for a scale that is not positive and
+    /// finite; [`linear::Error::FileSyntax`] with a line, or [`linear::Error::FileBytes`] with an offset, for a file of another
     /// form, coordinates that are not finite or too large, and triangles that do not close to the surface of a solid.
     /// No error quotes the file.
     pub fn read(file: &Path, scale: f64, origin: [f64; 3]) -> Result<Self, Error> {
@@ -45,7 +45,7 @@ impl ClosedSurface {
             Some("obj") => obj::read,
             _ => {
                 let message = "its name must end in `.stl` or `.obj`, the form of its content".to_string();
-                return Err(qp::Error::FileSyntax { file: file.into(), line: 1, message }.into());
+                return Err(linear::Error::FileSyntax { file: file.into(), line: 1, message }.into());
             }
         };
         let facets = parse(file, &read_capped(file, MOST_OF_SURFACE)?)?;

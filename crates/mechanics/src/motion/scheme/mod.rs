@@ -253,12 +253,12 @@ impl Scheme {
     /// Checks the range of the parameter.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a value outside its range.
+    /// [`qp::LinearError::Setting`] for a value outside its range.
     pub fn check(self) -> Result<(), Error> {
         let value = self.value();
         match self.spec().parameter() {
             Some(Parameter { name, allows, range, .. }) if !allows(value) => {
-                Err(qp::Error::Setting { name, value, allowed: range }.into())
+                Err(qp::LinearError::Setting { name, value, allowed: range }.into())
             }
             _ => Ok(()),
         }

@@ -76,7 +76,7 @@ impl Advance for PenaltyLoop {
             state.steps + 1,
             self.threshold
         );
-        Err(qp::Error::Numerical { step: "penalty loop", reason }.into())
+        Err(qp::LinearError::Numerical { step: "penalty loop", reason }.into())
     }
 
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {

@@ -24,13 +24,16 @@ pub(crate) fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
     let mass = problem.mass();
     let diagonal = mass.diagonal();
     if let Some(&value) = diagonal.iter().find(|&&entry| entry <= 0.0) {
-        return Err(
-            qp::Error::Setting { name: "mass of a dof", value, allowed: "positive in an explicit scheme" }.into()
-        );
+        return Err(qp::LinearError::Setting {
+            name: "mass of a dof",
+            value,
+            allowed: "positive in an explicit scheme",
+        }
+        .into());
     }
     if let Some((_, _, value)) = mass.lower().triplets().find(|&(row, column, value)| row != column && value != 0.0) {
         let allowed = "zero in an explicit scheme: take a lumped mass";
-        return Err(qp::Error::Setting { name: "entry of the mass beside its diagonal", value, allowed }.into());
+        return Err(qp::LinearError::Setting { name: "entry of the mass beside its diagonal", value, allowed }.into());
     }
     let omega = frequency_bound(problem.statics().stiffness(), &diagonal);
     let [of_mass, of_stiffness] = problem.damping();
@@ -64,7 +67,7 @@ pub(super) fn check_step(problem: &DynamicProblem, step: f64) -> Result<(), Erro
         return Ok(());
     }
     let reason = format!("the step {step:e} is beyond the largest stable one, {most:e}; take a smaller step");
-    Err(qp::Error::Numerical { step: "central differences", reason }.into())
+    Err(qp::LinearError::Numerical { step: "central differences", reason }.into())
 }
 
 impl DynamicProblem {
@@ -87,7 +90,7 @@ impl DynamicProblem {
     /// for every positive x. It is sharp in a bar and a few percent to some ten percent large elsewhere.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for a mass that is not diagonal, or not positive.
+    /// [`qp::LinearError::Setting`] for a mass that is not diagonal, or not positive.
     ///
     /// # Source
     /// T. Belytschko, W. K. Liu, B. Moran, *Nonlinear Finite Elements for Continua and Structures*, Wiley, 2000,

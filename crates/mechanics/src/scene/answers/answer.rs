@@ -70,7 +70,7 @@ impl Answer {
     /// The answer of a solver, with its displacement, multiplier and closed rows.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if it is not an answer to this model; [`Error::BeyondSmallDisplacements`] with the
+    /// [`qp::LinearError::Length`] if it is not an answer to this model; [`Error::BeyondSmallDisplacements`] with the
     /// solution if small displacements do not describe it, unless the scene [is linear](crate::Scene::is_linear).
     pub fn of(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
         let answer = Self::of_any_size(model, solution)?;
@@ -83,7 +83,7 @@ impl Answer {
     /// The same, also for an answer that small displacements do not describe.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if it is not an answer to this model.
+    /// [`qp::LinearError::Length`] if it is not an answer to this model.
     pub fn of_any_size(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
         let multiplier = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
         Self::new(model, &solution.displacement, &multiplier, &solution.contact_set)
@@ -93,14 +93,14 @@ impl Answer {
     /// entry per contact row, then one per equation of a tie, in force) and the closed rows.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if a vector does not fit the model.
+    /// [`qp::LinearError::Length`] if a vector does not fit the model.
     pub fn new(
         model: Arc<Model>,
         displacement: &[f64],
         multiplier: &[f64],
         contact_set: &ContactSet,
     ) -> Result<Self, Error> {
-        qp::Error::check_length("contact set", contact_set.rows(), model.rows().len(), "contact rows")?;
+        qp::LinearError::check_length("contact set", contact_set.rows(), model.rows().len(), "contact rows")?;
         let (multiplier, of_ties) = model.split(multiplier)?;
         Ok(Answer {
             displacement: model.nodal_displacement(displacement)?,
@@ -124,9 +124,9 @@ impl Answer {
     /// the equilibrium at a moment of a vibration. Contact rows, pressures and the values of the unknowns stay.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] for a motion of another mesh.
+    /// [`qp::LinearError::Length`] for a motion of another mesh.
     pub fn moved_by(&self, motion: &[f64], factor: f64) -> Result<Self, Error> {
-        qp::Error::check_length("motion", motion.len(), self.displacement.len(), "nodal dofs")?;
+        qp::LinearError::check_length("motion", motion.len(), self.displacement.len(), "nodal dofs")?;
         let displacement = self.displacement.iter().zip(motion).map(|(own, moved)| own + factor * moved).collect();
         let (state, beyond, forces, resultants) = (OnceLock::new(), OnceLock::new(), OnceLock::new(), OnceLock::new());
         Ok(Answer { displacement, state, beyond, forces, resultants, ..self.clone() })
@@ -291,7 +291,7 @@ impl Answer {
     /// positive.
     ///
     /// # Errors
-    /// [`qp::Error::Setting`] for an element that does not exist.
+    /// [`qp::LinearError::Setting`] for an element that does not exist.
     pub fn strain_and_stress(&self, elements: &[usize]) -> Result<Vec<Vec<[[f64; 6]; 2]>>, Error> {
         at_points(self.model.body(), &self.displacement, elements)
     }
@@ -396,7 +396,7 @@ impl Model {
     /// because a contact row may press on a supported dof.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if `displacement` or `multiplier` do not fit.
+    /// [`qp::LinearError::Length`] if `displacement` or `multiplier` do not fit.
     pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         Ok(self.forces_at(displacement, multiplier)?.reactions)
     }

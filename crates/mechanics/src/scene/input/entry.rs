@@ -99,7 +99,7 @@ pub(crate) fn direction(path: &str, entries: &[f64], dimension: usize) -> Result
 /// A setting that a lower module refused, with its place in the scene.
 pub(crate) fn located(error: Error, prefix: &str) -> Error {
     match error {
-        Error::Qp(qp::Error::Setting { name, value, allowed }) => {
+        Error::Linear(qp::LinearError::Setting { name, value, allowed }) => {
             wrong(format!("{prefix}{name}"), format!("{} is not allowed: it must be {allowed}", number(value)))
         }
         other => other,

@@ -34,14 +34,17 @@ impl Files<'_> {
         let real = real.map_err(|source| {
             let named = Named { reason: source.to_string(), scene: "the scene".into(), path: path.clone() };
             let full = std::path::absolute(&file).unwrap_or_else(|_| file.clone());
-            qp::Error::File { action: "read", path: full, source: io::Error::new(source.kind(), named) }
+            qp::LinearError::File { action: "read", path: full, source: io::Error::new(source.kind(), named) }
         })?;
         if self.reads_outside {
             return Ok(file);
         }
         let home = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
-        let home =
-            home.canonicalize().map_err(|source| qp::Error::File { action: "read", path: home.into(), source })?;
+        let home = home.canonicalize().map_err(|source| qp::LinearError::File {
+            action: "read",
+            path: home.into(),
+            source,
+        })?;
         if !real.starts_with(home) {
             let message = format!(
                 "the file {} lies outside the folder of the scene; copy it there, or allow it (--allow-outside)",

@@ -28,7 +28,7 @@ impl Scene {
             Error::Scene { path, message } => match of(&path) {
                 Some((file, line)) => {
                     let message = format!("at `{path}` of the scene of this deck: {message}");
-                    qp::Error::FileSyntax { file, line, message }.into()
+                    qp::LinearError::FileSyntax { file, line, message }.into()
                 }
                 None => Error::Scene { path, message },
             },
@@ -61,7 +61,7 @@ impl Scene {
                 let found = place_of(&path).map(|(line, column)| format!("{}:{line}:{column}: ", file.display()));
                 Error::Refused { code, place: found.unwrap_or(place), path, message }
             }
-            Error::Qp(qp::Error::File { action, path, source }) => {
+            Error::Linear(qp::LinearError::File { action, path, source }) => {
                 let named = source.get_ref().and_then(|reason| reason.downcast_ref::<Named>()).cloned();
                 let place = named.as_ref().and_then(|named| place_of(&named.path));
                 let source = match (named, place) {
@@ -71,7 +71,7 @@ impl Scene {
                     }
                     _ => source,
                 };
-                qp::Error::File { action, path, source }.into()
+                qp::LinearError::File { action, path, source }.into()
             }
             other => other,
         }

@@ -33,12 +33,12 @@ impl Scene {
     /// files start in its folder.
     ///
     /// # Errors
-    /// [`qp::Error::File`] for a file that cannot be read, and as [`Scene::from_json`] and [`Scene::read_deck`].
+    /// [`qp::LinearError::File`] for a file that cannot be read, and as [`Scene::from_json`] and [`Scene::read_deck`].
     pub fn read(path: impl AsRef<Path>) -> Result<Scene, Error> {
         let path = path.as_ref();
         if path.is_dir() {
             let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, but a scene is a JSON file");
-            return Err(qp::Error::File { action: "read", path: path.into(), source }.into());
+            return Err(qp::LinearError::File { action: "read", path: path.into(), source }.into());
         }
         if is_deck(path) {
             return Scene::read_deck(path, &[], None);

@@ -19,7 +19,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Scene`] for a value that describes no problem; of a deck
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with its line;
+    /// [`qp::LinearError::FileSyntax`](signorini_qp::LinearError::FileSyntax) with its line;
     /// [`qp::Error::UnderHeld`](signorini_qp::Error::UnderHeld) for a rigid-body mode that neither supports nor
     /// obstacles resist.
     pub fn build(&self) -> Result<Model, Error> {

@@ -145,7 +145,7 @@ impl DescribedBody<'_> {
         self.materials.check(&formulation)?;
         let at_body = |error| match error {
             // A setting next to the body: the thickness.
-            Error::Qp(qp::Error::Setting { .. }) => located(error, ""),
+            Error::Linear(qp::LinearError::Setting { .. }) => located(error, ""),
             other => self.at_body(other),
         };
         let body = ElasticBody::new(self.mesh(read)?, first, formulation).map_err(at_body)?;

@@ -184,10 +184,10 @@ impl BodyMaterials<'_> {
             ModelSpec::Space => "above -1 and below 0.5 in space",
         };
         match error {
-            Error::Qp(qp::Error::Setting { name: "poisson", value, .. }) => {
-                located(qp::Error::Setting { name: "poisson", value, allowed }.into(), &prefix)
+            Error::Linear(qp::LinearError::Setting { name: "poisson", value, .. }) => {
+                located(qp::LinearError::Setting { name: "poisson", value, allowed }.into(), &prefix)
             }
-            Error::Qp(qp::Error::Setting { name: "orthotropic.poisson", value, .. }) => {
+            Error::Linear(qp::LinearError::Setting { name: "orthotropic.poisson", value, .. }) => {
                 let message = format!(
                     "the ratios make no positive definite stiffness: 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 is {}; it \
                      must be positive",

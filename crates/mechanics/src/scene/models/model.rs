@@ -64,7 +64,7 @@ impl Model {
         }
         let stiffness = stiffness(&parts.body, &parts.dofs).and_then(|of_body| parts.on_springs(of_body));
         let of_free = stiffness.map_err(|error| match error {
-            Error::Qp(qp::Error::NotFinite { .. }) => {
+            Error::Linear(qp::LinearError::NotFinite { .. }) => {
                 let message = "the stiffness that it makes with body and thickness overflows; choose other units";
                 wrong("material", message)
             }
@@ -119,7 +119,7 @@ impl Model {
     /// keep the normals that they have.
     ///
     /// # Errors
-    /// [`qp::Error::NotFinite`] for gaps that are not finite.
+    /// [`qp::LinearError::NotFinite`] for gaps that are not finite.
     pub fn with_moved_obstacles(&self, moved: &[f64]) -> Result<Self, Error> {
         let mut model = Model { moved: moved.to_vec(), ..self.clone() };
         let mut gap = self.problem.gap().to_vec();
@@ -366,7 +366,7 @@ impl Model {
     /// prescribed values.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if `displacement` does not have one entry per free dof.
+    /// [`qp::LinearError::Length`] if `displacement` does not have one entry per free dof.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
         self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
     }
@@ -396,7 +396,7 @@ impl Model {
     /// curved; it shows the pressure of the candidate next to it.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] if `multiplier` does not have one entry per contact row.
+    /// [`qp::LinearError::Length`] if `multiplier` does not have one entry per contact row.
     pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
         let largest = self.rows.iter().fold(0.0, |largest: f64, row| largest.max(row.tributary_area));
@@ -461,11 +461,11 @@ impl Model {
     pub(crate) fn split<'a>(&self, multiplier: &'a [f64]) -> Result<(&'a [f64], &'a [f64]), Error> {
         let (rows, ties) = (self.rows.len(), self.parts.ties.rows.len());
         let of = if ties == 0 { "contact rows" } else { "contact rows and equations of ties" };
-        qp::Error::check_length("multiplier", multiplier.len(), rows + ties, of)?;
+        qp::LinearError::check_length("multiplier", multiplier.len(), rows + ties, of)?;
         Ok(multiplier.split_at(rows))
     }
 
     pub(crate) fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {
-        Ok(qp::Error::check_length("multiplier", multiplier.len(), self.rows.len(), "contact rows")?)
+        Ok(qp::LinearError::check_length("multiplier", multiplier.len(), self.rows.len(), "contact rows")?)
     }
 }

@@ -120,7 +120,7 @@ impl Unknowns {
 
     /// The motion of the free dofs in one of the unknowns.
     pub fn motion<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
-        qp::Error::check_length("displacement", values.len(), self.count(), "unknowns")?;
+        qp::LinearError::check_length("displacement", values.len(), self.count(), "unknowns")?;
         let of_body = &values[..self.of_body()];
         Ok(self
             .on_faces

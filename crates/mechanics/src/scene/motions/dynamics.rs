@@ -177,7 +177,7 @@ impl Scene {
         let mut problem = DynamicProblem::new(statics, mass)?
             .with_damping(spec.damping.mass, spec.damping.stiffness)
             .map_err(|error| match error {
-                Error::Qp(qp::Error::Setting { name, value, allowed }) => {
+                Error::Linear(qp::LinearError::Setting { name, value, allowed }) => {
                     let field = if name == "mass damping" { "mass" } else { "stiffness" };
                     let message = format!("{} is not allowed: it must be {allowed}", number(value));
                     wrong(format!("{PATH}.damping.{field}"), message)
@@ -264,11 +264,11 @@ impl Dynamics {
     /// resume and the next step, this balance does not exist, and the supports are left out.
     ///
     /// # Errors
-    /// [`qp::Error::Length`] for an integrator of another model.
+    /// [`qp::LinearError::Length`] for an integrator of another model.
     pub fn resultants(&self, model: &Model, integrator: &Integrator) -> Result<Vec<Resultant>, Error> {
         let multiplier = &integrator.state().multiplier;
         let [found, expected] = [integrator.problem(), &self.problem].map(|problem| problem.statics().dofs());
-        qp::Error::check_length("displacement", found, expected, "free dofs")?;
+        qp::LinearError::check_length("displacement", found, expected, "free dofs")?;
         let mut all = model.contact_resultants(multiplier)?;
         for (index, resultant) in all.iter_mut().enumerate() {
             resultant.travel = model.travel(&integrator.state().displacement, index)?;

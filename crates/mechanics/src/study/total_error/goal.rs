@@ -33,7 +33,7 @@ impl TotalErrorGoal {
     pub(super) fn check(self) -> Result<(), Error> {
         for (name, value) in [("total_error", Some(self.total_error)), ("force_error", self.force_error)] {
             if let Some(value) = value.filter(|&value| !Self::is_allowed(value)) {
-                return Err(qp::Error::Setting { name, value, allowed: Self::ALLOWED }.into());
+                return Err(qp::LinearError::Setting { name, value, allowed: Self::ALLOWED }.into());
             }
         }
         Ok(())
@@ -127,7 +127,7 @@ mod tests {
         assert!(TotalErrorGoal::from(0.5).check().is_ok());
         for wrong in [0.0, -1.0, 1.0, f64::NAN, f64::INFINITY] {
             assert!(
-                matches!(TotalErrorGoal::from(wrong).check(), Err(Error::Qp(qp::Error::Setting { .. }))),
+                matches!(TotalErrorGoal::from(wrong).check(), Err(Error::Linear(qp::LinearError::Setting { .. }))),
                 "{wrong}"
             );
             let of_force = TotalErrorGoal { total_error: 0.5, force_error: Some(wrong) };

@@ -45,7 +45,7 @@ use found::Search;
 /// ```
 ///
 /// # Errors
-/// [`signorini_qp::Error::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in the
+/// [`signorini_qp::LinearError::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in the
 /// continuum; those of [`Scene::build`] and of [`signorini_qp::solve`] on the first mesh.
 pub fn total_error(scene: &Scene, goal: impl Into<TotalErrorGoal>) -> Result<TotalError, Error> {
     let model = Arc::new(scene.build()?);
@@ -57,7 +57,7 @@ impl TotalError {
     /// `keep` is called with what was found after each mesh but the last.
     ///
     /// # Errors
-    /// [`signorini_qp::Error::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in
+    /// [`signorini_qp::LinearError::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in
     /// the continuum and for an error of the force without a guarantee; those of [`signorini_qp::solve`] on the first
     /// mesh.
     pub fn search(

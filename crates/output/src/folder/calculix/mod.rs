@@ -43,7 +43,7 @@ impl<'a> CalculixFiles<'a> {
     /// Removes `NAME.dat`, `NAME.sta` and `NAME.frd` of an earlier run; `stem` is NAME with its folder.
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File) if a file stays.
+    /// [`qp::LinearError::File`](signorini_qp::LinearError::File) if a file stays.
     pub fn remove(stem: &Path) -> Result<(), Error> {
         let folder = stem.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let name = stem.file_name().unwrap_or_default().to_string_lossy();
@@ -55,8 +55,8 @@ impl<'a> CalculixFiles<'a> {
     /// folder.
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File) if the system refuses,
-    /// [`qp::Error::NotFinite`](signorini_qp::Error::NotFinite) for a value that the form cannot hold, and those of the
+    /// [`qp::LinearError::File`](signorini_qp::LinearError::File) if the system refuses,
+    /// [`qp::LinearError::NotFinite`](signorini_qp::LinearError::NotFinite) for a value that the form cannot hold, and those of the
     /// recovery of stresses.
     pub fn write(&self, stem: &Path) -> Result<(), Error> {
         let mut tables = Vec::with_capacity(self.0.len());

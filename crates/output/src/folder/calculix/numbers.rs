@@ -15,7 +15,7 @@ pub(super) fn checked(of: &str, values: Vec<f64>) -> Result<Vec<f64>, Error> {
     let has_room = |value: &f64| value.abs() < LARGEST;
     match values.iter().position(|value| !has_room(value)) {
         None => Ok(values),
-        Some(entry) => Err(qp::Error::NotFinite {
+        Some(entry) => Err(qp::LinearError::NotFinite {
             name: "a result in the form of CalculiX",
             at: format!("entry {entry} of {of}"),
             value: values[entry],

@@ -8,7 +8,8 @@
 //! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
 use super::repair::{Repair, Witness};
-use super::{Answer, EnergyNorm, ErrorBound};
+use super::row_by_row::bound_row_by_row;
+use super::{Answer, EnergyNorm, ErrorBound, rounding_of_residual, rows_that_look_closed, underflow};
 use crate::problem::ContactProblem;
 
 /// Repairs that start from the witness of the previous one.
@@ -26,77 +27,94 @@ const SMALL: f64 = 1e-3;
 /// With springs, a factor that loses more than this is too inaccurate for the energy of a shift.
 const LOST_WITH_SPRINGS: f64 = 1e4;
 
-impl ContactProblem {
-    /// The bound from the repair on the boundary; `None` if there is no boundary, or if the rows that look closed
-    /// cannot be met together.
-    pub(super) fn bound_on_boundary(&self, norm: &EnergyNorm, answer: &Answer, closed: &[bool]) -> Option<ErrorBound> {
-        let own = self.beside_springs(norm, answer);
-        let first = FirstRepair::new(self, norm, &own, closed)?;
-        if first.is_sharp { Some(first.bound) } else { self.repeated(first, answer).0 }
+/// An upper bound on `|u - u*|_K`.
+pub fn energy_error_bound(norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
+    let closed = rows_that_look_closed(answer);
+    let on_boundary = bound_on_boundary(norm, answer, &closed);
+    // A bound that was cut short is not used.
+    let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
+    let bound = on_boundary
+        .unwrap_or_else(|| bound_row_by_row(norm, answer, Some(closed)).smaller(bound_row_by_row(norm, answer, None)));
+    let (underflow, rounding) = (underflow(answer), rounding_of_residual(answer));
+    let bound = bound.widened(norm.rounding());
+    let with_lost = |bound: f64, rounding: f64| bound + underflow + norm.loss() * rounding;
+    let of_part = |(bound, rounding): (f64, &f64)| with_lost(bound, *rounding);
+    ErrorBound {
+        whole: with_lost(bound.whole, rounding.iter().sum()),
+        of_parts: bound.of_parts.map(|parts| parts.into_iter().zip(&rounding).map(of_part).collect()),
     }
+}
 
-    /// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not
-    /// known.
-    pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
-        let answer = self.answer(u, lambda);
-        let own = self.beside_springs(norm, &answer);
-        let closed = self.rows_that_look_closed(&answer);
-        let first = FirstRepair::new(self, norm, &own, &closed)?;
-        if first.is_sharp { Some(first.repair.answer(&first.witness)) } else { Some(self.repeated(first, &answer).1) }
-    }
+/// The bound from the repair on the boundary; `None` if there is no boundary, or if the rows that look closed
+/// cannot be met together.
+pub fn bound_on_boundary(norm: &EnergyNorm, answer: &Answer, closed: &[bool]) -> Option<ErrorBound> {
+    let own = beside_springs(norm, answer);
+    let first = FirstRepair::new(norm, &own, closed)?;
+    if first.is_sharp { Some(first.bound) } else { repeated(first, answer).0 }
+}
 
-    /// The answer with the forces of the springs of the norm in its residual.
-    fn beside_springs<'a>(&self, norm: &EnergyNorm, answer: &Answer<'a>) -> Answer<'a> {
-        let residual = match &norm.springs {
-            Some(springs) => springs.residual(&self.contact, &answer.residual, &answer.violation),
-            None => answer.residual.clone(),
-        };
-        Answer { residual, violation: answer.violation.clone(), ..*answer }
-    }
+/// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not
+/// known.
+pub fn repaired(problem: &ContactProblem, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
+    let answer = Answer::of(problem, u, lambda);
+    let own = beside_springs(norm, &answer);
+    let closed = rows_that_look_closed(&answer);
+    let first = FirstRepair::new(norm, &own, &closed)?;
+    if first.is_sharp { Some(first.repair.answer(&first.witness)) } else { Some(repeated(first, &answer).1) }
+}
 
-    /// Repairs that start from the witness of the previous one: the best bound, if there is one, with the answer moved
-    /// to its witness.
-    ///
-    /// The rounding of a large shift may be a large distance between rows that follow from others, and forces that
-    /// cancel each other leave what the factor has rounded. A repair from the witness itself has small shifts, forces
-    /// and changes of force; the distance of the answer from there needs no factor.
-    fn repeated(&self, first: FirstRepair, answer: &Answer) -> (Option<ErrorBound>, Moved) {
-        let FirstRepair { repair, mut witness, .. } = first;
-        let norm = repair.norm;
-        let mut multipliers = vec![answer.multiplier.to_vec()];
-        let mut next = (repair.answer(&witness), repair.expanded(&witness.change));
-        let mut best: (Option<ErrorBound>, Moved) = (None, next.0.clone());
-        for _ in 0..MOST_NEAR {
-            let ((moved, multiplier), change) = next;
-            // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no
-            // stiffness.
-            let rounded = |row: usize| if multiplier[row] != 0.0 && !witness.passes[row] { 1.0 } else { 0.0 };
-            multipliers.iter_mut().flat_map(|part| part.iter_mut().enumerate()).for_each(|(row, x)| *x *= rounded(row));
-            multipliers.push(change);
-            let parts: Vec<&[f64]> = multipliers.iter().map(Vec::as_slice).collect();
-            let violation = self.accurate_violation(&moved);
-            let residual = self.accurate_residual_of(&moved, &parts);
-            let near = Answer { displacement: &moved, multiplier: &multiplier, residual, violation, ..*answer };
-            let near = self.beside_springs(norm, &near);
-            let Some(repair) = Repair::new(self, norm, &near) else { break };
-            let Some(settled) = repair.best_witness(&witness.closed) else { break };
-            witness = settled;
-            let step: Vec<f64> = moved.iter().zip(answer.displacement).map(|(v, u)| v - u).collect();
-            let of_near = repair.bound(&witness);
-            let size = of_near.size();
-            let bound = of_near.farther(self, &step);
-            let size_of_best = best.0.as_ref().map_or(f64::INFINITY, ErrorBound::size);
-            let is_last = gains_nothing(size, bound.size(), size_of_best);
-            next = (repair.answer(&witness), repair.expanded(&witness.change));
-            if best.0.is_none() || bound.size() <= size_of_best {
-                best = (Some(bound), next.0.clone());
-            }
-            if is_last {
-                break;
-            }
+/// The answer with the forces of the springs of the norm in its residual.
+fn beside_springs<'a>(norm: &EnergyNorm, answer: &Answer<'a>) -> Answer<'a> {
+    let residual = match &norm.springs {
+        Some(springs) => springs.residual(&answer.problem.contact, &answer.residual, &answer.violation),
+        None => answer.residual.clone(),
+    };
+    Answer { residual, violation: answer.violation.clone(), ..*answer }
+}
+
+/// Repairs that start from the witness of the previous one: the best bound, if there is one, with the answer moved
+/// to its witness.
+///
+/// The rounding of a large shift may be a large distance between rows that follow from others, and forces that
+/// cancel each other leave what the factor has rounded. A repair from the witness itself has small shifts, forces
+/// and changes of force; the distance of the answer from there needs no factor.
+fn repeated(first: FirstRepair, answer: &Answer) -> (Option<ErrorBound>, Moved) {
+    let problem = answer.problem;
+    let FirstRepair { repair, mut witness, .. } = first;
+    let norm = repair.norm;
+    let mut multipliers = vec![answer.multiplier.to_vec()];
+    let mut next = (repair.answer(&witness), repair.expanded(&witness.change));
+    let mut best: (Option<ErrorBound>, Moved) = (None, next.0.clone());
+    for _ in 0..MOST_NEAR {
+        let ((moved, multiplier), change) = next;
+        // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no
+        // stiffness.
+        let rounded = |row: usize| if multiplier[row] != 0.0 && !witness.passes[row] { 1.0 } else { 0.0 };
+        multipliers.iter_mut().flat_map(|part| part.iter_mut().enumerate()).for_each(|(row, x)| *x *= rounded(row));
+        multipliers.push(change);
+        let parts: Vec<&[f64]> = multipliers.iter().map(Vec::as_slice).collect();
+        let violation = problem.accurate_violation(&moved);
+        let residual = problem.accurate_residual_of(&moved, &parts);
+        let near = Answer { displacement: &moved, multiplier: &multiplier, residual, violation, ..*answer };
+        let near = beside_springs(norm, &near);
+        let Some(repair) = Repair::new(norm, &near) else { break };
+        let Some(settled) = repair.best_witness(&witness.closed) else { break };
+        witness = settled;
+        let step: Vec<f64> = moved.iter().zip(answer.displacement).map(|(v, u)| v - u).collect();
+        let of_near = repair.bound(&witness);
+        let size = of_near.size();
+        let bound = of_near.farther(problem, &step);
+        let size_of_best = best.0.as_ref().map_or(f64::INFINITY, ErrorBound::size);
+        let is_last = gains_nothing(size, bound.size(), size_of_best);
+        next = (repair.answer(&witness), repair.expanded(&witness.change));
+        if best.0.is_none() || bound.size() <= size_of_best {
+            best = (Some(bound), next.0.clone());
         }
-        best
+        if is_last {
+            break;
+        }
     }
+    best
 }
 
 /// A displacement with its multipliers.
@@ -113,14 +131,14 @@ struct FirstRepair<'a> {
 
 impl<'a> FirstRepair<'a> {
     /// `None` if the boundary is not known, or if the rows that look closed cannot be met together.
-    fn new(problem: &'a ContactProblem, norm: &'a EnergyNorm, answer: &'a Answer<'a>, closed: &[bool]) -> Option<Self> {
-        let repair = Repair::new(problem, norm, answer)?;
+    fn new(norm: &'a EnergyNorm, answer: &'a Answer<'a>, closed: &[bool]) -> Option<Self> {
+        let repair = Repair::new(norm, answer)?;
         let witness = repair.best_witness(closed)?;
         let bound = repair.bound(&witness);
         // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
         let is_precise = norm.springs.is_none() || norm.loss() <= LOST_WITH_SPRINGS;
         let is_exact = !witness.is_rounded && is_precise;
-        let is_rounding = problem.parts().count() == 1 && bound.whole <= answer.rounding;
+        let is_rounding = answer.problem.parts().count() == 1 && bound.whole <= answer.rounding;
         let is_sharp = is_exact && (is_rounding || repair.vague(&witness) <= SMALL * bound.whole);
         Some(FirstRepair { repair, witness, bound, is_sharp })
     }
@@ -148,7 +166,7 @@ mod tests {
         let problem = ContactProblem::of_entries(&stiffness, &[3.0, 1.0], &walls, &[1.0, 9.0]);
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
         for (u, lambda) in [([1.25, 0.5], [-1.0, 0.0]), ([1.0, 1.0], [-2.0, 0.0]), ([0.75, 2.0], [-5.0, -1e-3])] {
-            let (moved, multiplier) = problem.repaired(&norm, &u, &lambda).unwrap();
+            let (moved, multiplier) = repaired(&problem, &norm, &u, &lambda).unwrap();
             let is_near = |a: &[f64], b: [f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING);
             assert!(is_near(&moved, [1.0, 1.0]), "{u:?}: {moved:?}");
             assert!(is_near(&multiplier, [-2.0, 0.0]), "{u:?}: {multiplier:?}");
@@ -164,11 +182,11 @@ mod tests {
         for (rows, gap, lambda) in [opposed, copied] {
             let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &rows, &[1.0, gap]);
             let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-            let (moved, multiplier) = problem.repaired(&norm, &[1001.0], &lambda).unwrap();
+            let (moved, multiplier) = repaired(&problem, &norm, &[1001.0], &lambda).unwrap();
             let force = problem.contact().mul_transposed(&multiplier)[0];
             assert!((moved[0] - 1.0).abs() < ROUNDING && (force + 4.0).abs() < 4.0 * ROUNDING, "{moved:?}, {force}");
             // The way of 1000 against the stiffness is the error.
-            let bound = problem.bound_on_boundary(&norm, &problem.answer(&[1001.0], &lambda), &[true, true]).unwrap();
+            let bound = bound_on_boundary(&norm, &Answer::of(&problem, &[1001.0], &lambda), &[true, true]).unwrap();
             assert!((bound.whole - 2000.0).abs() < 1e-6 * 2000.0, "{bound:?}");
         }
     }

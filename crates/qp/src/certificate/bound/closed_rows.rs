@@ -4,10 +4,9 @@
 //! rows by s is `D^-1 B_C' S^-1 s`, and `S^-1 B_C D^-1 r` are the forces that leave least of a force r. If no two rows
 //! share a dof, S is diagonal and one step of the iteration is exact.
 
-use crate::certificate::conditions::Distances;
+use crate::linear::watch::Watch;
 use crate::linear::{SparseMatrix, dot, largest, norm};
-use crate::problem::ContactProblem;
-use crate::watch::Watch;
+use crate::problem::{ContactProblem, Distances};
 
 /// Exchanges of the set of rows: violated rows join, rows that follow from tighter ones leave.
 const EXCHANGES: usize = 10;
@@ -36,6 +35,7 @@ const AT_GAP: f64 = 1e-26;
 
 /// The contact rows, each a column, with the compliance `D^-1` of each dof alone, and the watch over the work on them.
 pub(super) struct WatchedRows<'a> {
+    problem: &'a ContactProblem,
     pub by_row: SparseMatrix,
     compliance: Vec<f64>,
     watch: &'a Watch,
@@ -122,83 +122,82 @@ impl<'a> ClosedRows<'a> {
     }
 }
 
-impl ContactProblem {
-    /// The contact rows for work that ends with `watch`.
-    pub(super) fn watched_rows<'a>(&self, watch: &'a Watch) -> WatchedRows<'a> {
-        let own = |&stiffness: &f64| if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 };
-        let mut compliance: Vec<f64> = self.diagonal().values.iter().map(own).collect();
-        // A dof without stiffness moves at no cost.
-        let loose = Some(largest(&compliance)).filter(|&most| most > 0.0).unwrap_or(1.0);
-        compliance.iter_mut().filter(|value| **value == 0.0).for_each(|value| *value = loose);
-        WatchedRows { by_row: self.contact.transposed(), compliance, watch }
-    }
+/// The contact rows for work that ends with `watch`.
+pub fn watched_rows<'a>(problem: &'a ContactProblem, watch: &'a Watch) -> WatchedRows<'a> {
+    let own = |&stiffness: &f64| if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 };
+    let mut compliance: Vec<f64> = problem.diagonal().values.iter().map(own).collect();
+    // A dof without stiffness moves at no cost.
+    let loose = Some(largest(&compliance)).filter(|&most| most > 0.0).unwrap_or(1.0);
+    compliance.iter_mut().filter(|value| **value == 0.0).for_each(|value| *value = loose);
+    WatchedRows { problem, by_row: problem.contact.transposed(), compliance, watch }
+}
 
-    /// A shift of u that puts rows at their gaps, and all others within theirs. Of closed rows that follow from others
-    /// only the tightest stay closed. `None` if rows contradict each other, or if the time ends before long chains are
-    /// solved.
-    pub(super) fn placed(&self, watched: &WatchedRows, displacement: &[f64], mut closed: Vec<bool>) -> Option<Placed> {
-        let terms = self.contact.mul_abs(displacement);
-        for _ in 0..EXCHANGES {
-            let moved = self.moved_to_gaps(&ClosedRows::new(watched, &closed)?, displacement);
-            let terms = |row: usize| terms[row] + self.gap[row].abs() + moved.terms[row];
-            let is_off = |row: usize| moved.distance[row].abs() > AT_GAP * terms(row);
-            let violated: Vec<usize> =
-                (0..self.rows()).filter(|&row| !closed[row] && moved.distance[row] > 0.0 && is_off(row)).collect();
-            let off: Vec<usize> = (0..self.rows()).filter(|&row| closed[row] && is_off(row)).collect();
-            if violated.is_empty() && off.is_empty() {
-                return Some(Placed { shift: moved.shift, rest: moved.rest, closed });
-            }
-            let looser: Vec<usize> = off.iter().copied().filter(|&row| moved.distance[row] < 0.0).collect();
-            // An equality that follows from other rows contradicts them if it is missed.
-            if (!off.is_empty() && looser.is_empty()) || looser.iter().any(|&row| self.is_two_sided(row)) {
-                return None;
-            }
-            looser.iter().for_each(|&row| closed[row] = false);
-            violated.iter().for_each(|&row| closed[row] = true);
+/// A shift of u that puts rows at their gaps, and all others within theirs. Of closed rows that follow from others only
+/// the tightest stay closed. `None` if rows contradict each other, or if the time ends before long chains are solved.
+pub fn placed(watched: &WatchedRows, displacement: &[f64], mut closed: Vec<bool>) -> Option<Placed> {
+    let problem = watched.problem;
+    let terms = problem.contact.mul_abs(displacement);
+    for _ in 0..EXCHANGES {
+        let moved = moved_to_gaps(&ClosedRows::new(watched, &closed)?, displacement);
+        let terms = |row: usize| terms[row] + problem.gap[row].abs() + moved.terms[row];
+        let is_off = |row: usize| moved.distance[row].abs() > AT_GAP * terms(row);
+        let violated: Vec<usize> =
+            (0..problem.rows()).filter(|&row| !closed[row] && moved.distance[row] > 0.0 && is_off(row)).collect();
+        let off: Vec<usize> = (0..problem.rows()).filter(|&row| closed[row] && is_off(row)).collect();
+        if violated.is_empty() && off.is_empty() {
+            return Some(Placed { shift: moved.shift, rest: moved.rest, closed });
         }
-        None
+        let looser: Vec<usize> = off.iter().copied().filter(|&row| moved.distance[row] < 0.0).collect();
+        // An equality that follows from other rows contradicts them if it is missed.
+        if (!off.is_empty() && looser.is_empty()) || looser.iter().any(|&row| problem.is_two_sided(row)) {
+            return None;
+        }
+        looser.iter().for_each(|&row| closed[row] = false);
+        violated.iter().for_each(|&row| closed[row] = true);
     }
+    None
+}
 
-    /// The forces on the closed rows that leave least of `residual`, each in its dofs alone.
-    pub(super) fn balancing(&self, watched: &WatchedRows, closed: &[bool], residual: &[f64]) -> Option<Vec<f64>> {
-        let rows = ClosedRows::new(watched, closed)?;
-        let found = rows.solve(rows.along(&rows.shift(residual.to_vec())));
-        let mut forces = vec![0.0; self.rows()];
-        for ((&row, scale), x) in rows.rows.iter().zip(&rows.scale).zip(found) {
-            forces[row] = -scale * x;
-        }
-        Some(forces)
+/// The forces on the closed rows that leave least of `residual`, each in its dofs alone.
+pub fn balancing(watched: &WatchedRows, closed: &[bool], residual: &[f64]) -> Option<Vec<f64>> {
+    let rows = ClosedRows::new(watched, closed)?;
+    let found = rows.solve(rows.along(&rows.shift(residual.to_vec())));
+    let mut forces = vec![0.0; closed.len()];
+    for ((&row, scale), x) in rows.rows.iter().zip(&rows.scale).zip(found) {
+        forces[row] = -scale * x;
     }
+    Some(forces)
+}
 
-    /// The rows moved to their gaps as far as they can be together.
-    fn moved_to_gaps(&self, rows: &ClosedRows, u: &[f64]) -> Moved {
-        let mut distances = Distances::of(self);
-        let mut distance = distances.moved(u);
-        let zeros = || vec![0.0; self.dofs()];
-        let (mut shift, mut magnitude, mut last) = (zeros(), zeros(), zeros());
-        let (mut before, mut gain) = (f64::INFINITY, 0.0);
-        for _ in 0..MOST_SHIFTS {
-            let off: Vec<f64> = rows.rows.iter().zip(&rows.scale).map(|(&row, scale)| -scale * distance[row]).collect();
-            let size = norm(&off);
-            gain = size / before;
-            // What rows that follow from others are off, no shift takes away.
-            if size == 0.0 || gain >= LEAST_GAIN {
-                break;
-            }
-            before = size;
-            last = rows.shift(rows.forces(&rows.solve(off)));
-            distance = distances.moved(&last);
-            for ((sum, most), step) in shift.iter_mut().zip(&mut magnitude).zip(&last) {
-                *sum += step;
-                *most += step.abs();
-            }
+/// The rows moved to their gaps as far as they can be together.
+fn moved_to_gaps(rows: &ClosedRows, u: &[f64]) -> Moved {
+    let problem = rows.all.problem;
+    let mut distances = Distances::of(problem);
+    let mut distance = distances.moved(u);
+    let zeros = || vec![0.0; problem.dofs()];
+    let (mut shift, mut magnitude, mut last) = (zeros(), zeros(), zeros());
+    let (mut before, mut gain) = (f64::INFINITY, 0.0);
+    for _ in 0..MOST_SHIFTS {
+        let off: Vec<f64> = rows.rows.iter().zip(&rows.scale).map(|(&row, scale)| -scale * distance[row]).collect();
+        let size = norm(&off);
+        gain = size / before;
+        // What rows that follow from others are off, no shift takes away.
+        if size == 0.0 || gain >= LEAST_GAIN {
+            break;
         }
-        let roots = &self.diagonal().roots;
-        // Each of the shifts that would follow is at most half as long as the one before.
-        let follow = 2.0 * gain.min(1.0);
-        let rest = self.parts().sums(|dof| roots[dof] * (OF_SHIFT * magnitude[dof] + follow * last[dof].abs()));
-        Moved { terms: self.contact.mul_abs(&magnitude), shift, rest, distance }
+        before = size;
+        last = rows.shift(rows.forces(&rows.solve(off)));
+        distance = distances.moved(&last);
+        for ((sum, most), step) in shift.iter_mut().zip(&mut magnitude).zip(&last) {
+            *sum += step;
+            *most += step.abs();
+        }
     }
+    let roots = &problem.diagonal().roots;
+    // Each of the shifts that would follow is at most half as long as the one before.
+    let follow = 2.0 * gain.min(1.0);
+    let rest = problem.parts().sums(|dof| roots[dof] * (OF_SHIFT * magnitude[dof] + follow * last[dof].abs()));
+    Moved { terms: problem.contact.mul_abs(&magnitude), shift, rest, distance }
 }
 
 /// Rows after a shift.
@@ -229,7 +228,7 @@ mod tests {
     }
 
     fn placed(problem: &ContactProblem, u: &[f64], closed: &[bool]) -> Option<Placed> {
-        problem.placed(&problem.watched_rows(&Watch::default()), u, closed.to_vec())
+        super::placed(&watched_rows(problem, &Watch::default()), u, closed.to_vec())
     }
 
     #[test]
@@ -305,7 +304,7 @@ mod tests {
         let balancing = |rows: &[&[f64]]| {
             let problem = problem(&[1.0, 1.0], rows, &vec![1.0; rows.len()]);
             let closed = vec![true; rows.len()];
-            problem.balancing(&problem.watched_rows(&Watch::default()), &closed, &[3.0, 5.0]).unwrap()
+            balancing(&watched_rows(&problem, &Watch::default()), &closed, &[3.0, 5.0]).unwrap()
         };
         assert_eq!(balancing(&[&[2.0, 0.0]]), [-1.5]);
         assert!((balancing(&[&[1.0, 1.0]])[0] + 4.0).abs() < ROUNDING);

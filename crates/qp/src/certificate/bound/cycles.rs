@@ -16,115 +16,113 @@
 //! Parts that no coupling joins are blocks of K, and the inequality holds for each by itself. If a coupling is too weak
 //! to join two parts into one, the parts have no bound of their own.
 
-use super::{Answer, ErrorBound, Measured};
-use crate::certificate::energy_norm::ROUNDED_BOUND;
+use super::closed_rows::{placed, watched_rows};
+use super::{Answer, ErrorBound, Measured, add_sizes, allowed, shift_length};
+use crate::certificate::energy_norm::{ROUNDED_BOUND, springs_on};
+use crate::certificate::mode::not_convex_along;
 use crate::linear::multigrid::Multigrid;
+use crate::linear::watch::Watch;
 use crate::linear::{Blocks, SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
-use crate::watch::Watch;
 
-impl ContactProblem {
-    /// An upper bound on `|u - u*|_K`, as far as the cycles find the least eigenvalues; `None` if they find none, or if
-    /// `watch` is over before that. A stiffness that the hierarchy has found singular gets springs on the rows that
-    /// press, but only if no direction of negative energy is found, because springs would hide it.
-    pub(in super::super) fn energy_error_bound_by(
-        &self,
-        multigrid: &Multigrid,
-        answer: &Answer,
-        watch: &Watch,
-    ) -> Option<(ErrorBound, Option<Measured>)> {
-        let touches =
-            |row: usize| answer.multiplier[row] < 0.0 || answer.violation[row] > 0.0 || self.is_two_sided(row);
-        let at_gap = (0..self.rows()).map(touches).collect();
-        let watched = self.watched_rows(watch);
-        let placed = self.placed(&watched, answer.displacement, at_gap)?;
-        // Neither a force that pulls nor one on an open row is a multiplier.
-        let keeps = |row: usize| if placed.closed[row] { self.allowed(row, answer.multiplier[row]) } else { 0.0 };
-        let kept: Vec<f64> = (0..self.rows()).map(keeps).collect();
-        let is_dropped = kept.iter().zip(answer.multiplier).any(|(kept, given)| kept != given);
-        let mut residual = match is_dropped {
-            true => self.accurate_residual(answer.displacement, &kept),
-            false => answer.residual.clone(),
-        };
-        if !self.balance_travels(&watched.by_row, &kept, &mut residual) {
-            return None;
-        }
-        let parts = self.parts();
-        let are_apart = parts.count() == 1 || parts.are_apart(&self.stiffness);
-        let blocks = match are_apart {
-            true => Blocks { of_unknown: parts.of_dofs(), count: parts.count() },
-            false => Blocks::ONE,
-        };
-        let dual = |held: &SymmetricMatrix| {
-            multigrid.preconditioning(held).dual_norms(&residual, blocks.of_unknown, blocks.count, watch)
-        };
-        let springs = multigrid.is_shifted().then(|| self.springs(answer.displacement, answer.multiplier));
-        let left = match &springs {
-            None => dual(&self.stiffness),
-            Some(_) if !self.is_semidefinite_by(multigrid, watch) => None,
-            Some(springs) => {
-                springs.added_to(&self.stiffness, &self.contact).ok().flatten().and_then(|held| dual(&held))
-            }
-        }?;
-        let ritz = left.iter().fold(f64::INFINITY, |least, dual| dual.ritz.min(least));
-        let left: Vec<f64> = left.iter().map(|dual| ROUNDED_BOUND * dual.most).collect();
-        let left_on = |row: usize| left[if are_apart { parts.of_row(row) } else { 0 }];
-        if springs.is_some_and(|springs| !springs.hold(&placed.closed, |row| -kept[row], left_on)) {
-            return None;
-        }
-        let of_residual = left.iter().map(|left| left * left).sum::<f64>().sqrt();
-        let measured = (!is_dropped && !multigrid.is_shifted()).then_some(Measured { of_residual, ritz });
-        let mut moved = placed.rest;
-        match are_apart {
-            true => self.add_sizes(parts, &placed.shift, &mut moved),
-            false => moved = vec![moved.iter().sum::<f64>() + self.length(&placed.shift)],
-        }
-        // A shift of the answer changes its residual too, by K times the shift.
-        let bounds: Vec<f64> =
-            moved.iter().zip(&left).map(|(moved, left)| 2.0 * ROUNDED_BOUND * moved + left).collect();
-        let whole = bounds.iter().map(|bound| bound * bound).sum::<f64>().sqrt();
-        let of_parts = match (parts.count(), are_apart) {
-            (1, _) => None,
-            (_, true) => Some(bounds),
-            (count, false) => Some(vec![f64::INFINITY; count]),
-        };
-        Some((ErrorBound { whole, of_parts }, measured))
+/// An upper bound on `|u - u*|_K`, as far as the cycles find the least eigenvalues; `None` if they find none, or if
+/// `watch` is over before that. A stiffness that the hierarchy has found singular gets springs on the rows that
+/// press, but only if no direction of negative energy is found, because springs would hide it.
+pub fn energy_error_bound_by(
+    multigrid: &Multigrid,
+    answer: &Answer,
+    watch: &Watch,
+) -> Option<(ErrorBound, Option<Measured>)> {
+    let problem = answer.problem;
+    let touches = |row: usize| answer.multiplier[row] < 0.0 || answer.violation[row] > 0.0 || problem.is_two_sided(row);
+    let at_gap = (0..problem.rows()).map(touches).collect();
+    let watched = watched_rows(problem, watch);
+    let placed = placed(&watched, answer.displacement, at_gap)?;
+    // Neither a force that pulls nor one on an open row is a multiplier.
+    let keeps = |row: usize| if placed.closed[row] { allowed(problem, row, answer.multiplier[row]) } else { 0.0 };
+    let kept: Vec<f64> = (0..problem.rows()).map(keeps).collect();
+    let is_dropped = kept.iter().zip(answer.multiplier).any(|(kept, given)| kept != given);
+    let mut residual = match is_dropped {
+        true => problem.accurate_residual(answer.displacement, &kept),
+        false => answer.residual.clone(),
+    };
+    if !balance_travels(problem, &watched.by_row, &kept, &mut residual) {
+        return None;
     }
+    let parts = problem.parts();
+    let are_apart = parts.count() == 1 || parts.are_apart(&problem.stiffness);
+    let blocks = match are_apart {
+        true => Blocks { of_unknown: parts.of_dofs(), count: parts.count() },
+        false => Blocks::ONE,
+    };
+    let dual = |held: &SymmetricMatrix| {
+        multigrid.preconditioning(held).dual_norms(&residual, blocks.of_unknown, blocks.count, watch)
+    };
+    let springs = multigrid.is_shifted().then(|| springs_on(problem, answer.displacement, answer.multiplier));
+    let left = match &springs {
+        None => dual(&problem.stiffness),
+        Some(_) if !is_semidefinite_by(problem, multigrid, watch) => None,
+        Some(springs) => {
+            springs.added_to(&problem.stiffness, &problem.contact).ok().flatten().and_then(|held| dual(&held))
+        }
+    }?;
+    let ritz = left.iter().fold(f64::INFINITY, |least, dual| dual.ritz.min(least));
+    let left: Vec<f64> = left.iter().map(|dual| ROUNDED_BOUND * dual.most).collect();
+    let left_on = |row: usize| left[if are_apart { parts.of_row(row) } else { 0 }];
+    if springs.is_some_and(|springs| !springs.hold(&placed.closed, |row| -kept[row], left_on)) {
+        return None;
+    }
+    let of_residual = left.iter().map(|left| left * left).sum::<f64>().sqrt();
+    let measured = (!is_dropped && !multigrid.is_shifted()).then_some(Measured { of_residual, ritz });
+    let mut moved = placed.rest;
+    match are_apart {
+        true => add_sizes(problem, &placed.shift, &mut moved),
+        false => moved = vec![moved.iter().sum::<f64>() + shift_length(problem, &placed.shift)],
+    }
+    // A shift of the answer changes its residual too, by K times the shift.
+    let bounds: Vec<f64> = moved.iter().zip(&left).map(|(moved, left)| 2.0 * ROUNDED_BOUND * moved + left).collect();
+    let whole = bounds.iter().map(|bound| bound * bound).sum::<f64>().sqrt();
+    let of_parts = match (parts.count(), are_apart) {
+        (1, _) => None,
+        (_, true) => Some(bounds),
+        (count, false) => Some(vec![f64::INFINITY; count]),
+    };
+    Some((ErrorBound { whole, of_parts }, measured))
+}
 
-    /// Turns the `residual` of multipliers into that of others which balance every dof without stiffness: those of its
-    /// rows times one factor. Returns `false` if there is no factor that keeps their signs.
-    fn balance_travels(&self, by_row: &SparseMatrix, multiplier: &[f64], residual: &mut [f64]) -> bool {
-        let travels = self.without_stiffness();
-        let mut enlarged = vec![0.0; self.rows()];
-        for &travel in &travels {
-            if residual[travel] == 0.0 {
-                continue;
-            }
-            let pushed: f64 = self.contact.column(travel).map(|(row, c)| c * multiplier[row]).sum();
-            let share = -residual[travel] / pushed;
-            if !share.is_finite() || share < -1.0 {
+/// Turns the `residual` of multipliers into that of others which balance every dof without stiffness: those of its
+/// rows times one factor. Returns `false` if there is no factor that keeps their signs.
+fn balance_travels(problem: &ContactProblem, by_row: &SparseMatrix, multiplier: &[f64], residual: &mut [f64]) -> bool {
+    let travels = problem.without_stiffness();
+    let mut enlarged = vec![0.0; problem.rows()];
+    for &travel in &travels {
+        if residual[travel] == 0.0 {
+            continue;
+        }
+        let pushed: f64 = problem.contact.column(travel).map(|(row, c)| c * multiplier[row]).sum();
+        let share = -residual[travel] / pushed;
+        if !share.is_finite() || share < -1.0 {
+            return false;
+        }
+        for (row, _) in problem.contact.column(travel).filter(|entry| entry.1 != 0.0) {
+            // A row of two travels would have two factors.
+            if enlarged[row] != 0.0 {
                 return false;
             }
-            for (row, _) in self.contact.column(travel).filter(|entry| entry.1 != 0.0) {
-                // A row of two travels would have two factors.
-                if enlarged[row] != 0.0 {
-                    return false;
-                }
-                enlarged[row] = share * multiplier[row];
-                by_row.column(row).for_each(|(dof, b)| residual[dof] += b * enlarged[row]);
-            }
+            enlarged[row] = share * multiplier[row];
+            by_row.column(row).for_each(|(dof, b)| residual[dof] += b * enlarged[row]);
         }
-        travels.iter().for_each(|&travel| residual[travel] = 0.0);
-        true
     }
+    travels.iter().for_each(|&travel| residual[travel] = 0.0);
+    true
+}
 
-    /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding and
-    /// `watch` is not over before they end.
-    fn is_semidefinite_by(&self, multigrid: &Multigrid, watch: &Watch) -> bool {
-        match multigrid.preconditioning(&self.stiffness).negative_direction(watch) {
-            Some(direction) => self.not_convex_along(&direction).is_none(),
-            None => !watch.is_over(),
-        }
+/// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding and
+/// `watch` is not over before they end.
+fn is_semidefinite_by(problem: &ContactProblem, multigrid: &Multigrid, watch: &Watch) -> bool {
+    match multigrid.preconditioning(&problem.stiffness).negative_direction(watch) {
+        Some(direction) => not_convex_along(problem, &direction).is_none(),
+        None => !watch.is_over(),
     }
 }
 
@@ -160,8 +158,8 @@ mod tests {
         // The least eigenvalue is 8 sin^2(pi / 98), less than a hundredth.
         for (more, is_semidefinite) in [(0.0, true), (-0.1, false)] {
             let problem = square(more, &[]);
-            assert_eq!(problem.is_semidefinite_by(&multigrid, &Watch::default()), is_semidefinite, "{more}");
-            assert!(!problem.is_semidefinite_by(&multigrid, &Watch::default().within(0.0)), "{more}");
+            assert_eq!(is_semidefinite_by(&problem, &multigrid, &Watch::default()), is_semidefinite, "{more}");
+            assert!(!is_semidefinite_by(&problem, &multigrid, &Watch::default().within(0.0)), "{more}");
         }
     }
 
@@ -178,8 +176,8 @@ mod tests {
         // Forces that balance u = 0.9, which is open by 0.1 everywhere.
         let (u, lambda) = (vec![0.9; dofs], vec![-1.0; dofs]);
         let bound_of = |multiplier: &[f64]| {
-            let answer = problem.answer(&u, multiplier);
-            problem.energy_error_bound_by(&multigrid, &answer, &Watch::default()).unwrap()
+            let answer = Answer::of(&problem, &u, multiplier);
+            energy_error_bound_by(&multigrid, &answer, &Watch::default()).unwrap()
         };
         let (bound, measured) = bound_of(&lambda);
         // The exact answer is one everywhere: K 1 is one at each edge, so that the error is 0.1 sqrt(1'K 1), once for
@@ -204,12 +202,12 @@ mod tests {
         let problem = ContactProblem::of_entries(&stiffness, &[0.0, 0.0, 5.0], &entries, &[0.0; 2]);
         let by_row = problem.contact.transposed();
         let mut residual = vec![0.1, 0.2, 1.0];
-        assert!(problem.balance_travels(&by_row, &[-3.0, -1.0], &mut residual));
+        assert!(balance_travels(&problem, &by_row, &[-3.0, -1.0], &mut residual));
         for (found, exact) in residual.iter().zip([0.1 - 0.75, 0.2 - 0.5, 0.0]) {
             assert!((found - exact).abs() < ROUNDING, "{residual:?}");
         }
         // Without a force no factor helps; against pulls, it would have to turn them.
-        assert!(!problem.balance_travels(&by_row, &[0.0, 0.0], &mut [0.0, 0.0, 5.0]));
-        assert!(!problem.balance_travels(&by_row, &[1.0, 1.0], &mut [0.0, 0.0, 7.0]));
+        assert!(!balance_travels(&problem, &by_row, &[0.0, 0.0], &mut [0.0, 0.0, 5.0]));
+        assert!(!balance_travels(&problem, &by_row, &[1.0, 1.0], &mut [0.0, 0.0, 7.0]));
     }
 }

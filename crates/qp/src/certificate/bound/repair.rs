@@ -3,9 +3,8 @@
 use std::cell::OnceCell;
 
 use super::super::energy_norm::{Boundary, RowsOnBoundary};
-use super::{Answer, EnergyNorm, ErrorBound};
+use super::{Answer, EnergyNorm, ErrorBound, add_sizes, shift_length};
 use crate::linear::{SparseMatrix, dot, forward_all, ldexp};
-use crate::problem::ContactProblem;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Multipliers {
@@ -71,10 +70,9 @@ pub(super) struct Witness {
 
 /// An answer on the contact boundary, in equilibrated units, rows normalised by powers of two.
 pub(super) struct Repair<'a> {
-    pub problem: &'a ContactProblem,
     pub norm: &'a EnergyNorm,
     boundary: &'a Boundary,
-    answer: &'a Answer<'a>,
+    pub answer: &'a Answer<'a>,
     rows: RowsOnBoundary,
     pub violation: Vec<f64>,
     pub multiplier: Vec<f64>,
@@ -87,11 +85,11 @@ pub(super) struct Repair<'a> {
 
 impl<'a> Repair<'a> {
     /// `None` if the boundary is not known, or if a row reaches beyond it.
-    pub fn new(problem: &'a ContactProblem, norm: &'a EnergyNorm, answer: &'a Answer<'a>) -> Option<Self> {
+    pub fn new(norm: &'a EnergyNorm, answer: &'a Answer<'a>) -> Option<Self> {
         let boundary = norm.boundary.as_deref()?;
         // A row without obstacle and without force may reach beyond the boundary.
-        let counts = |row: usize| problem.gap[row].is_finite() || answer.multiplier[row] != 0.0;
-        let rows = norm.rows_on_boundary(&problem.contact, counts)?;
+        let counts = |row: usize| answer.problem.gap[row].is_finite() || answer.multiplier[row] != 0.0;
+        let rows = norm.rows_on_boundary(&answer.problem.contact, counts)?;
         let scaled = |values: &[f64], sign: i32, unit: i32| -> Vec<f64> {
             values.iter().zip(&rows.shift).map(|(&value, &shift)| ldexp(value, sign * shift - unit)).collect()
         };
@@ -99,7 +97,7 @@ impl<'a> Repair<'a> {
         let (violation, multiplier) = (scaled(&answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
         let (interior, swept) = norm.sweep(&answer.residual);
         let halves = vec![OnceCell::new(); if rows.compliance.is_some() { 0 } else { rows.shift.len() }];
-        Some(Repair { problem, norm, boundary, answer, rows, violation, multiplier, halves, interior, swept })
+        Some(Repair { norm, boundary, answer, rows, violation, multiplier, halves, interior, swept })
     }
 
     pub fn count(&self) -> usize {
@@ -187,7 +185,7 @@ impl<'a> Repair<'a> {
 
     /// The shift of the whole body that a force causes, length n.
     fn shift(&self, force: &Force) -> Vec<f64> {
-        let contact = self.problem.contact.mul_transposed(&self.expanded(&force.rows));
+        let contact = self.answer.problem.contact.mul_transposed(&self.expanded(&force.rows));
         let total: Vec<f64> = self.answer.residual.iter().zip(contact).map(|(r, b)| force.alpha * r + b).collect();
         self.norm.displacement(&total)
     }
@@ -218,15 +216,18 @@ impl<'a> Repair<'a> {
             (0..rest.len()).map(|row| self.way_on(witness, row) + self.cancelled_on(witness, row)).collect();
         let of_error = match springs {
             // The energy of the springs is no error, but it adds rounding.
-            Some(_) => self.problem.length(&self.shift(error)) + (self.norm.rounding() - 1.0) * self.length(error),
+            Some(_) => {
+                shift_length(self.answer.problem, &self.shift(error))
+                    + (self.norm.rounding() - 1.0) * self.length(error)
+            }
             None => self.length(error),
         };
         let whole = of_error + of_left + put.iter().sum::<f64>();
-        let parts = self.problem.parts();
+        let parts = self.answer.problem.parts();
         let of_parts = (parts.count() > 1).then(|| {
             let mut sizes = vec![0.0; parts.count()];
             put.iter().enumerate().for_each(|(row, put)| sizes[parts.of_row(row)] += put);
-            [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.shift(force), &mut sizes));
+            [error, left].iter().for_each(|force| add_sizes(self.answer.problem, &self.shift(force), &mut sizes));
             sizes
         });
         ErrorBound { whole, of_parts }
@@ -267,6 +268,7 @@ impl<'a> Repair<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::ContactProblem;
 
     /// Rounding of a repair of one or two dofs.
     const ROUNDING: f64 = 1e-12;
@@ -277,9 +279,9 @@ mod tests {
         // of 4.
         let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0)], &[1.0]);
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-        let answer = problem.answer(&[1.5], &[-3.0]);
+        let answer = Answer::of(&problem, &[1.5], &[-3.0]);
         assert_eq!((&answer.residual[..], &answer.violation[..]), (&[-1.0][..], &[0.5][..]));
-        let repair = Repair::new(&problem, &norm, &answer).unwrap();
+        let repair = Repair::new(&norm, &answer).unwrap();
         let witness = repair.best_witness(&[true]).unwrap();
         let (moved, multiplier) = repair.answer(&witness);
         assert!((moved[0] - 1.0).abs() < ROUNDING, "{moved:?}");
@@ -309,8 +311,8 @@ mod tests {
         // half of the force of the second stays; all of it does if the first row does not push at all.
         let cases = [([-4.0 - 2e6, -1e6], [-4.0, 0.0]), ([-1e6, -1e6], [0.0, -5e5]), ([5.0, -1e6], [0.0, -1e6])];
         for (multiplier, left) in cases {
-            let answer = problem.answer(&[1001.0], &multiplier);
-            let repair = Repair::new(&problem, &norm, &answer).unwrap();
+            let answer = Answer::of(&problem, &[1001.0], &multiplier);
+            let repair = Repair::new(&norm, &answer).unwrap();
             let witness = repair.settle(&[true, true], Multipliers::OfTheAnswer).unwrap();
             assert_eq!(repair.expanded(&witness.multiplier), left, "{multiplier:?}");
             // What is passed stands alone, so that the answer of the witness and the sum of its parts are the same.

@@ -25,7 +25,7 @@ const TURNS: usize = 2;
 /// others, the products have lost their difference, and the columns themselves are made orthogonal.
 ///
 /// `product` gives the product of two of the columns. `None` if it `is_over` before R is found.
-pub(super) fn triangle_of(
+pub fn triangle_of(
     columns: &[&[f64]],
     product: impl Fn(usize, usize) -> f64,
     is_over: impl Fn() -> bool,

@@ -1,5 +1,6 @@
 //! The repair itself: which rows are closed, and the forces that put them at their gaps.
 
+use super::allowed;
 use super::repair::{Force, Multipliers, Repair, Witness};
 use super::triangle::{Triangle, triangle_of};
 
@@ -69,7 +70,7 @@ impl Repair<'_> {
             let pulling: Vec<usize> = match multipliers {
                 Multipliers::InEquilibrium => {
                     let pulls =
-                        |row: usize| self.multiplier[row] + change[row] > 0.0 && !self.problem.is_two_sided(row);
+                        |row: usize| self.multiplier[row] + change[row] > 0.0 && !self.answer.problem.is_two_sided(row);
                     set.iter().copied().filter(|&row| pulls(row)).collect()
                 }
                 Multipliers::OfTheAnswer => Vec::new(),
@@ -88,7 +89,7 @@ impl Repair<'_> {
                 return None;
             }
             // An equality that follows from other rows contradicts them if it is missed.
-            if looser.iter().any(|&row| self.problem.is_two_sided(row)) {
+            if looser.iter().any(|&row| self.answer.problem.is_two_sided(row)) {
                 return None;
             }
             deeper.iter().for_each(|&row| first[row] = exchange + 1);
@@ -111,7 +112,7 @@ impl Repair<'_> {
         // A force that pulls is no multiplier, and nothing balances one on a loose dof.
         let holds = |row: usize| closed[row] && !self.norm.is_on_loose_dof(row);
         let mut multiplier: Vec<f64> = (0..change.len())
-            .map(|row| if holds(row) { self.problem.allowed(row, balanced(row)) } else { 0.0 })
+            .map(|row| if holds(row) { allowed(self.answer.problem, row, balanced(row)) } else { 0.0 })
             .collect();
         let is_balanced = |row: usize| multiplier[row] == balanced(row) && multiplier[row].is_finite();
         let is_equilibrium = in_equilibrium && set.iter().all(|&row| is_balanced(row));
@@ -154,7 +155,7 @@ impl Repair<'_> {
         set.iter().for_each(|&row| length[row] = self.product(row, row).sqrt());
         let share = if self.norm.springs.is_some() { KEPT } else { 0.0 };
         let kept = share * set.iter().map(|&row| multiplier[row].abs() * length[row]).fold(0.0, f64::max);
-        let can_give = |row: usize, multiplier: &[f64]| match self.problem.is_two_sided(row) {
+        let can_give = |row: usize, multiplier: &[f64]| match self.answer.problem.is_two_sided(row) {
             true => f64::INFINITY,
             false if kept > 0.0 => (-multiplier[row] - kept / length[row]).max(0.0),
             false => -multiplier[row],
@@ -174,7 +175,7 @@ impl Repair<'_> {
                 .fold((can_give(row, multiplier) / force.abs()).min(1.0), f64::min);
             for (row, weight) in others.into_iter().chain([(row, -1.0)]).filter(|_| share > 0.0) {
                 passes[row] = true;
-                multiplier[row] = self.problem.allowed(row, multiplier[row] + share * (weight * force));
+                multiplier[row] = allowed(self.answer.problem, row, multiplier[row] + share * (weight * force));
             }
         }
         passes

@@ -17,7 +17,7 @@ mod making;
 
 use std::collections::{BTreeSet, HashMap};
 
-use crate::error::Error;
+use crate::error::{Error, LinearError};
 use crate::linear::ldexp;
 use crate::linear::multigrid::{Direction, Hold};
 use crate::solution::ContactSet;
@@ -244,10 +244,11 @@ fn length(vector: &Direction) -> f64 {
 }
 
 fn no_bound(what: String) -> Error {
-    Error::Numerical {
+    LinearError::Numerical {
         step: "turning contact rows into bounds",
         reason: format!("{what}; another method must take them"),
     }
+    .into()
 }
 
 impl Bound {

@@ -26,10 +26,10 @@ use std::collections::HashSet;
 
 use super::{Ending, Outcome, ScaledProblem};
 use crate::error::Error;
+use crate::linear::watch::Watch;
 use crate::linear::{Augmented, dot, largest, norm};
 use crate::problem::ContactProblem;
 use crate::solution::Iteration;
-use crate::watch::Watch;
 use basis::{Basis, DEPENDENT_ROW};
 use polyhedron::Polyhedron;
 

@@ -48,7 +48,7 @@ impl Polyhedron {
         let equilibration = Equilibration::of(of.stiffness());
         let stiffness = equilibration.apply(of.stiffness());
         let no_rows = SparseMatrix::from_triplets(0, of.dofs(), &[])?;
-        let body = AugmentedMatrix::new(&stiffness, &no_rows)?;
+        let body = AugmentedMatrix::new(&stiffness, &no_rows, None)?;
         let factor_with = |weight: f64| if_definite(body.factor(body.matrix(|_| 0.0, weight)));
         let mut factor = if scaled.is_definite { factor_with(0.0)? } else { None };
         if factor.is_none() {

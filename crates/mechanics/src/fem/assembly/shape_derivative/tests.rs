@@ -11,7 +11,7 @@ use crate::fem::formulation::Formulation;
 use crate::fem::geometry::length;
 use crate::fem::material::Material;
 use crate::fem::mesh::{Boundary, Mesh};
-use signorini_qp::dot as product;
+use signorini_linear::dot as product;
 
 /// Derivatives agree with differences to within this, relative to the largest entry: rounding over the step.
 const CLOSE: f64 = 1e-9;

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::fem::element::ElementKind;
 use crate::fem::geometry::{length, minus};
 use crate::fem::mesh::MAX_NODES;
-use signorini_qp::Forest;
+use signorini_linear::Forest;
 
 /// An input deck, read with the files that it includes.
 #[derive(Clone, Debug, PartialEq)]

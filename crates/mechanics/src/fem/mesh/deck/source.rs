@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 
 use super::card::{Card, Line, Place, key};
 use crate::error::Error;
-use signorini_qp as qp;
-use signorini_qp::file::read_capped;
+use signorini_linear as linear;
+use signorini_linear::file::read_capped;
 
 /// Most bytes of a deck with all files that it includes.
 const MOST_OF_DECK: u64 = 4 << 30;
@@ -68,7 +68,7 @@ impl Source {
                 MOST_OF_DECK >> 20
             );
             let source = io::Error::new(io::ErrorKind::FileTooLarge, reason);
-            return Err(qp::Error::File { action: "read", path: path.into(), source }.into());
+            return Err(linear::Error::File { action: "read", path: path.into(), source }.into());
         }
         Ok(content)
     }
@@ -101,7 +101,7 @@ impl Source {
     pub fn fault(&self, place: Place, message: impl Into<String>) -> Error {
         let (file, line) = self.position(place);
         let message = message.into().chars().filter(|c| !c.is_control()).take(LONGEST).collect();
-        qp::Error::FileSyntax { file: file.into(), line: line.max(1), message }.into()
+        linear::Error::FileSyntax { file: file.into(), line: line.max(1), message }.into()
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::Error;
-use signorini_qp as qp;
+use signorini_linear as linear;
 
 /// The form in which the numbers of a file are written.
 #[derive(Clone, Debug)]
@@ -46,6 +46,6 @@ impl Form {
                 (line, format!("at byte {place}: {}", message.into()))
             }
         };
-        qp::Error::FileSyntax { file: file.into(), line, message }.into()
+        linear::Error::FileSyntax { file: file.into(), line, message }.into()
     }
 }

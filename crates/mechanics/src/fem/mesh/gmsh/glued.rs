@@ -1,6 +1,6 @@
 //! Groups of elements that share nodes: glued, they are one body.
 
-use signorini_qp::Forest;
+use signorini_linear::Forest;
 
 use super::file::GmshFile;
 

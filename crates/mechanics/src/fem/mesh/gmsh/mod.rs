@@ -56,7 +56,7 @@ pub(crate) use glued::Glued;
 use super::Mesh;
 use crate::error::Error;
 use crate::fem::formulation::positive;
-use signorini_qp::file::read_capped;
+use signorini_linear::file::read_capped;
 
 /// Most bytes of a mesh: more than any body that can be solved needs.
 const MOST_OF_MESH: u64 = 4 << 30;
@@ -65,7 +65,7 @@ impl GmshFile {
     /// Reads a mesh file of Gmsh of format 4.1 or 2.2, as text or binary.
     ///
     /// # Errors
-    /// [`qp::Error::File`](signorini_qp::Error::File) for a file that cannot be read, and as [`GmshFile::parse`].
+    /// [`linear::Error::File`](signorini_linear::Error::File) for a file that cannot be read, and as [`GmshFile::parse`].
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
         let path = file.as_ref();
         Self::parse(read_capped(path, MOST_OF_MESH)?, path)
@@ -74,7 +74,7 @@ impl GmshFile {
     /// Reads the content of a file, a text or bytes; `file` is named in errors.
     ///
     /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line; in a binary file with the line in
+    /// [`linear::Error::FileSyntax`](signorini_linear::Error::FileSyntax) with the line; in a binary file with the line in
     /// which the section begins, and with the byte, from 0, at which the node, element or other record begins: for a
     /// version other than 4.1 and 2.2, an unknown byte order or data size, a section that is missing or ends early or
     /// announces another number of lines than it has, a number of the wrong kind, coordinates that are not finite, an
@@ -104,10 +104,10 @@ impl GmshFile {
     /// outside. With names, facets of boundaries that are not on the body are left out.
     ///
     /// # Errors
-    /// [`qp::Error::FileSyntax`](signorini_qp::Error::FileSyntax) with the line: for elements of more than one kind, or
+    /// [`linear::Error::FileSyntax`](signorini_linear::Error::FileSyntax) with the line: for elements of more than one kind, or
     /// of a kind without contact, a node outside the plane, an element that is inverted or has no volume, a group with
     /// facets that are not faces of the body. [`Error::Mesh`] for a group that does not exist, and for groups of
-    /// different dimensions, [`qp::Error::Setting`](signorini_qp::Error::Setting) for a scale that is not positive and
+    /// different dimensions, [`linear::Error::Setting`](signorini_linear::Error::Setting) for a scale that is not positive and
     /// finite.
     pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;

@@ -104,7 +104,7 @@ impl BodyShape for HalfBallSpec {
 ///
 /// # Errors
 /// [`Error::Mesh`] for a centre that is not finite, more than `MAX_NODES` nodes;
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a radius or a zone out of its range.
+/// [`qp::LinearError::Setting`](signorini_qp::LinearError::Setting) for a radius or a zone out of its range.
 pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, sides: [Sides; 2]) -> Result<Mesh, Error> {
     let graded = Grading::new(radius, zone)?;
     let across = sides.map(|sides| sides.lines(&graded.aside));

@@ -84,7 +84,7 @@ impl BodyShape for HalfDiscSpec {
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane, a centre that is not finite, more than `MAX_NODES` nodes;
-/// [`qp::Error::Setting`](signorini_qp::Error::Setting) for a radius or a zone out of its range.
+/// [`qp::LinearError::Setting`](signorini_qp::LinearError::Setting) for a radius or a zone out of its range.
 pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 2 {
         return fail(format!("a half disc cannot have a mesh of {}", kind.name()));

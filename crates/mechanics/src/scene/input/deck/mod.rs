@@ -152,8 +152,8 @@ impl Scene {
     /// friction is left out with a warning if it has `friction`.
     ///
     /// # Errors
-    /// [`File`](signorini_qp::Error::File) for a file that cannot be read;
-    /// [`FileSyntax`](signorini_qp::Error::FileSyntax) with the line for what is wrong, and for what changes the answer
+    /// [`File`](signorini_qp::LinearError::File) for a file that cannot be read;
+    /// [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for what is wrong, and for what changes the answer
     /// and is not modelled.
     pub fn read_deck(path: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Scene, Error> {
         let path = path.as_ref();
@@ -173,7 +173,7 @@ impl Scene {
     /// ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
     ///
     /// # Errors
-    /// As [`Scene::read_deck`]; [`FileSyntax`](signorini_qp::Error::FileSyntax) with the line for results of a set that
+    /// As [`Scene::read_deck`]; [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for results of a set that
     /// does not exist.
     pub fn read_step(
         path: impl AsRef<Path>,

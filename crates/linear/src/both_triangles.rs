@@ -1,0 +1,269 @@
+//! The lower triangle of a symmetric matrix given with both triangles, in one pass, and the way back.
+//!
+//! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image
+//! in column r, which was walked before. As c grows, the mirror images of row r come in the order of column r: only a
+//! cursor for each column must be kept.
+
+use super::{SparseMatrix, SymmetricMatrix, check_rows};
+use crate::error::Error;
+
+/// Two triangles count as equal if mirrored entries differ by at most this times the larger diagonal entry of their row
+/// and column: assembly in another order differs by rounding, and 1e-10 is far above it.
+const SYMMETRY_TOLERANCE: f64 = 1e-10;
+
+/// Compressed columns with indices of any type, as given.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Columns<'a, S, R> {
+    pub starts: &'a [S],
+    pub rows: &'a [R],
+    pub values: &'a [f64],
+}
+
+/// The triangle that gives the values if mirrored entries differ by rounding: the lower one for columns, the upper one
+/// for rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Taken {
+    Lower,
+    Upper,
+}
+
+/// A symmetric matrix that takes its columns, or its rows, with both triangles, one after another: its lower triangle
+/// under construction.
+pub struct SymmetricLines {
+    dim: usize,
+    starts: Vec<usize>,
+    rows: Vec<u32>,
+    values: Vec<f64>,
+    /// For each column, the entry below the diagonal with the next mirror image.
+    cursor: Vec<usize>,
+    taken: Taken,
+    /// An entry has no mirror image.
+    is_one_sided: bool,
+}
+
+impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
+    /// Calls `take(column, rows, values)` for each column, from the first on.
+    pub fn each(self, mut take: impl FnMut(usize, &[R], &[f64]) -> Result<(), Error>) -> Result<(), Error> {
+        let (columns, entries) = (self.starts.len().saturating_sub(1), self.values.len());
+        if self.rows.len() != entries {
+            let (name, found) = ("row indices", self.rows.len());
+            return Err(Error::Length { name, found, expected: entries, of: "values" });
+        }
+        if self.starts.is_empty() || self.start(0)? != 0 || self.start(columns)? != entries {
+            let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
+            return Err(Error::Pattern { message });
+        }
+        let mut first = 0;
+        for column in 0..columns {
+            let end = self.start(column + 1)?;
+            let (Some(rows), Some(values)) = (self.rows.get(first..end), self.values.get(first..end)) else {
+                let message = format!("the column starts decrease after column {column} (indices from 0)");
+                return Err(Error::Pattern { message });
+            };
+            take(column, rows, values)?;
+            first = end;
+        }
+        Ok(())
+    }
+
+    fn start(&self, column: usize) -> Result<usize, Error> {
+        let start = self.starts.get(column).and_then(|&start| start.try_into().ok());
+        start.ok_or_else(|| Error::Pattern { message: format!("the start of column {column} is no index (from 0)") })
+    }
+    /// The lower triangle.
+    pub fn lower(self) -> Result<SparseMatrix, Error> {
+        Ok(self.walked(Taken::Lower)?.0)
+    }
+
+    /// The transposed upper triangle; `None` if a negligible entry is on one side of the diagonal only.
+    pub fn upper(self) -> Result<Option<SparseMatrix>, Error> {
+        let (upper, is_one_sided) = self.walked(Taken::Upper)?;
+        Ok((!is_one_sided).then_some(upper))
+    }
+
+    /// The entries on and below the diagonal, of the values of the triangle `taken`, and `true` if an entry has no
+    /// mirror image.
+    fn walked(self, taken: Taken) -> Result<(SparseMatrix, bool), Error> {
+        let mut lines = SymmetricLines::new(self.starts.len().saturating_sub(1), self.values.len(), taken)?;
+        self.each(|_, rows, values| lines.take(rows, values))?;
+        lines.matched()
+    }
+}
+
+impl Taken {
+    /// Checks that the indices of a line increase and lie inside a matrix of this shape, and that its values are
+    /// finite.
+    pub fn check<I: Copy + TryInto<usize>>(
+        self,
+        (rows, columns): (usize, usize),
+        number: usize,
+        indices: &[I],
+        values: &[f64],
+    ) -> Result<(), Error> {
+        // A walked line of the matrix is a row or a column; this names its entries in errors.
+        let [line, entry] = match self {
+            Taken::Lower => ["column", "row"],
+            Taken::Upper => ["row", "column"],
+        };
+        let mut before = None;
+        for (&index, &value) in indices.iter().zip(values) {
+            let Ok(index) = index.try_into() else {
+                let message = format!("a {entry} of {line} {number} is negative (indices from 0)");
+                return Err(Error::Pattern { message });
+            };
+            let place = self.place(index, number);
+            if index >= rows {
+                return Err(Error::IndexOutOfRange { row: place.0, column: place.1, rows, columns });
+            }
+            if let Some(before) = before.replace(index).filter(|&before| before >= index) {
+                let where_to = format!("{entry} {index} of {line} {number} does not lie beyond {entry} {before}");
+                return Err(Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") });
+            }
+            if !value.is_finite() {
+                let at = format!("{place:?}");
+                return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+            }
+        }
+        Ok(())
+    }
+
+    /// Row and column of an entry, or of a pair of mirrored entries, in a line that is walked as a column.
+    pub fn place<T>(self, row: T, column: T) -> (T, T) {
+        match self {
+            Taken::Lower => (row, column),
+            Taken::Upper => (column, row),
+        }
+    }
+}
+
+/// An empty vector with room for this number of entries.
+fn with_room<T>(entries: usize) -> Result<Vec<T>, Error> {
+    let mut room = Vec::new();
+    match room.try_reserve_exact(entries) {
+        Ok(()) => Ok(room),
+        Err(error) => Err(Error::Numerical { step: "copying a matrix", reason: error.to_string() }),
+    }
+}
+
+impl SymmetricLines {
+    /// Before the first of `dim` rows with this number of entries in all.
+    pub fn of_rows(dim: usize, entries: usize) -> Result<Self, Error> {
+        Self::new(dim, entries, Taken::Upper)
+    }
+
+    fn new(dim: usize, entries: usize, taken: Taken) -> Result<Self, Error> {
+        check_rows(dim)?;
+        let room = entries / 2 + dim;
+        let mut starts = with_room(dim + 1)?;
+        starts.push(0);
+        let (rows, values, cursor) = (with_room(room)?, with_room(room)?, with_room(dim)?);
+        Ok(SymmetricLines { dim, starts, rows, values, cursor, taken, is_one_sided: false })
+    }
+
+    /// The lower triangle; a negligible entry may be in one triangle only.
+    pub fn lower(self) -> Result<SparseMatrix, Error> {
+        Ok(self.matched()?.0)
+    }
+
+    /// Takes the next row or column: indices from 0, increasing, and values. Keeps what lies on and below the diagonal
+    /// of a column, and compares what lies above.
+    pub fn take<R: Copy + TryInto<usize>>(&mut self, rows: &[R], values: &[f64]) -> Result<(), Error> {
+        let (column, start) = (self.cursor.len(), self.rows.len());
+        self.taken.check((self.dim, self.dim), column, rows, values)?;
+        let index = |row: &R| (*row).try_into().unwrap_or(usize::MAX);
+        let above = rows.partition_point(|row| index(row) < column);
+        let has_diagonal = rows.get(above).map(index) == Some(column);
+        let diagonal = if has_diagonal { values[above].abs() } else { 0.0 };
+        for (row, &value) in rows[..above].iter().zip(values) {
+            self.compare((index(row), column), value, diagonal)?;
+        }
+        self.rows.extend(rows[above..].iter().map(|row| index(row) as u32));
+        self.values.extend_from_slice(&values[above..]);
+        self.starts.push(self.rows.len());
+        self.cursor.push(start + usize::from(has_diagonal));
+        Ok(())
+    }
+
+    /// Compares an entry above the diagonal with its mirror image in column `row`, which the cursor then passes;
+    /// `diagonal` is the size of the diagonal entry of its column.
+    fn compare(&mut self, (row, column): (usize, usize), value: f64, diagonal: f64) -> Result<(), Error> {
+        let end = self.starts[row + 1];
+        // A column before this one had no entry in that row.
+        while self.cursor[row] < end && (self.rows[self.cursor[row]] as usize) < column {
+            self.alone(row)?;
+        }
+        let place = self.cursor[row];
+        if place == end || self.rows[place] as usize != column {
+            self.is_one_sided = true;
+            return self.alike((column, row), [0.0, value], diagonal);
+        }
+        self.cursor[row] += 1;
+        let below = self.values[place];
+        if self.taken == Taken::Upper {
+            self.values[place] = value;
+        }
+        if below == value { Ok(()) } else { self.alike((column, row), [below, value], diagonal) }
+    }
+
+    /// The lower triangle, and `true` if an entry has no mirror image; such entries must be negligible.
+    fn matched(mut self) -> Result<(SparseMatrix, bool), Error> {
+        for column in 0..self.cursor.len() {
+            while self.cursor[column] < self.starts[column + 1] {
+                self.alone(column)?;
+            }
+        }
+        Ok((SparseMatrix::from_parts(self.dim, self.starts, self.rows, self.values), self.is_one_sided))
+    }
+
+    /// The next entry below the diagonal of `column` has no mirror image.
+    fn alone(&mut self, column: usize) -> Result<(), Error> {
+        self.is_one_sided = true;
+        let place = self.cursor[column];
+        self.cursor[column] += 1;
+        let row = self.rows[place] as usize;
+        self.alike((row, column), [self.values[place], 0.0], self.diagonal(row))
+    }
+
+    /// The size of the diagonal entry of a column that was walked.
+    fn diagonal(&self, column: usize) -> f64 {
+        let place = self.starts[column];
+        let is_there = place < self.starts[column + 1] && self.rows[place] as usize == column;
+        if is_there { self.values[place].abs() } else { 0.0 }
+    }
+
+    /// Makes sure that an entry below the diagonal and its mirror image differ by rounding at most; `diagonal` is the
+    /// size of the diagonal entry of its row.
+    fn alike(&self, (row, column): (usize, usize), values: [f64; 2], diagonal: f64) -> Result<(), Error> {
+        let [value, mirrored] = values;
+        let size = self.diagonal(column).max(diagonal);
+        let scale = if size > 0.0 { size } else { value.abs().max(mirrored.abs()) };
+        if (value - mirrored).abs() > SYMMETRY_TOLERANCE * scale {
+            let (value, mirrored) = self.taken.place(value, mirrored);
+            return Err(Error::NotSymmetric { row, column, value, mirrored });
+        }
+        Ok(())
+    }
+}
+
+impl SymmetricMatrix {
+    /// Number of entries in each row, both triangles.
+    pub fn row_lengths(&self) -> Vec<u32> {
+        let mut lengths: Vec<u32> = (0..self.dim()).map(|row| self.lower().column_rows(row).len() as u32).collect();
+        self.lower().triplets().filter(|entry| entry.0 != entry.1).for_each(|(row, _, _)| lengths[row] += 1);
+        lengths
+    }
+
+    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order.
+    ///
+    /// # Errors
+    /// Those of `take`.
+    pub fn each_row<E>(&self, mut take: impl FnMut(&[u32], &[f64]) -> Result<(), E>) -> Result<(), E> {
+        let upper = self.upper();
+        (0..self.dim()).try_for_each(|row| {
+            let left = upper.column(row).take_while(|entry| entry.0 < row);
+            let entries = left.chain(self.lower().column(row)).map(|(column, value)| (column as u32, value));
+            let (columns, values): (Vec<u32>, Vec<f64>) = entries.unzip();
+            take(&columns, &values)
+        })
+    }
+}

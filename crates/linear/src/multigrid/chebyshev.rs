@@ -1,0 +1,178 @@
+//! The smoother: Chebyshev polynomials of the fourth kind in D^-1 A, D the diagonal blocks, or D^-1 the sum of the
+//! inverses on patches.
+
+use std::sync::Arc;
+
+use super::blocks::BlockMatrix;
+use super::coarsest::LOST_DIAGONAL;
+use super::inverse::invert;
+use super::operator::Operator;
+use super::patches::Patches;
+use super::repeated::RowByRow;
+use crate::Spare;
+use crate::power_iteration::power_iteration;
+use crate::real::Real;
+
+/// Products that estimate the largest eigenvalue of D^-1 A.
+const POWER_STEPS: usize = 12;
+
+/// Safety factor of the estimate, which is a lower bound.
+const SAFETY: f64 = 1.1;
+
+/// Factor by which a change of a matrix on few rows may increase the largest eigenvalue.
+const CHANGED: f64 = 1.15;
+
+/// A symmetric smoother of a fixed degree.
+///
+/// # Source
+/// J. Lottes, *Optimal polynomial smoothers for multigrid V-cycles*, Numer. Linear Algebra Appl. 30 (2023) e2518,
+/// algorithm 3.
+#[derive(Clone, Debug)]
+pub struct Chebyshev<T> {
+    pub degree: usize,
+    /// D^-1.
+    pub inverse: BlockMatrix<T>,
+    /// The patches of which D^-1 is the sum of the inverses; `None` if D are the diagonal blocks.
+    patches: Option<Arc<Patches>>,
+    /// Upper bound on the eigenvalues of D^-1 A.
+    pub largest: f64,
+}
+
+impl<T: Real> Chebyshev<T> {
+    /// The smoother of `matrix` by its diagonal blocks.
+    pub fn new(matrix: &BlockMatrix<T>, degree: usize, threads: usize) -> Self {
+        Self::with(matrix, inverse_diagonal(matrix), None, degree, threads)
+    }
+
+    /// The smoother of `matrix` whose D^-1 is the sum of the inverses on `patches`.
+    pub fn on_patches(matrix: &BlockMatrix<T>, patches: Patches, degree: usize, threads: usize) -> Self {
+        let inverse = patches.inverse(matrix, None, threads);
+        Self::with(matrix, inverse, Some(Arc::new(patches)), degree, threads)
+    }
+
+    fn with(
+        matrix: &BlockMatrix<T>,
+        inverse: BlockMatrix<T>,
+        patches: Option<Arc<Patches>>,
+        degree: usize,
+        threads: usize,
+    ) -> Self {
+        let mut smoother = Chebyshev { degree, inverse, patches, largest: 1.0 };
+        smoother.largest = SAFETY * smoother.largest_eigenvalue(&Operator::whole(matrix, threads, &Spare::default()));
+        smoother
+    }
+
+    pub fn has_patches(&self) -> bool {
+        self.patches.is_some()
+    }
+
+    /// Improves `x` with the residual `rest` = b - A x. Returns the last step, which the residual does not contain yet:
+    /// that saves a product if it is not used any more.
+    pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T]) -> Vec<T> {
+        let mut step = operator.spare.zeros(x.len());
+        for k in 1..=self.degree {
+            self.inverse.step(rest, self.weights(k), [&mut step, x], operator.threads);
+            // The sum x is brought into the face at the end.
+            operator.project(&mut step);
+            if k < self.degree {
+                operator.add_product(-1.0, &step, rest);
+            }
+        }
+        operator.project(x);
+        step
+    }
+
+    /// The weights of step k, from 1 on: that of the last step, and that of `D^-1 r`.
+    pub fn weights(&self, k: usize) -> (f64, f64) {
+        let k = k as f64;
+        ((2.0 * k - 3.0) / (2.0 * k + 1.0), (8.0 * k - 4.0) / (2.0 * k + 1.0) / self.largest)
+    }
+
+    /// `D^-1 r`, in the face.
+    fn precondition(&self, operator: &Operator<T>, r: &[T], result: &mut [T]) {
+        result.fill(T::default());
+        self.inverse.add_product(1.0, r, result, operator.threads);
+        operator.project(result);
+    }
+
+    /// The same smoother for the matrix minus `change`; blocks and patches in which `change` has no diagonal block are
+    /// kept.
+    pub fn changed(&self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Self {
+        let largest = CHANGED * self.largest;
+        if let Some(patches) = &self.patches {
+            let touched = patches.touched_by(change);
+            let [old, new] = [None, Some(change)].map(|change| touched.inverse(matrix, change, 1));
+            let inverse = self.inverse.plus(1.0, &new.plus(-1.0, &old));
+            return Chebyshev { inverse, patches: self.patches.clone(), largest, degree: self.degree };
+        }
+        let size = matrix.height;
+        let mut smoother = Chebyshev { largest, ..self.clone() };
+        let (mut work, mut result) = (vec![0.0; size * size], vec![0.0; size * size]);
+        for node in 0..matrix.rows() {
+            let (Some(own), Some(changed)) = (matrix.diagonal_place(node), change.diagonal_place(node)) else {
+                continue;
+            };
+            for (work, (own, changed)) in work.iter_mut().zip(matrix.block(own).iter().zip(change.block(changed))) {
+                *work = own.double() - changed.double();
+            }
+            for i in 0..size {
+                let whole = matrix.block(own)[i * size + i].double();
+                if work[i * size + i] <= LOST_DIAGONAL * T::EPSILON * whole {
+                    (0..size).for_each(|j| (work[i * size + j], work[j * size + i]) = (0.0, 0.0));
+                }
+            }
+            invert(&mut work, size, &mut result);
+            let values: Vec<T> = result.iter().map(|&value| T::of(value)).collect();
+            smoother.inverse.replace_diagonal(node, &values);
+        }
+        smoother
+    }
+
+    /// The same smoother with the largest eigenvalue measured where `change` has changed the matrix, if that is larger.
+    pub fn measured(mut self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>, threads: usize) -> Self {
+        let near = matrix.with_rows(change.filled_rows()).within(change).plus(-1.0, change);
+        self.largest =
+            self.largest.max(SAFETY * self.largest_eigenvalue(&Operator::whole(&near, threads, &Spare::default())));
+        self
+    }
+
+    fn largest_eigenvalue(&self, operator: &Operator<T>) -> f64 {
+        let product = |x: &[T], y: &[T]| x.iter().zip(y).map(|(x, y)| x.double() * y.double()).sum::<f64>();
+        let mut moved = vec![T::default(); operator.dim()];
+        let mut estimate = 1.0;
+        power_iteration(operator.dim(), -0.5, POWER_STEPS, |x| {
+            operator.mul_into(x, &mut moved);
+            let energy = product(x, &moved);
+            self.precondition(operator, &moved, x);
+            let dual = product(x, &moved);
+            if energy.is_nan() || energy <= 0.0 || !dual.is_finite() {
+                return false;
+            }
+            // The Rayleigh quotient of D^-1 A in the energy product, in which it is symmetric.
+            estimate = dual / energy;
+            true
+        });
+        estimate
+    }
+}
+
+fn inverse_diagonal<T: Real>(matrix: &BlockMatrix<T>) -> BlockMatrix<T> {
+    let size = matrix.height;
+    let mut inverse = RowByRow::new(size, matrix.rows());
+    let (mut work, mut result, mut values) = (vec![0.0; size * size], vec![0.0; size * size], Vec::new());
+    for node in 0..matrix.rows() {
+        if node > 0 && matrix.is_shared() && matrix.shared_rows[node - 1] == matrix.shared_rows[node] {
+            inverse.repeat(node - 1);
+            continue;
+        }
+        match matrix.diagonal_place(node) {
+            Some(place) => work.iter_mut().zip(matrix.block(place)).for_each(|(work, value)| *work = value.double()),
+            None => work.fill(0.0),
+        }
+        invert(&mut work, size, &mut result);
+        values.clear();
+        values.extend(result.iter().map(|&value| T::of(value)));
+        inverse.push(&[node as u32], &values);
+    }
+    inverse.finished()
+}

@@ -1,0 +1,146 @@
+//! The dofs of a matrix in groups, one for each node, and the matrix in blocks of these.
+
+use super::super::quotient::Quotient;
+use super::super::{SymmetricMatrix, exponent, ldexp};
+use super::blocks::BlockMatrix;
+use super::filling::Filling;
+use crate::real::Real;
+
+/// Largest number of dofs of a node; if more have the same neighbours, they count as dofs of several nodes.
+const MOST_DOFS: usize = 3;
+
+/// The nodes of a problem, with the places of its dofs in them. Nodes with fewer dofs than others, such as nodes at a
+/// roller, are filled up with dofs that nothing touches.
+#[derive(Clone, Debug)]
+pub struct Nodes {
+    /// Number of places of each node, at least its number of dofs.
+    pub size: usize,
+    pub count: usize,
+    /// The place `size * node + component` of each dof.
+    pub place: Vec<u32>,
+    /// The exponent of the unit of each node, `>= 0`: its displacement is `2^exponent` times the unknown of the
+    /// hierarchy. With these units, nodes of stiff and of soft bodies have diagonal entries of the same order. Those of
+    /// the stiffest nodes are zero.
+    exponents: Vec<i32>,
+}
+
+/// The group of each dof, which is its node, and the exponent of its unit: `u = 2^exponent v`. All dofs of a node have
+/// the same one.
+///
+/// In the unknowns v, nodes of stiff and of soft bodies have diagonal entries of the same order. A projection that is
+/// orthogonal in v then moves soft and stiff nodes of a row by what their stiffness allows; one that is orthogonal in u
+/// does not, and the smoother diverges.
+#[derive(Clone, Debug)]
+pub struct Units {
+    pub groups: Vec<u32>,
+    pub exponents: Vec<i32>,
+}
+
+impl Units {
+    /// The nodes by the pattern of `matrix` alone, all with one unit.
+    pub fn by_pattern(matrix: &SymmetricMatrix) -> Self {
+        let (size, place, _) = places(&Quotient::of(matrix.lower()), matrix.dim());
+        let groups = place.iter().map(|&place| place / size as u32).collect();
+        Units { groups, exponents: vec![0; matrix.dim()] }
+    }
+
+    /// One unit for all dofs, as if they were those of one node.
+    pub fn alone(dofs: usize) -> Self {
+        Units { groups: vec![0; dofs], exponents: vec![0; dofs] }
+    }
+}
+
+impl Nodes {
+    /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, in the unit of each node,
+    /// times `2^exponent` so that its diagonal is of order one; not rounded as well, if nearly all its rows repeat.
+    pub fn of<T: Real>(
+        matrix: &SymmetricMatrix,
+        threads: usize,
+    ) -> (Self, BlockMatrix<T>, Option<BlockMatrix<f64>>, i32) {
+        let graph = Quotient::of(matrix.lower());
+        let (size, place, first_node) = places(&graph, matrix.dim());
+        let count = first_node[graph.count()] as usize;
+        let (exponents, shift) = units(&matrix.diagonal(), |dof| place[dof] as usize / size, count);
+        let filling = Filling { matrix, graph: &graph, first_node: &first_node, size, exponents: &exponents, shift };
+        let (blocks, exact) = filling.blocks(threads);
+        (Nodes { size, count, place, exponents }, blocks, exact, shift)
+    }
+
+    /// `count` nodes of `size` dofs each, one after another.
+    pub fn in_order(size: usize, count: usize) -> Self {
+        Nodes { size, count, place: (0..(size * count) as u32).collect(), exponents: vec![0; count] }
+    }
+
+    /// Number of dofs of a node, and the component of each dof.
+    pub fn components(matrix: &SymmetricMatrix) -> (usize, Vec<usize>) {
+        let (size, place, _) = places(&Quotient::of(matrix.lower()), matrix.dim());
+        (size, place.into_iter().map(|place| place as usize % size).collect())
+    }
+
+    /// The node of each dof, and the exponent of its unit.
+    pub fn units(&self) -> Units {
+        let groups = self.place.iter().map(|&place| place / self.size as u32).collect();
+        Units { groups, exponents: self.place.iter().map(|&place| self.exponent(place)).collect() }
+    }
+
+    /// The exponent of the unit at a place.
+    pub fn exponent(&self, place: u32) -> i32 {
+        self.exponents[place as usize / self.size]
+    }
+
+    /// Puts the forces on the dofs into their places in `gathered`, in the units of the nodes, times `2^exponent`.
+    /// Returns that exponent: they are then of order one, because single precision has a small range.
+    pub fn gather<T: Real>(&self, forces: &[f64], gathered: &mut [T]) -> i32 {
+        let exponents = || self.place.iter().map(|&place| self.exponent(place)).zip(forces);
+        let largest = exponents().filter(|entry| *entry.1 != 0.0).map(|(unit, &force)| exponent(force) + unit).max();
+        let scale = -largest.unwrap_or(0);
+        for (&place, (unit, &force)) in self.place.iter().zip(exponents()) {
+            gathered[place as usize] = T::of(ldexp(force, scale + unit));
+        }
+        scale
+    }
+
+    /// Puts the displacements of the dofs, of unknowns in the units of the nodes, times `2^exponent`, into
+    /// `displacements`.
+    pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32, displacements: &mut [f64]) {
+        for (&place, displacement) in self.place.iter().zip(displacements) {
+            *displacement = ldexp(gathered[place as usize].double(), exponent + self.exponent(place));
+        }
+    }
+}
+
+/// Number of places of a node, the place of each dof, which is `size * node + component`, and the first node of each
+/// group, with the number of nodes at the end.
+fn places(graph: &Quotient, dofs: usize) -> (usize, Vec<u32>, Vec<u32>) {
+    let (size, mut place, mut first_node) = (usual_dofs(graph), vec![0; dofs], vec![0]);
+    let mut count = 0;
+    for group in 0..graph.count() as u32 {
+        for part in graph.members(group).chunks(size) {
+            part.iter().enumerate().for_each(|(component, &dof)| place[dof] = (size * count + component) as u32);
+            count += 1;
+        }
+        first_node.push(count as u32);
+    }
+    (size, place, first_node)
+}
+
+/// The exponent of the unit of each of `count` nodes, from the largest diagonal entry there, and the exponent that then
+/// makes all diagonal entries of order one. A node without stiffness has the unit of the stiffest.
+fn units(diagonal: &[f64], node_of: impl Fn(usize) -> usize, count: usize) -> (Vec<i32>, i32) {
+    let mut of_node = vec![0.0_f64; count];
+    diagonal.iter().enumerate().for_each(|(dof, &own)| of_node[node_of(dof)] = of_node[node_of(dof)].max(own));
+    let largest = exponent(of_node.iter().copied().fold(0.0, f64::max));
+    let unit = |&own: &f64| if own > 0.0 { -(exponent(own) - largest).div_euclid(2) } else { 0 };
+    (of_node.iter().map(unit).collect(), -largest)
+}
+
+/// Dofs of the nodes of a graph: the number in most groups. Nodes inside an element may share a group.
+fn usual_dofs(graph: &Quotient) -> usize {
+    let mut with = [0_usize; MOST_DOFS + 1];
+    for group in 0..graph.count() as u32 {
+        if let Some(count) = with.get_mut(graph.members(group).len()) {
+            *count += 1;
+        }
+    }
+    (1..=MOST_DOFS).max_by_key(|&size| (with[size], size)).unwrap_or(1)
+}
