@@ -90,10 +90,10 @@ impl Places {
     /// Leaves out the entries of supported components, which must be zero, in the last row, of the stiffness that of
     /// place `own`; what stands on its diagonal has no meaning.
     fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), LinearError> {
-        let mut kept = 0;
+        let (supported, mut kept) = (own.filter(|&own| self.dof[own] == SUPPORTED), 0);
         for entry in 0..rows.columns.len() {
             let (column, value) = (rows.columns[entry] as usize, rows.values[entry]);
-            let left = own.filter(|&own| self.dof[own] == SUPPORTED).unwrap_or(column);
+            let left = supported.unwrap_or(column);
             if self.dof[left] != SUPPORTED {
                 (rows.columns[kept], rows.values[kept]) = (self.dof[column], value);
                 kept += 1;
