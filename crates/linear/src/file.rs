@@ -28,10 +28,10 @@ pub fn unread(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
 }
 
 /// A file that is read up to a cap; beyond it, reading fails.
-pub struct Capped {
+pub(crate) struct Capped {
     file: File,
     /// Bytes of a regular file; 0 for other files, of unknown length.
-    pub length: u64,
+    pub(crate) length: u64,
     most: u64,
     left: u64,
 }
@@ -59,7 +59,7 @@ impl Read for Capped {
 }
 
 /// A file to be read piece by piece, at most `most` bytes.
-pub fn open_capped(path: &Path, most: u64) -> Result<Capped, Error> {
+pub(crate) fn open_capped(path: &Path, most: u64) -> Result<Capped, Error> {
     Capped::open(path, most).map_err(unread(path))
 }
 

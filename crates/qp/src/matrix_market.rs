@@ -12,7 +12,7 @@ use crate::error::{Error, LinearError};
 use crate::linear::SymmetricMatrix;
 use crate::linear::file::Streamed;
 use crate::linear::matrix_market::{
-    Allowed, FINITE, GAPS, format_vector, matrix, read, read_vector, vector, write_columns, write_entries,
+    Allowed, Content, FINITE, GAPS, format_vector, matrix, read_vector, vector, write_columns, write_entries,
 };
 use crate::linear::multigrid::NearNullSpace;
 use crate::problem::ContactProblem;
@@ -89,7 +89,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
 fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
     let file = directory.join("near_null.mtx");
     if file.exists() {
-        let content = read(&file, FINITE)?;
+        let content = Content::read(&file, FINITE)?;
         if content.rows != dofs || content.columns == 0 {
             let found = format!("it is {} x {}", content.rows, content.columns);
             return Err(fault(
@@ -104,7 +104,7 @@ fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Err
     if !file.exists() {
         return Ok(None);
     }
-    let content = read(&file, FINITE)?;
+    let content = Content::read(&file, FINITE)?;
     let (nodes, dimension) = (content.rows, content.columns);
     if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
         let message = format!(

@@ -5,7 +5,7 @@
 
 mod parse;
 
-pub use parse::{Allowed, Content, FINITE, GAPS, read};
+pub use parse::{Allowed, Content, FINITE, GAPS};
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -14,9 +14,6 @@ use crate::error::Error;
 use crate::file::Streamed;
 use crate::{SparseMatrix, SymmetricMatrix};
 use parse::BOUNDS;
-
-/// Largest number of empty rows or columns: nothing is allocated from an announced size alone.
-const MOST_EMPTY: usize = 1_000_000;
 
 /// The Matrix Market file of a vector in any unit, as text: an array of one column, one entry per line, in the order of
 /// the vector.
@@ -37,7 +34,8 @@ impl SparseMatrix {
         }
         let below = lower.triplets().filter(|(row, column, _)| row != column);
         let above: Vec<_> = below.map(|(row, column, value)| (column, row, value)).collect();
-        Self::from_triplets(lower.rows(), lower.columns(), &lower.triplets().chain(above).collect::<Vec<_>>())
+        let all: Vec<_> = lower.triplets().chain(above).collect();
+        SparseMatrix::from_triplets(lower.rows(), lower.columns(), &all)
     }
 
     /// Reads a file as [`read_vector`] does, in which `-inf` and `inf` stand for no bound. For the crates of this
@@ -91,7 +89,7 @@ pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
 /// # Errors
 /// As [`read_vector`].
 pub fn vector(file: &Path, values: Allowed) -> Result<Vec<f64>, Error> {
-    let content = read(file, values)?;
+    let content = Content::read(file, values)?;
     if content.columns != 1 && content.rows != 1 {
         let message = format!("a vector has one column, but this is {} x {}", content.rows, content.columns);
         return Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message });
@@ -111,29 +109,9 @@ pub fn vector(file: &Path, values: Allowed) -> Result<Vec<f64>, Error> {
 /// # Errors
 /// As [`read_vector`].
 pub fn matrix(file: &Path, dofs: Option<usize>) -> Result<(bool, SparseMatrix), Error> {
-    let content = read(file, FINITE)?;
+    let content = Content::read(file, FINITE)?;
     let fits = dofs == Some(content.columns);
     content.check_filled(file, if fits { content.rows } else { content.rows.max(content.columns) })?;
     let matrix = SparseMatrix::from_triplets(content.rows, content.columns, &content.entries)?;
     Ok((content.symmetric, matrix))
-}
-
-impl Content {
-    /// Refuses a number of rows or columns (`lines`) that is not credible for the entries of the file.
-    fn check_filled(&self, file: &Path, lines: usize) -> Result<(), Error> {
-        let (rows, columns, entries) = (self.rows, self.columns, self.entries.len());
-        if lines <= entries.saturating_add(MOST_EMPTY) {
-            return Ok(());
-        }
-        let message =
-            format!("a matrix of {rows} x {columns} with {entries} entries is almost empty; correct its size");
-        Err(Error::FileSyntax { file: file.to_path_buf(), line: self.line, message })
-    }
-
-    /// The columns of an array.
-    pub fn columns(&self) -> Vec<Vec<f64>> {
-        let mut columns = vec![vec![0.0; self.rows]; self.columns];
-        self.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);
-        columns
-    }
 }

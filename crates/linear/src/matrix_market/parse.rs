@@ -18,6 +18,9 @@ const LONGEST: usize = 1 << 16;
 /// More rows or columns than this are refused before anything is allocated.
 const LARGEST_DIMENSION: usize = 100_000_000;
 
+/// Largest number of empty rows or columns: nothing is allocated from an announced size alone.
+const MOST_EMPTY: usize = 1_000_000;
+
 /// The content of a file: shape, entries (indices from 0), and whether only one triangle is stored.
 #[derive(Debug)]
 pub struct Content {
@@ -51,29 +54,49 @@ pub const GAPS: Allowed = (|gap| gap > f64::NEG_INFINITY, "finite, or inf for a 
 /// Lower and upper bounds: `-inf` and `inf` are none.
 pub const BOUNDS: Allowed = (|bound| !bound.is_nan(), "a number, or -inf or inf without a bound");
 
-/// Reads a file with these values; errors name its path.
-pub fn read(file: &Path, allowed: Allowed) -> Result<Content, Error> {
-    let text = open_capped(file, MOST_OF_MATRIX)?;
-    let (length, may_quote) = (text.length, is_inside(file));
-    let reader = BufReader::with_capacity(PIECE, text);
-    let mut lines = TextLines { file, may_quote, reader, number: 0, bytes: Vec::new(), text: String::new() };
-    if !lines.advance()? {
-        return Err(lines.fault_at(1, "the file is empty"));
+impl Content {
+    /// Reads a file with these values; errors name its path.
+    pub fn read(file: &Path, allowed: Allowed) -> Result<Self, Error> {
+        let text = open_capped(file, MOST_OF_MATRIX)?;
+        let (length, may_quote) = (text.length, is_inside(file));
+        let reader = BufReader::with_capacity(PIECE, text);
+        let mut lines = TextLines { file, may_quote, reader, number: 0, bytes: Vec::new(), text: String::new() };
+        if !lines.advance()? {
+            return Err(lines.fault_at(1, "the file is empty"));
+        }
+        let (is_array, symmetric) = lines.header()?;
+        if !lines.advance_to_data()? {
+            return Err(lines.fault_at(1, "the line with the sizes is missing"));
+        }
+        let (rows, columns, announced) = lines.sizes(is_array, symmetric)?;
+        let mut content = Content { line: lines.number, rows, columns, symmetric, entries: Vec::new() };
+        // Room for the announced entries, as far as the length of the file makes their number credible: without it, a
+        // growing vector would take twice the memory for a while. Without reserved room, entries are taken one by one.
+        let _ = content.entries.try_reserve_exact(announced.min((length / LEAST_OF_ENTRY) as usize));
+        match is_array {
+            true => lines.array(&mut content, allowed)?,
+            false => lines.coordinates(&mut content, announced, allowed)?,
+        }
+        Ok(content)
     }
-    let (is_array, symmetric) = lines.header()?;
-    if !lines.advance_to_data()? {
-        return Err(lines.fault_at(1, "the line with the sizes is missing"));
+
+    /// Refuses a number of rows or columns (`lines`) that is not credible for the entries of the file.
+    pub fn check_filled(&self, file: &Path, lines: usize) -> Result<(), Error> {
+        let (rows, columns, entries) = (self.rows, self.columns, self.entries.len());
+        if lines <= entries.saturating_add(MOST_EMPTY) {
+            return Ok(());
+        }
+        let message =
+            format!("a matrix of {rows} x {columns} with {entries} entries is almost empty; correct its size");
+        Err(Error::FileSyntax { file: file.to_path_buf(), line: self.line, message })
     }
-    let (rows, columns, announced) = lines.sizes(is_array, symmetric)?;
-    let mut content = Content { line: lines.number, rows, columns, symmetric, entries: Vec::new() };
-    // Room for the announced entries, as far as the length of the file makes their number credible: without it, a
-    // growing vector would take twice the memory for a while. Without reserved room, entries are taken one by one.
-    let _ = content.entries.try_reserve_exact(announced.min((length / LEAST_OF_ENTRY) as usize));
-    match is_array {
-        true => lines.array(&mut content, allowed)?,
-        false => lines.coordinates(&mut content, announced, allowed)?,
+
+    /// The columns of an array.
+    pub fn columns(&self) -> Vec<Vec<f64>> {
+        let mut columns = vec![vec![0.0; self.rows]; self.columns];
+        self.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);
+        columns
     }
-    Ok(content)
 }
 
 /// Returns `false` if the file is a link out of its folder, perhaps to one that the reader of an error may not see.

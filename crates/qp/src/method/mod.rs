@@ -5,7 +5,6 @@
 pub mod active_set;
 mod bounds;
 pub mod dual_active_set;
-mod equilibrium;
 pub mod interior_point;
 pub mod mprgp;
 pub mod parametric;

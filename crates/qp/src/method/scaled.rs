@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::error::Error;
 use crate::linear::watch::Watch;
-use crate::linear::{Augmented, AugmentedMatrix, Cholesky, Compliance, SymmetricMatrix, if_definite};
+use crate::linear::{Augmented, Cholesky, Compliance, SymmetricMatrix, if_definite};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
@@ -33,7 +33,7 @@ pub struct ScaledProblem<'a> {
 }
 
 impl<'a> ScaledProblem<'a> {
-    /// The problem with its K + B'B.
+    /// The problem with the pattern of its K + B'B.
     pub fn new(
         problem: &'a ContactProblem,
         augmented: &'a Augmented,
@@ -50,20 +50,15 @@ impl<'a> ScaledProblem<'a> {
         self.swept_load.get_or_init(|| compliance.swept(self.problem.load())).clone()
     }
 
-    /// The analysed pattern of K + B'B.
-    pub(super) fn augmented(&self) -> Result<&AugmentedMatrix, Error> {
-        Ok(self.augmented.matrix()?)
-    }
-
     /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
     pub(super) fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> Result<SymmetricMatrix, Error> {
-        Ok(self.augmented()?.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift))
+        Ok(self.augmented.matrix()?.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift))
     }
 
     /// The factor of such a matrix; `None` if it is not positive definite.
     pub(super) fn factor(&self, matrix: SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
         let clock = Instant::now();
-        let factor = if_definite(self.augmented()?.factor(matrix));
+        let factor = if_definite(self.augmented.matrix()?.factor(matrix));
         self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
         Ok(factor?)
     }

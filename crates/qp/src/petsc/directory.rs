@@ -41,7 +41,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
 }
 
 /// The gaps, or values, of all rows of another file.
-fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, Error> {
+fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, LinearError> {
     let is_allowed = |gap: f64| gap > f64::NEG_INFINITY;
     let mut gap = vector(file, is_allowed, "a finite gap, or 1e20 or more for a row without obstacle")?;
     if gap.len() != rows {
@@ -53,8 +53,8 @@ fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, Error> {
 }
 
 /// The error of a vector of wrong size.
-fn fault(file: &Path, message: String) -> Error {
-    LinearError::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }.into()
+fn fault(file: &Path, message: String) -> LinearError {
+    LinearError::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
 }
 
 /// The places of the free dofs in the stiffness.
@@ -72,7 +72,7 @@ impl Places {
         Places { free, dof }
     }
 
-    fn load(&self, file: &Path) -> Result<Vec<f64>, Error> {
+    fn load(&self, file: &Path) -> Result<Vec<f64>, LinearError> {
         let load = vector(file, f64::is_finite, "finite")?;
         if load.len() != self.dof.len() {
             let message = format!("it has length {}, but {STIFFNESS} has {} rows", load.len(), self.dof.len());
@@ -82,26 +82,24 @@ impl Places {
         if let Some((place, value)) = load.iter().enumerate().find(supported) {
             let message = format!("value {place} is {value} (from 0), but {FREE} does not name it: it must be 0");
             let byte = (2 * INTEGER + REAL * place as u64) as usize;
-            return Err(LinearError::FileBytes { file: file.to_path_buf(), byte, message }.into());
+            return Err(LinearError::FileBytes { file: file.to_path_buf(), byte, message });
         }
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }
 
     /// Leaves out the entries of supported components, which must be zero, in the last row, of the stiffness that of
     /// place `own`; what stands on its diagonal has no meaning.
-    fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), Error> {
-        let mut kept = 0;
+    fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), LinearError> {
+        let (supported, mut kept) = (own.filter(|&own| self.dof[own] == SUPPORTED), 0);
         for entry in 0..rows.columns.len() {
             let (column, value) = (rows.columns[entry] as usize, rows.values[entry]);
-            let left = own.filter(|&own| self.dof[own] == SUPPORTED).unwrap_or(column);
+            let left = supported.unwrap_or(column);
             if self.dof[left] != SUPPORTED {
                 (rows.columns[kept], rows.values[kept]) = (self.dof[column], value);
                 kept += 1;
             } else if value != 0.0 && own != Some(column) {
                 let place = format!("entry ({}, {column}) is {value:e} (indices from 0)", rows.row());
-                return Err(rows
-                    .fault(entry, format!("{place}, but {FREE} does not name {left}: it must be 0"))
-                    .into());
+                return Err(rows.fault(entry, format!("{place}, but {FREE} does not name {left}: it must be 0")));
             }
         }
         rows.columns.truncate(kept);
@@ -109,10 +107,10 @@ impl Places {
         Ok(())
     }
 
-    fn rows(&self, mut rows: RowReader) -> Result<SparseMatrix, Error> {
+    fn rows(&self, mut rows: RowReader) -> Result<SparseMatrix, LinearError> {
         if rows.shape.1 != self.dof.len() {
             let found = format!("it has {} columns, but {STIFFNESS} has {} rows", rows.shape.1, self.dof.len());
-            return Err(rows.wrong_shape(found).into());
+            return Err(rows.wrong_shape(found));
         }
         let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
         while rows.read()? {
@@ -134,7 +132,7 @@ impl Places {
         problem.with_equalities(&rows, gap(&values, (EQUALITIES, rows.rows()))?)
     }
 
-    fn stiffness(&self, mut rows: RowReader) -> Result<SymmetricMatrix, Error> {
+    fn stiffness(&self, mut rows: RowReader) -> Result<SymmetricMatrix, LinearError> {
         let mut matrix = SymmetricLines::of_rows(self.free.len(), rows.entries)?;
         while rows.read()? {
             let own = rows.row();
@@ -143,7 +141,7 @@ impl Places {
                 matrix.take(&rows.columns, &rows.values).map_err(|error| self.located(error, &rows))?;
             }
         }
-        Ok(SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)?)
+        SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)
     }
 
     /// Two triangles that differ, at their places in the file.
@@ -157,7 +155,7 @@ impl Places {
 
     /// The near-null space: `near_null.petsc`, a column for each vector, or else the rigid-body modes of the nodes in
     /// `coordinates.petsc`. The latter are not exact if components are in a local frame.
-    fn near_null(&self, directory: &Path) -> Result<Option<NearNullSpace>, Error> {
+    fn near_null(&self, directory: &Path) -> Result<Option<NearNullSpace>, LinearError> {
         let of_free = |vector: &Vec<f64>| self.free.iter().map(|&place| vector[place as usize]).collect();
         let file = directory.join(NEAR_NULL);
         if file.exists() {
@@ -182,7 +180,7 @@ impl Places {
 }
 
 /// The number of dofs of a node, from `K.petsc.info`.
-fn block_size(directory: &Path) -> Result<usize, Error> {
+fn block_size(directory: &Path) -> Result<usize, LinearError> {
     let file = directory.join(INFO);
     let text = read_text_capped(&file, MOST_OF_INFO)?;
     let mut words = text.split_whitespace().skip_while(|&word| word != BLOCK_SIZE).skip(1);
@@ -190,7 +188,7 @@ fn block_size(directory: &Path) -> Result<usize, Error> {
         Some(size @ 1..=3) => Ok(size),
         _ => {
             let message = format!("it must have the line `{BLOCK_SIZE} D`, with 1, 2 or 3 dofs for each node");
-            Err(LinearError::FileSyntax { file, line: 1, message }.into())
+            Err(LinearError::FileSyntax { file, line: 1, message })
         }
     }
 }

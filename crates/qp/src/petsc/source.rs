@@ -65,7 +65,7 @@ impl Source {
     fn from_byte(path: &Path, byte: u64) -> Result<Self, Error> {
         let (mut file, length) = open_regular(path)?;
         let sought = if byte == 0 { Ok(0) } else { file.seek(SeekFrom::Start(byte)) };
-        sought.map_err(unread(path))?;
+        sought.map_err(|source| Error::File { action: "read", path: path.into(), source })?;
         let reader = BufReader::with_capacity(PIECE.min(length as usize + 1), file);
         Ok(Source { path: path.to_path_buf(), reader, byte, length })
     }
@@ -95,7 +95,7 @@ impl Source {
         let mut bytes = [0; COUNT];
         self.reader.read_exact(&mut bytes).map_err(|source| match source.kind() {
             io::ErrorKind::UnexpectedEof => self.fault(self.length, "the file ends here, but its sizes announce more"),
-            _ => unread(&self.path)(source),
+            _ => Error::File { action: "read", path: self.path.clone(), source },
         })?;
         self.byte += COUNT as u64;
         Ok(bytes)

@@ -49,13 +49,32 @@ impl Bounds {
     ) -> Result<Self, Error> {
         let by_row = &contact.transposed();
         let mut means = means((by_row, gap), &units.groups, &travels);
+        let is_unscaled = units.exponents.iter().all(|&unit| unit == 0);
+        let given =
+            Bounds { units: units.exponents.clone(), is_unscaled, travels, rows: gap.len(), ..Bounds::default() };
         loop {
-            let (bounds, without_pivot) = Making::of((by_row, gap), order, &means, units, travels.clone())?;
-            if without_pivot.is_empty() {
-                return Ok(bounds);
+            let (all, bound_of, carried) = (given.clone(), vec![None; given.units.len()], HashSet::new());
+            let mut making = Making { by_row, gap, groups: &units.groups, all, bound_of, carried };
+            let is_mean: HashSet<usize> = means.iter().copied().collect();
+            for (place, &row) in order.rows.iter().enumerate().filter(|entry| gap[*entry.1].is_finite()) {
+                if !is_mean.contains(&row) {
+                    making.turn(row, if place < order.needed { LEAST_BEYOND_IF_NEEDED } else { LEAST_BEYOND })?;
+                }
             }
-            // These are turned as other rows are.
-            means.retain(|row| !without_pivot.contains(row));
+            let mut with_pivot = Vec::new();
+            for &row in &means {
+                if making.pivot(row)? {
+                    with_pivot.push(row);
+                }
+            }
+            if with_pivot.len() == means.len() {
+                let mut all = making.all;
+                let is_own = |bound: &Bound| bound.shears().next().is_none();
+                all.is_plain = all.reflections.is_empty() && all.travels.is_empty() && all.bounds.iter().all(is_own);
+                return Ok(all);
+            }
+            // Means without a pivot are turned as other rows are.
+            means = with_pivot;
         }
     }
 }
@@ -86,45 +105,13 @@ fn means((by_row, gap): (&SparseMatrix, &[f64]), groups: &[u32], travels: &[usiz
 }
 
 impl Making<'_> {
-    /// All bounds: of other rows first, then of `means`; and the means that have no pivot.
-    fn of(
-        (by_row, gap): (&SparseMatrix, &[f64]),
-        order: &Preferred,
-        means: &[usize],
-        units: &Units,
-        travels: Vec<usize>,
-    ) -> Result<(Bounds, HashSet<usize>), Error> {
-        let (reflections, touching, bounds, left_out) = (Vec::new(), HashMap::new(), Vec::new(), Vec::new());
-        let (groups, units, rows) = (&units.groups, units.exponents.clone(), gap.len());
-        let (bound_of, carried) = (vec![None; units.len()], HashSet::new());
-        let (is_plain, is_unscaled) = (false, units.iter().all(|&unit| unit == 0));
-        let all = Bounds { units, is_unscaled, reflections, touching, bounds, is_plain, travels, left_out, rows };
-        let mut making = Making { by_row, gap, groups, all, bound_of, carried };
-        let is_mean: HashSet<usize> = means.iter().copied().collect();
-        for (place, &row) in order.rows.iter().enumerate().filter(|entry| gap[*entry.1].is_finite()) {
-            if !is_mean.contains(&row) {
-                making.turn(row, if place < order.needed { LEAST_BEYOND_IF_NEEDED } else { LEAST_BEYOND })?;
-            }
-        }
-        let mut without_pivot = HashSet::new();
-        for &row in means {
-            if !making.pivot(row)? {
-                without_pivot.insert(row);
-            }
-        }
-        let all = &mut making.all;
-        let is_own = |bound: &Bound| bound.shears().next().is_none();
-        all.is_plain = all.reflections.is_empty() && all.travels.is_empty() && all.bounds.iter().all(is_own);
-        Ok((making.all, without_pivot))
-    }
-
     /// The length of a row in the units of the dofs, its unit vector after the reflections, and its travel.
     fn turned(&self, row: usize) -> Result<(f64, Direction, Direction), Error> {
         let is_travel = |entry: &(usize, f64)| self.all.travels.binary_search(&entry.0).is_ok();
         let entries = entries(self.by_row, row).map(|(dof, b)| (dof, ldexp(b, self.all.units[dof])));
         let (mut moving, mut entries): (Direction, Direction) = entries.partition(is_travel);
         if moving.len() > 1 {
-            return Err(no_bound(format!("contact row {row} (index from 0) has several dofs without stiffness")));
+            return Err(no_bound(row, "has several dofs without stiffness"));
         }
         if entries.is_empty() {
             // The row of a node that is held: a bound on the travel itself.
@@ -141,7 +128,7 @@ impl Making<'_> {
         let (shared, mut own): (Direction, Direction) =
             turned.into_iter().partition(|entry| self.bound_of[entry.0].is_some());
         if !shared.is_empty() && own.len() > MOST_BEYOND {
-            return Err(no_bound(format!("contact row {row} (index from 0) shares dofs with too many others")));
+            return Err(no_bound(row, "shares dofs with too many others"));
         }
         let beyond = self::length(&own);
         // A row beyond others has a coordinate of its own; otherwise it may be parallel to the last of them.
@@ -168,10 +155,8 @@ impl Making<'_> {
             return Ok(());
         }
         let bound = &mut self.all.bounds[index];
-        if !bound.travels_as(travel) {
-            return Err(no_bound(format!(
-                "contact row {row} (index from 0) shares an unknown with one of another travel"
-            )));
+        if !are_equal(bound.travel.as_slice(), travel.as_slice()) {
+            return Err(no_bound(row, "shares an unknown with one of another travel"));
         }
         bound.take(Side { row, coefficient, value: self.gap[row] / coefficient });
         Ok(())

@@ -71,7 +71,7 @@ fn reflect(w: &Direction, v: &mut [f64]) {
 /// Rows B u <= g as bounds on unknowns w = S H U^-1 u. U are the units of the dofs, powers of two. H is orthogonal: a
 /// product of one reflection for each row that has more than one entry beyond the rows before it and travels. S are the
 /// shears.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Bounds {
     /// The exponent of the unit of each dof.
     units: Vec<i32>,
@@ -231,10 +231,10 @@ impl Bounds {
     }
 }
 
-/// Two shares of a travel are equal if they differ by no more than this share.
+/// Two shares are equal if they differ by no more than this share.
 const EQUAL_SHARES: f64 = 1e-12;
 
-fn are_equal(a: &Direction, b: &Direction) -> bool {
+fn are_equal(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
     let is_near = |((p, a), (q, b)): (&(usize, f64), &(usize, f64))| p == q && (a - b).abs() <= EQUAL_SHARES * a.abs();
     a.len() == b.len() && a.iter().zip(b).all(is_near)
 }
@@ -243,12 +243,9 @@ fn length(vector: &Direction) -> f64 {
     vector.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1))
 }
 
-fn no_bound(what: String) -> Error {
-    LinearError::Numerical {
-        step: "turning contact rows into bounds",
-        reason: format!("{what}; another method must take them"),
-    }
-    .into()
+fn no_bound(row: usize, what: &str) -> Error {
+    let reason = format!("contact row {row} (index from 0) {what}; another method must take them");
+    LinearError::Numerical { step: "turning contact rows into bounds", reason }.into()
 }
 
 impl Bound {
@@ -261,14 +258,6 @@ impl Bound {
     /// The coordinates that the unknown contains beside its own, with their shares.
     fn shears(&self) -> impl Iterator<Item = (usize, f64)> {
         self.shears.iter().copied().chain(self.travel)
-    }
-
-    /// Returns `true` if a row with this travel may join those of the bound.
-    fn travels_as(&self, travel: Option<(usize, f64)>) -> bool {
-        match (self.travel, travel) {
-            (Some((own, a)), Some((other, b))) => own == other && (a - b).abs() <= EQUAL_SHARES * a.abs(),
-            (own, other) => own == other,
-        }
     }
 
     /// The value of a bound with a row in the set; the upper value if both rows are.

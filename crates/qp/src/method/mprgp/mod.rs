@@ -30,8 +30,7 @@ use crate::linear::multigrid::{Face, Interval, Multigrid};
 use crate::linear::watch::Watch;
 use crate::problem::ContactProblem;
 use exchange::{Exchange, order};
-use iterate::{BoundedIterate, Conjugate};
-use travel::Move;
+use iterate::{BoundedIterate, Move};
 pub use travel::takes_travels;
 
 /// The loop has stagnated after this many iterations without a residual half as large as the best before; those that
@@ -246,7 +245,7 @@ struct Steps<'a> {
     travels: Vec<Move>,
     /// `true` if the set of unknowns at bounds has changed since the face was built.
     is_old: bool,
-    last: Option<Conjugate>,
+    last: Option<Move>,
     cycles: usize,
     /// Cycles that take about the seconds of the coarsest factors of all faces.
     of_faces: usize,
@@ -339,17 +338,18 @@ impl<'a> Steps<'a> {
         };
         self.is_old = false;
         let last = self.last.take();
-        let direction = iterate.of_free_gradient(|gradient| {
+        let (direction, slope) = iterate.of_free_gradient(|gradient| {
             let step = travel::preconditioned(&self.travels, iterate, &face, gradient);
             self.cycles += 1;
             self.watch.step("MPRGP", self.cycles);
-            Conjugate::of(step, last, gradient, iterate)
+            iterate.conjugate(step, last, gradient)
         });
         self.face = Some(face);
-        if direction.is_free || direction.energy < 0.0 {
+        let is_free = direction.energy == 0.0 && iterate.longest_step(&direction.way).is_infinite();
+        if is_free || direction.energy < 0.0 {
             return Ok(false);
         }
-        self.last = iterate.advance(direction);
+        self.last = iterate.advance(direction, slope);
         Ok(true)
     }
 }

@@ -10,7 +10,7 @@
 //! # Source
 //! J. Mandel, *Balancing domain decomposition*, Comm. Numer. Methods Engrg. 9 (1993) 233-241.
 
-use super::iterate::BoundedIterate;
+use super::iterate::{BoundedIterate, Move};
 use crate::linear::dot;
 use crate::linear::multigrid::{Face, Units};
 use crate::method::bounds::{Bounds, Preferred};
@@ -41,18 +41,8 @@ fn units(problem: &ContactProblem) -> Units {
     }
 }
 
-/// The displacement of a travel in a face; those of all travels are orthogonal in energy.
-pub struct Move {
-    /// z.
-    way: Vec<f64>,
-    /// K z.
-    force: Vec<f64>,
-    /// z'K z, zero if no closed row holds the travel.
-    energy: f64,
-}
-
-/// The displacements of all travels in another face: they start from those of the last one, and one cycle takes them
-/// nearer to balance.
+/// The displacements z of all travels in another face, orthogonal in energy: they start from those of the last one, and
+/// one cycle takes them nearer to balance. Without energy, no closed row holds the travel.
 pub fn in_face(before: Vec<Move>, iterate: &BoundedIterate, face: &Face) -> Vec<Move> {
     let (mut before, mut moves) = (before.into_iter(), Vec::<Move>::new());
     for &travel in &iterate.bounds.travels {
@@ -73,10 +63,7 @@ pub fn in_face(before: Vec<Move>, iterate: &BoundedIterate, face: &Face) -> Vec<
             let share = dot(&other.force, &way) / other.energy;
             way.iter_mut().zip(&other.way).for_each(|(way, other)| *way -= share * other);
         }
-        let force = iterate.product(&way);
-        let energy = dot(&way, &force);
-        let energy = if iterate.is_rounding(&way, energy) { 0.0 } else { energy };
-        moves.push(Move { way, force, energy });
+        moves.push(Move::of(way, iterate));
     }
     moves
 }
