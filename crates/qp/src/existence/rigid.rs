@@ -1,6 +1,6 @@
 //! Motions that a problem declares as those of a rigid body.
 
-use crate::linear::{norm, take_out};
+use crate::linear::{across, extend, norm};
 use crate::problem::ContactProblem;
 
 /// A direction is a rigid-body mode if it differs from one by less than this share of its length: null vectors of
@@ -17,26 +17,11 @@ pub(super) fn is_rigid(problem: &ContactProblem, displacement: &[f64], bodies: &
     };
     let mut directions: Vec<Vec<f64>> = Vec::new();
     for mode in modes.vectors() {
-        let mode = own(mode);
-        let mut left = across(&directions, mode.clone());
-        let length = norm(&left);
-        if length > RIGID * norm(&mode) {
-            left.iter_mut().for_each(|value| *value /= length);
-            directions.push(left);
-        }
+        extend(&mut directions, own(mode), RIGID);
     }
     let elsewhere = displacement.iter().zip(bodies).filter(|entry| *entry.1 != body).map(|entry| entry.0.abs());
     let left = norm(&across(&directions, own(displacement))) + elsewhere.sum::<f64>();
     left <= RIGID * norm(displacement)
-}
-
-/// The part of a vector that is orthogonal to some directions.
-fn across(directions: &[Vec<f64>], mut vector: Vec<f64>) -> Vec<f64> {
-    // The second turn removes the rounding of the first.
-    for direction in directions.iter().chain(directions) {
-        take_out(&mut vector, direction);
-    }
-    vector
 }
 
 pub(super) fn place_of_largest(values: &[f64]) -> usize {
