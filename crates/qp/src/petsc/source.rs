@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Class, DENSE, INDICES, MATRIX, TOO_MANY, VECTOR};
 use crate::error::LinearError as Error;
-use crate::linear::file::{open_regular, unread};
+use crate::linear::file::open_regular;
 
 /// Bytes of a PETSc file that are read at a time.
 const PIECE: usize = 1 << 20;
