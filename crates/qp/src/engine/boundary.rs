@@ -84,14 +84,14 @@ impl Factored {
         self.check_gap(to)?;
         let Some((found, _)) = self.found_on_boundary(from, true)? else { return Ok(None) };
         let Reduced { loading, unit, problem, outcome, .. } = &found;
-        let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
+        let free = condensed.contact.mul(&condensed.free_displacement(&loading.sweep));
         let at_end = reduction.scaling.gap(&reduction.selection.gap(to), *unit);
         let constant =
             free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
         let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
         let compliance = ParametricLcp::new(condensed.compliance(), constant, slope);
         let (pieces, mut events) = compliance.walk(&outcome.contact_set, &from.settings.watch)?;
-        events.iter_mut().for_each(|event| event.row = reduction.selection.kept()[event.row]);
+        events.iter_mut().for_each(|event| event.row = reduction.selection.kept[event.row]);
         Ok(Some(Walk { pieces, events, to_rows: Arc::new(ToRows { unit: *unit, engine: self.clone() }) }))
     }
 }

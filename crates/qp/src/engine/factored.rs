@@ -125,7 +125,7 @@ impl Engine for Factored {
 
     fn response(&self, load: &Load) -> Option<Vec<f64>> {
         let norm = self.reduction.norm()?;
-        let no_gap = vec![0.0; self.reduction.selection.kept().len()];
+        let no_gap = vec![0.0; self.reduction.selection.kept.len()];
         let loading = load.swept(&self.reduction, &no_gap);
         let moved = match &self.reduction.condensation {
             Some(condensed) => condensed.free_displacement(&loading.sweep),
@@ -150,7 +150,7 @@ impl Engine for Factored {
 impl Factored {
     /// Number of unknowns that the methods work on: the contact dofs if the problem is condensed, otherwise all.
     pub fn condensed_dofs(&self) -> usize {
-        self.reduction.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
+        self.reduction.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness.dim())
     }
 
     /// Returns `true` if the methods work on the contact dofs alone.
@@ -238,11 +238,11 @@ impl Factored {
 
     /// The rows of the whole problem that contradict each other, with their weights.
     fn expand_contradiction(&self, rows: &[usize], weights: &[f64]) -> Ending {
-        let mut scaled = vec![0.0; self.reduction.selection.kept().len()];
+        let mut scaled = vec![0.0; self.reduction.selection.kept.len()];
         rows.iter().zip(weights).for_each(|(&row, &weight)| scaled[row] = weight);
         // Rows are scaled like multipliers; the unit of weights is free.
-        let all = self.expand_multiplier(&scaled, self.reduction.scaling.equilibration().factor);
-        let rows: Vec<usize> = rows.iter().map(|&row| self.reduction.selection.kept()[row]).collect();
+        let all = self.expand_multiplier(&scaled, self.reduction.scaling.equilibration.factor);
+        let rows: Vec<usize> = rows.iter().map(|&row| self.reduction.selection.kept[row]).collect();
         let weights = rows.iter().map(|&row| all[row]).collect();
         Ending::Infeasible { rows, weights }
     }
@@ -344,8 +344,8 @@ impl Factored {
         let gap = self.reduction.selection.gap(gap);
         let unit = loading.unit_with(&self.reduction, &gap);
         let (stiffness, contact) = match &self.reduction.condensation {
-            Some(condensed) => (condensed.stiffness(), condensed.contact()),
-            None => (self.reduction.scaling.stiffness(), self.reduction.scaling.contact()),
+            Some(condensed) => (&condensed.stiffness, &condensed.contact),
+            None => (self.reduction.scaling.stiffness(), &self.reduction.scaling.contact),
         };
         let (load, gap) = (loading.scaled(unit), self.reduction.scaling.gap(&gap, unit));
         Ok((ContactProblem::computed(stiffness.clone(), load, contact.clone(), gap)?, unit))

@@ -76,7 +76,7 @@ impl Loading {
     pub fn with_contact_force(mut self, reduction: &Reduction, force: &[f64]) -> Self {
         if let Some(condensed) = &reduction.condensation {
             let scaled = reduction.scaling.load(force, self.unit);
-            self.scaled.iter_mut().zip(condensed.dofs()).for_each(|(entry, &dof)| *entry += scaled[dof]);
+            self.scaled.iter_mut().zip(&condensed.contact_dofs).for_each(|(entry, &dof)| *entry += scaled[dof]);
         }
         self
     }

@@ -47,7 +47,7 @@ impl Reduction {
             Norm::Kept(norm) => Some(norm.clone()),
             Norm::Again(analysis) => {
                 let factor = analysis.factor(self.scaling.stiffness()).ok()?;
-                Some(EnergyNorm::new(factor, self.scaling.equilibration().clone(), Vec::new()))
+                Some(EnergyNorm::new(factor, self.scaling.equilibration.clone(), Vec::new()))
             }
         }
     }
