@@ -6,14 +6,12 @@
 
 use std::collections::HashMap;
 
+use super::twice::Sum;
 use super::{SparseMatrix, SymmetricMatrix, Twice};
 use crate::error::Error;
 
 /// A pivot has at least this share of the largest entry of its row.
 pub const PIVOT: f64 = 0.1;
-
-/// A sum below this share of its terms is zero: far above the rounding of twice the working precision.
-const CANCELLED: f64 = 1e-26;
 
 /// A row follows from others, except for the rounding of its entries, if less than this share of them is left.
 pub const FOLLOWS: f64 = 4.0 * f64::EPSILON;
@@ -25,39 +23,6 @@ pub type Sparse = Vec<(usize, Twice)>;
 fn taken_out(values: &mut Sparse, place: usize) -> Option<Twice> {
     let found = values.binary_search_by_key(&place, |entry| entry.0);
     found.ok().map(|found| values.remove(found).1)
-}
-
-/// A sum with the magnitudes of its terms.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sum {
-    /// The sum so far.
-    pub value: Twice,
-    /// The sum of the sizes of its terms.
-    pub terms: f64,
-}
-
-impl Sum {
-    /// Adds a term.
-    pub fn add(&mut self, term: Twice) {
-        self.value = self.value + term;
-        self.terms += term.rounded().abs();
-    }
-
-    /// Adds a multiple of another sum, with the terms of that.
-    pub fn add_share(&mut self, share: Twice, of: Sum) {
-        self.value = self.value + share * of.value;
-        self.terms += share.rounded().abs() * of.terms;
-    }
-
-    /// Zero if the terms cancel.
-    pub fn settled(self) -> Twice {
-        self.beyond(CANCELLED)
-    }
-
-    /// Zero if at most this share of the terms is left.
-    pub fn beyond(self, share: f64) -> Twice {
-        if self.value.rounded().abs() > share * self.terms { self.value } else { Twice::ZERO }
-    }
 }
 
 /// Sums by their places, in memory that serves one vector after another.

@@ -170,12 +170,9 @@ impl SymmetricMatrix {
             for (p, a) in rows.column(i) {
                 for (q, b) in rows.column(j) {
                     // Entries off the diagonal have a mirror image (j, i).
-                    match (i == j, p >= q) {
-                        (true, true) => entries.push((p, q, a * value * b)),
-                        (true, false) => {}
-                        (false, true) if p == q => entries.push((p, p, 2.0 * a * value * b)),
-                        (false, true) => entries.push((p, q, a * value * b)),
-                        (false, false) => entries.push((q, p, a * value * b)),
+                    let times = if i != j && p == q { 2.0 } else { 1.0 };
+                    if i != j || p >= q {
+                        entries.push((p.max(q), p.min(q), times * a * value * b));
                     }
                 }
             }
@@ -217,17 +214,13 @@ impl SymmetricMatrix {
     }
 
     /// The matrix P A P' with its columns in another order: column `order[k]` of A becomes column k.
-    pub fn ordered(&self, order: &[usize]) -> Self {
+    pub fn ordered(&self, order: &[usize]) -> Result<Self, Error> {
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
         let entries: Vec<_> = (self.lower.triplets())
             .map(|(i, j, value)| (place[i].max(place[j]), place[i].min(place[j]), value))
             .collect();
-        match SparseMatrix::from_triplets(self.dim(), self.dim(), &entries) {
-            Ok(lower) => SymmetricMatrix { lower },
-            // Not reached: places and values are those of a valid matrix.
-            Err(_) => self.clone(),
-        }
+        Self::from_lower(SparseMatrix::from_triplets(self.dim(), self.dim(), &entries)?)
     }
 
     /// Number of rows and columns of the symmetric matrix.

@@ -116,10 +116,48 @@ impl Div for Twice {
     }
 }
 
-/// A sum; zero if its terms cancel to less than `rounding` of the sum of their magnitudes.
-pub fn sum(terms: impl Iterator<Item = Twice>, rounding: f64) -> Twice {
-    let (sum, size) = terms.fold((Twice::ZERO, 0.0_f64), |(sum, size), term| (sum + term, size + term.rounded().abs()));
-    if sum.rounded().abs() > rounding * size { sum } else { Twice::ZERO }
+/// A sum below this share of its terms is zero: far above the rounding of twice the working precision.
+const CANCELLED: f64 = 1e-26;
+
+/// A sum with the magnitudes of its terms.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sum {
+    /// The sum so far.
+    pub value: Twice,
+    /// The sum of the sizes of its terms.
+    pub terms: f64,
+}
+
+impl Sum {
+    /// Adds a term.
+    pub fn add(&mut self, term: Twice) {
+        self.value = self.value + term;
+        self.terms += term.rounded().abs();
+    }
+
+    /// Adds a multiple of another sum, with the terms of that.
+    pub fn add_share(&mut self, share: Twice, of: Sum) {
+        self.value = self.value + share * of.value;
+        self.terms += share.rounded().abs() * of.terms;
+    }
+
+    /// Zero if the terms cancel.
+    pub fn settled(self) -> Twice {
+        self.beyond(CANCELLED)
+    }
+
+    /// Zero if at most this share of the terms is left.
+    pub fn beyond(self, share: f64) -> Twice {
+        if self.value.rounded().abs() > share * self.terms { self.value } else { Twice::ZERO }
+    }
+}
+
+impl FromIterator<Twice> for Sum {
+    fn from_iter<I: IntoIterator<Item = Twice>>(terms: I) -> Self {
+        let mut sum = Sum::default();
+        terms.into_iter().for_each(|term| sum.add(term));
+        sum
+    }
 }
 
 /// Sums that keep the rounding errors of their terms.
@@ -293,9 +331,9 @@ mod tests {
 
     #[test]
     fn a_small_term_survives_beside_large_ones_that_cancel() {
-        let terms = [1e8, 3e-17, -1e8].map(Twice::from);
-        assert_eq!(sum(terms.into_iter(), 1e-26).rounded(), 3e-17);
-        assert_eq!(sum(terms.into_iter(), 1e-24), Twice::ZERO);
+        let sum: Sum = [1e8, 3e-17, -1e8].map(Twice::from).into_iter().collect();
+        assert_eq!(sum.beyond(1e-26).rounded(), 3e-17);
+        assert_eq!(sum.beyond(1e-24), Twice::ZERO);
     }
 
     /// (1 + e)(1 - e) - 1 = -e^2, which a sum of rounded products would lose.

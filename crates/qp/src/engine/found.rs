@@ -67,8 +67,8 @@ fn scaled(engine: &Factored, loading: &Loading, gap: &[f64]) -> Result<(ContactP
     let gap = engine.selection.gap(gap);
     let unit = loading.unit_with(engine, &gap);
     let (stiffness, contact) = match &engine.condensation {
-        Some(condensed) => (condensed.stiffness(), condensed.contact()),
-        None => (engine.scaling.stiffness(), engine.scaling.contact()),
+        Some(condensed) => (&condensed.stiffness, &condensed.contact),
+        None => (engine.scaling.stiffness(), &engine.scaling.contact),
     };
     let (load, gap) = (loading.scaled(unit), engine.scaling.gap(&gap, unit));
     Ok((ContactProblem::computed(stiffness.clone(), load, contact.clone(), gap)?, unit))
@@ -114,11 +114,11 @@ pub(super) fn whole(engine: &Factored, found: Reduced) -> (Outcome, f64) {
 
 /// The rows of the whole problem that contradict each other, with their weights.
 fn expand_contradiction(engine: &Factored, rows: &[usize], weights: &[f64]) -> Ending {
-    let mut scaled = vec![0.0; engine.selection.kept().len()];
+    let mut scaled = vec![0.0; engine.selection.kept.len()];
     rows.iter().zip(weights).for_each(|(&row, &weight)| scaled[row] = weight);
     // Rows are scaled like multipliers; the unit of weights is free.
-    let all = engine.expand_multiplier(&scaled, engine.scaling.equilibration().factor);
-    let rows: Vec<usize> = rows.iter().map(|&row| engine.selection.kept()[row]).collect();
+    let all = engine.expand_multiplier(&scaled, engine.scaling.equilibration.factor);
+    let rows: Vec<usize> = rows.iter().map(|&row| engine.selection.kept[row]).collect();
     let weights = rows.iter().map(|&row| all[row]).collect();
     Ending::Infeasible { rows, weights }
 }
@@ -200,7 +200,7 @@ pub(crate) fn settled(engine: &Factored, task: &Task) -> Result<Option<Vec<f64>>
 /// The displacement that a load causes if no row is closed; `None` without a factor of a definite stiffness.
 pub(crate) fn response(engine: &Factored, load: &Load) -> Option<Vec<f64>> {
     let norm = engine.norm()?;
-    let loading = load.swept(engine, &vec![0.0; engine.selection.kept().len()]);
+    let loading = load.swept(engine, &vec![0.0; engine.selection.kept.len()]);
     let moved = match &engine.condensation {
         Some(condensed) => condensed.free_displacement(&loading.sweep),
         None => norm.scaled_displacement(&loading.scaled(loading.unit)),
@@ -240,12 +240,12 @@ pub(crate) fn walk(engine: &Factored, from: &Task, to: &[f64]) -> Result<Option<
     check_gap(engine, to)?;
     let Some((found, _)) = on_boundary(engine, from, true)? else { return Ok(None) };
     let Reduced { loading, unit, problem, outcome, .. } = &found;
-    let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
+    let free = condensed.contact.mul(&condensed.free_displacement(&loading.sweep));
     let at_end = engine.scaling.gap(&engine.selection.gap(to), *unit);
     let constant = free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
     let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
     let path = ParametricLcp::new(compliance.matrix(), constant, slope);
     let (pieces, mut events) = path.walk(&outcome.contact_set, &from.settings.watch)?;
-    events.iter_mut().for_each(|event| event.row = engine.selection.kept()[event.row]);
+    events.iter_mut().for_each(|event| event.row = engine.selection.kept[event.row]);
     Ok(Some((pieces, events, *unit)))
 }

@@ -74,7 +74,7 @@ impl Loading {
     pub fn with_contact_force(mut self, engine: &Factored, force: &[f64]) -> Self {
         if let Some(condensed) = &engine.condensation {
             let scaled = engine.scaling.load(force, self.unit);
-            self.scaled.iter_mut().zip(condensed.dofs()).for_each(|(entry, &dof)| *entry += scaled[dof]);
+            self.scaled.iter_mut().zip(&condensed.contact_dofs).for_each(|(entry, &dof)| *entry += scaled[dof]);
         }
         self
     }

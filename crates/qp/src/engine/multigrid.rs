@@ -87,9 +87,7 @@ impl Hierarchical {
         watch: &Watch,
     ) -> Result<Option<[Vec<f64>; 2]>, Error> {
         let rows: Vec<usize> = closed.iter().collect();
-        let values = rows.iter().map(|&row| gap[row]).collect();
-        let free = self.problem.without_rows()?.with_load(load.to_vec())?;
-        let problem = &free.with_all_equalities(&self.problem.contact().select_rows(&rows), values)?;
+        let problem = &self.problem.with_held(load.to_vec(), [&[], &rows], gap)?;
         let limits = Limits { most_cycles: MOST_HELD_CYCLES, ..Limits::to(HELD) };
         let outcome = Mprgp { problem, multigrid: &self.multigrid, limits, watch }.solve(Start::default())?;
         if !outcome.is_settled() {

@@ -26,11 +26,12 @@ const LEFT_OVER: f64 = 1e-12;
 /// The condensed stiffness, with the transform back to the whole body.
 #[derive(Clone, Debug)]
 pub struct Condensation {
-    contact_dofs: Vec<usize>,
+    /// The contact dofs, in increasing order.
+    pub contact_dofs: Vec<usize>,
     cholesky: Cholesky,
     trailing: LowerTriangle,
-    stiffness: SymmetricMatrix,
-    contact: SparseMatrix,
+    pub stiffness: SymmetricMatrix,
+    pub contact: SparseMatrix,
 }
 
 impl Condensation {
@@ -75,19 +76,6 @@ impl Condensation {
     /// Number of values of the factor of K, the contact dofs last.
     pub fn factor_entries(&self) -> usize {
         self.cholesky.entries()
-    }
-
-    /// The contact dofs, in increasing order.
-    pub fn dofs(&self) -> &[usize] {
-        &self.contact_dofs
-    }
-
-    pub fn stiffness(&self) -> &SymmetricMatrix {
-        &self.stiffness
-    }
-
-    pub fn contact(&self) -> &SparseMatrix {
-        &self.contact
     }
 
     /// The forward sweep y of a load, to be kept for [`load`](Self::load) and [`expand`](Self::expand).
