@@ -8,10 +8,12 @@
 
 use super::conditions::Evidence;
 use super::energy_norm::{EnergyNorm, ROUNDED_BOUND};
+use super::proof::proven_in;
 use super::reach::ComplianceFactor;
 use crate::error::Error;
 use crate::linear::SymmetricMatrix;
 use crate::problem::ContactProblem;
+use crate::solution::ProvenSet;
 
 /// Rows that may be the least are swept one by one up to this number.
 const MOST_SWEPT: usize = 200;
@@ -25,37 +27,30 @@ struct Travel {
     rows: Vec<(usize, f64)>,
 }
 
-/// The body alone.
-pub(super) struct Pressed {
-    pub body: ContactProblem,
-    pub norm: EnergyNorm,
-    pub displacement: Vec<f64>,
-    pub evidence: Evidence,
-}
-
-impl Pressed {
-    /// The body under the obstacles of `problem`, as the proof of this answer takes it; `None` if dofs without
-    /// stiffness are no travels, or if the rest is not definite by itself.
-    pub fn of(problem: &ContactProblem, displacement: &[f64], evidence: Evidence) -> Result<Option<Self>, Error> {
-        let Some(travels) = travels(problem).filter(|_| evidence.error.is_finite()) else { return Ok(None) };
-        let is_body = |dof: &usize| travels.iter().all(|travel| travel.dof != *dof);
-        let dofs: Vec<usize> = (0..problem.dofs()).filter(is_body).collect();
-        let mut place = vec![None; problem.dofs()];
-        dofs.iter().enumerate().for_each(|(index, &dof)| place[dof] = Some(index));
-        let of_body = |values: &[f64]| dofs.iter().map(|&dof| values[dof]).collect::<Vec<f64>>();
-        let lower = problem.stiffness.lower().select(dofs.len(), |row| place[row], dofs.iter().copied());
-        let contact = problem.contact.select(problem.rows(), Some, dofs.iter().copied());
-        let stiffness = SymmetricMatrix::from_lower(lower)?;
-        let body = ContactProblem::computed(stiffness, of_body(&problem.load), contact, problem.gap.clone())?;
-        let Some(norm) = EnergyNorm::of(&body.stiffness, &body.contact)? else { return Ok(None) };
-        let displacement = of_body(displacement);
-        let mut violation = body.accurate_violation(&displacement);
-        for travel in &travels {
-            travel.bring_near(&body, &norm, ROUNDED_BOUND * evidence.error, &mut violation);
-        }
-        let evidence = Evidence { residual: of_body(&evidence.residual), violation, measured: None, ..evidence };
-        Ok(Some(Pressed { body, norm, displacement, evidence }))
+/// The rows that an answer proves if dofs without stiffness are travels, and the rest is definite by itself.
+pub fn proven_pressed(
+    problem: &ContactProblem,
+    [displacement, multiplier]: [&[f64]; 2],
+    evidence: Evidence,
+) -> Result<Option<ProvenSet>, Error> {
+    let Some(travels) = travels(problem).filter(|_| evidence.error.is_finite()) else { return Ok(None) };
+    let is_body = |dof: &usize| travels.iter().all(|travel| travel.dof != *dof);
+    let dofs: Vec<usize> = (0..problem.dofs()).filter(is_body).collect();
+    let mut place = vec![None; problem.dofs()];
+    dofs.iter().enumerate().for_each(|(index, &dof)| place[dof] = Some(index));
+    let of_body = |values: &[f64]| dofs.iter().map(|&dof| values[dof]).collect::<Vec<f64>>();
+    let lower = problem.stiffness.lower().select(dofs.len(), |row| place[row], dofs.iter().copied());
+    let contact = problem.contact.select(problem.rows(), Some, dofs.iter().copied());
+    let stiffness = SymmetricMatrix::from_lower(lower)?;
+    let body = ContactProblem::computed(stiffness, of_body(&problem.load), contact, problem.gap.clone())?;
+    let Some(norm) = EnergyNorm::of(&body.stiffness, &body.contact)? else { return Ok(None) };
+    let displacement = of_body(displacement);
+    let mut violation = body.accurate_violation(&displacement);
+    for travel in &travels {
+        travel.bring_near(&body, &norm, ROUNDED_BOUND * evidence.error, &mut violation);
     }
+    let evidence = Evidence { residual: of_body(&evidence.residual), violation, measured: None, ..evidence };
+    Ok(proven_in(&body, &norm, [&displacement, multiplier], Some(evidence)))
 }
 
 /// The travels; `None` without any, or if a dof without stiffness is none: all of its rows stop the same sense of
