@@ -7,7 +7,6 @@ mod bound;
 mod conditions;
 mod energy_norm;
 mod mode;
-mod pressed;
 mod proof;
 mod reach;
 mod scales;
@@ -22,8 +21,7 @@ pub(crate) use mode::{NullMode, Rounding, mode_along, motion_along, not_convex_a
 use std::borrow::Cow;
 
 use conditions::{energy_of, examined};
-use pressed::proven_pressed;
-use proof::{proven_by_cycles, proven_in};
+use proof::{proven_by_cycles, proven_in, proven_pressed};
 use units::{UnitExponents, far_units, in_units};
 
 use crate::error::Error;
