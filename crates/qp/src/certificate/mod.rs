@@ -7,7 +7,6 @@ mod bound;
 mod conditions;
 mod energy_norm;
 mod mode;
-mod pressed;
 mod proof;
 mod reach;
 mod scales;
@@ -22,8 +21,7 @@ pub(crate) use mode::{NullMode, Rounding, mode_along, motion_along, not_convex_a
 use std::borrow::Cow;
 
 use conditions::{energy_of, examined};
-use pressed::Pressed;
-use proof::{proven_by_cycles, proven_in};
+use proof::{proven_by_cycles, proven_in, proven_pressed};
 use units::{UnitExponents, far_units, in_units};
 
 use crate::error::Error;
@@ -93,10 +91,7 @@ impl<'a> Examination<'a> {
                 None if problem.without_stiffness().is_empty() => EnergyNorm::of(&problem.stiffness, &problem.contact)?,
                 None if far.is_none() => {
                     let found = if evidence.is_some() { evidence } else { self.certificate()?.evidence };
-                    let pressed = found.map(|found| Pressed::of(problem, answer[0], found)).transpose()?.flatten();
-                    return Ok(pressed.and_then(|Pressed { body, norm, displacement, evidence }| {
-                        proven_in(&body, &norm, [&displacement, answer[1]], Some(evidence))
-                    }));
+                    return Ok(found.map(|found| proven_pressed(problem, answer, found)).transpose()?.flatten());
                 }
                 norm => norm,
             },

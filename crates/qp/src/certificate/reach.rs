@@ -58,20 +58,24 @@ pub fn monotone_reach(problem: &ContactProblem, solve: impl FnOnce(&[f64]) -> Op
     Some(problem.contact().mul_abs(&roots))
 }
 
-/// The largest eigenvalue of M D, with the cycle M and `D = diag K`, by power iteration that starts at the smooth
-/// `displacement`. `None` if the iteration does not settle.
-pub fn largest_eigenvalue(
+/// Upper bounds on `sqrt(G_ii)` of every row from two measured eigenvalues: with the cycle M and `D = diag K`,
+///
+/// ```text
+/// K^-1 <= M / least(M K),     M <= largest(M D) D^-1
+/// ```
+///
+/// The largest is found by power iteration that starts at the smooth `displacement`. `None` if that does not settle.
+pub fn measured_reach(
     problem: &ContactProblem,
-    multigrid: &Multigrid,
+    (multigrid, least): (&Multigrid, f64),
     displacement: &[f64],
     watch: &Watch,
-) -> Option<f64> {
+) -> Option<Vec<f64>> {
     let diagonal = problem.stiffness().diagonal();
     if diagonal.iter().any(|&value| value <= 0.0) {
         return None;
     }
-    let mut x = displacement.to_vec();
-    let mut quotient = 0.0_f64;
+    let (mut x, mut quotient) = (displacement.to_vec(), 0.0_f64);
     for _ in 0..POWER_STEPS {
         let size = largest(&x);
         if size == 0.0 || !size.is_finite() || watch.is_over() {
@@ -83,18 +87,9 @@ pub fn largest_eigenvalue(
         quotient = quotient.max(dot(&force, &moved) / dot(&force, &x));
         x = moved;
     }
-    Some(quotient)
-}
-
-/// Upper bounds on `sqrt(G_ii)` of every row from two measured eigenvalues: with the cycle M and `D = diag K`,
-///
-/// ```text
-/// K^-1 <= M / least(M K),     M <= largest(M D) D^-1
-/// ```
-pub fn measured_reach(problem: &ContactProblem, least: f64, largest: f64) -> Vec<f64> {
-    let mu = least / (SAFETY * largest);
+    let mu = least / (SAFETY * quotient);
     let squares = compliance_of_rows(problem, |square, stiffness| square / stiffness);
-    squares.into_iter().map(|square| (square / mu).sqrt()).collect()
+    Some(squares.into_iter().map(|square| (square / mu).sqrt()).collect())
 }
 
 /// The rows of `rows` with a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs
@@ -278,8 +273,7 @@ mod tests {
             let smooth = norm.displacement(lattice.load());
             let stiffness = multigrid.preconditioning(lattice.stiffness());
             let least = stiffness.dual_norm(lattice.load(), &Watch::default()).unwrap().ritz;
-            let largest = largest_eigenvalue(&lattice, &multigrid, &smooth, &Watch::default()).unwrap();
-            let reach = measured_reach(&lattice, least, largest);
+            let reach = measured_reach(&lattice, (&multigrid, least), &smooth, &Watch::default()).unwrap();
             let exact = exact(&lattice, &norm);
             assert!(reach.iter().zip(&exact).all(|(reach, exact)| reach >= exact && *reach < 100.0 * exact));
             // Every row has the coefficient 2 and the stiffness d. The first step of the power iteration is at the

@@ -132,18 +132,12 @@ fn subtract_rows(schur: &mut [f64], contact: &SparseMatrix) {
 
 /// The lower triangle of a dense matrix (n x n, column by column), zeros included.
 fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
-    let entries = size * (size + 1) / 2;
-    let (mut starts, mut rows, mut values) =
-        (Vec::with_capacity(size + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));
-    starts.push(0);
-    for column in 0..size {
-        rows.extend(column as u32..size as u32);
-        values.extend_from_slice(&matrix[column * size + column..(column + 1) * size]);
-        starts.push(rows.len());
-    }
+    let places = || (0..size).flat_map(|column| (column..size).map(move |row| (row, column)));
+    let values: Vec<f64> = places().map(|(row, column)| matrix[column * size + row]).collect();
     if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
         let at = "the condensed stiffness".to_string();
         return Err(LinearError::NotFinite { name: "matrix", at, value, allowed: "finite" }.into());
     }
-    Ok(SparseMatrix::from_parts(size, starts, rows, values))
+    let starts = (0..=size).map(|column| column * (2 * size - column + 1) / 2).collect();
+    Ok(SparseMatrix::from_parts(size, starts, places().map(|(row, _)| row as u32).collect(), values))
 }

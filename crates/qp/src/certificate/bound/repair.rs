@@ -4,14 +4,6 @@ use super::super::energy_norm::{Boundary, RowsOnBoundary};
 use super::{Answer, EnergyNorm, ErrorBound, add_sizes, shift_length};
 use crate::linear::{AT_ONCE, SparseMatrix, dot, ldexp};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Multipliers {
-    /// The multipliers that balance the closed rows at their gaps.
-    InEquilibrium,
-    /// The multipliers of the answer.
-    OfTheAnswer,
-}
-
 /// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
@@ -263,7 +255,7 @@ mod tests {
         let open = Witness { rest: vec![0.25], ..witness };
         assert!((repair.bound(&open).whole - (1.0 + 3.0 * 0.25)).abs() < ROUNDING, "{:?}", repair.bound(&open));
         // If the force stays 3, a force of 1 is left at the gap; it moves the spring by 1/4, 1/2 in energy norm.
-        let kept = repair.settle(&[true], Multipliers::OfTheAnswer).unwrap();
+        let kept = repair.settle(&[true], false).unwrap();
         assert!((repair.bound(&kept).whole - 1.5).abs() < ROUNDING, "{:?}", repair.bound(&kept));
     }
 
@@ -280,7 +272,7 @@ mod tests {
         for (multiplier, left) in cases {
             let answer = Answer::of(&problem, &[1001.0], &multiplier);
             let repair = Repair::new(&norm, &answer).unwrap();
-            let witness = repair.settle(&[true, true], Multipliers::OfTheAnswer).unwrap();
+            let witness = repair.settle(&[true, true], false).unwrap();
             assert_eq!(repair.expanded(&witness.multiplier), left, "{multiplier:?}");
             // What is passed stands alone, so that the answer of the witness and the sum of its parts are the same.
             assert_eq!(repair.expanded(&witness.change), if witness.passes[1] { left } else { [0.0; 2] });
