@@ -3,7 +3,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use pulp::{Arch, Simd, WithSimd};
+use crate::real::for_processor;
 
 /// Products below this magnitude may lose their last bits to underflow.
 const LEAST_PRODUCT: f64 = f64::MIN_POSITIVE / f64::EPSILON / f64::EPSILON;
@@ -132,22 +132,12 @@ pub struct Accumulator {
     sums: Vec<Twice>,
 }
 
-/// The product of a symmetric matrix with x, added to `sums`, and that of their magnitudes, added to `terms`.
-struct SymmetricProduct<'a, C> {
-    /// The entries `(row, value)` of a column of the lower triangle.
-    column: C,
-    x: &'a [f64],
-    sums: &'a mut [Twice],
-    terms: &'a mut [f64],
-}
-
-impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for SymmetricProduct<'_, C> {
-    type Output = ();
-
-    // A plain closure would be a call to code that is not compiled for the processor.
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let SymmetricProduct { column, x, sums, terms } = self;
+for_processor! {
+    /// Adds the product of a symmetric matrix with x to `sums`, and that of their magnitudes to `terms`; `column` gives
+    /// the entries `(row, value)` of a column of the lower triangle.
+    fn add_symmetric['a, I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I](
+        column: C, x: &'a [f64], sums: &'a mut [Twice], terms: &'a mut [f64]
+    ) -> () {
         // One length for all: an index is then checked once.
         let (sums, terms) = (&mut sums[..x.len()], &mut terms[..x.len()]);
         for (index, &at_column) in x.iter().enumerate() {
@@ -165,27 +155,16 @@ impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Symmetric
     }
 }
 
-/// The product of a matrix with x, or of the transposed matrix, added to `sums`.
-struct ColumnProduct<'a, C> {
-    /// The entries `(row, value)` of a column.
-    column: C,
-    x: &'a [f64],
-    sums: &'a mut [Twice],
-    is_transposed: bool,
-}
-
-impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for ColumnProduct<'_, C> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let ColumnProduct { column, x, sums, is_transposed } = self;
+for_processor! {
+    /// Adds the product of a matrix with x, or of the transposed matrix, to `sums`; `column` gives the entries
+    /// `(row, value)` of a column.
+    fn add_columns['a, I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I](
+        column: C, x: &'a [f64], sums: &'a mut [Twice], is_transposed: bool
+    ) -> () {
         if is_transposed {
             for (index, own) in sums.iter_mut().enumerate() {
-                for (row, value) in column(index) {
-                    if x[row] != 0.0 {
-                        own.add_product(value, x[row]);
-                    }
+                for (row, value) in column(index).filter(|entry| x[entry.0] != 0.0) {
+                    own.add_product(value, x[row]);
                 }
             }
             return;
@@ -218,18 +197,18 @@ impl Accumulator {
         x: &[f64],
     ) -> Vec<f64> {
         let mut terms = vec![0.0; x.len()];
-        Arch::new().dispatch(SymmetricProduct { column, x, sums: &mut self.sums, terms: &mut terms });
+        add_symmetric(column, x, &mut self.sums, &mut terms);
         terms
     }
 
     /// Adds `A x` to as many sums as A has rows; `column` gives the entries `(row, value)` of its columns.
     pub fn add_columns<I: Iterator<Item = (usize, f64)>>(&mut self, column: impl Fn(usize) -> I, x: &[f64]) {
-        Arch::new().dispatch(ColumnProduct { column, x, sums: &mut self.sums, is_transposed: false });
+        add_columns(column, x, &mut self.sums, false);
     }
 
     /// Adds `A' x` to as many sums as A has columns, without the terms of entries of x that are zero.
     pub fn add_transposed<I: Iterator<Item = (usize, f64)>>(&mut self, column: impl Fn(usize) -> I, x: &[f64]) {
-        Arch::new().dispatch(ColumnProduct { column, x, sums: &mut self.sums, is_transposed: true });
+        add_columns(column, x, &mut self.sums, true);
     }
 
     /// The sums, each rounded once; not finite if a term overflows.

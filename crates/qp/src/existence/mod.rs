@@ -21,7 +21,7 @@ use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
 use crate::certificate::{NullMode, Rounding, mode_along, not_convex_along};
 use crate::error::Error;
-use crate::linear::{Analysis, FactorError, NullSpace, Twice, generic, largest, norm, subtract, take_out, twice};
+use crate::linear::{Analysis, FactorError, NullSpace, Twice, across, extend, generic, largest, norm, subtract, twice};
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
 use crate::transform::Scaling;
@@ -311,26 +311,11 @@ fn is_rigid(problem: &ContactProblem, displacement: &[f64], bodies: &[usize]) ->
     };
     let mut directions: Vec<Vec<f64>> = Vec::new();
     for mode in modes.vectors() {
-        let mode = own(mode);
-        let mut left = across(&directions, mode.clone());
-        let length = norm(&left);
-        if length > RIGID * norm(&mode) {
-            left.iter_mut().for_each(|value| *value /= length);
-            directions.push(left);
-        }
+        extend(&mut directions, own(mode), RIGID);
     }
     let elsewhere = displacement.iter().zip(bodies).filter(|entry| *entry.1 != body).map(|entry| entry.0.abs());
     let left = norm(&across(&directions, own(displacement))) + elsewhere.sum::<f64>();
     left <= RIGID * norm(displacement)
-}
-
-/// The part of a vector that is orthogonal to some directions.
-fn across(directions: &[Vec<f64>], mut vector: Vec<f64>) -> Vec<f64> {
-    // The second turn removes the rounding of the first.
-    for direction in directions.iter().chain(directions) {
-        take_out(&mut vector, direction);
-    }
-    vector
 }
 
 fn place_of_largest(values: &[f64]) -> usize {
