@@ -20,6 +20,7 @@
 mod augmented;
 mod both_triangles;
 mod cholesky;
+mod columns;
 mod compliance;
 mod conjugate_gradients;
 mod dense;
@@ -82,7 +83,7 @@ pub use twice::{Accumulator, ExactSum, Twice};
 
 use std::sync::Arc;
 
-use both_triangles::{Columns, Taken};
+use columns::{Columns, Taken};
 use grouped::group_starts;
 use real::for_processor;
 

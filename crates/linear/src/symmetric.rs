@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::both_triangles::Columns;
+use super::columns::Columns;
 use super::dense::wide_product;
 use super::dependence::merged;
 use super::threads::{SharedRows, in_order};
@@ -234,6 +234,27 @@ impl SymmetricMatrix {
         2 * self.lower.entries() - (0..self.dim()).filter(has_diagonal).count()
     }
 
+    /// Number of entries in each row, both triangles.
+    pub fn row_lengths(&self) -> Vec<u32> {
+        let mut lengths: Vec<u32> = (0..self.dim()).map(|row| self.lower().column_rows(row).len() as u32).collect();
+        self.lower().triplets().filter(|entry| entry.0 != entry.1).for_each(|(row, _, _)| lengths[row] += 1);
+        lengths
+    }
+
+    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order.
+    ///
+    /// # Errors
+    /// Those of `take`.
+    pub fn each_row<E>(&self, mut take: impl FnMut(&[u32], &[f64]) -> Result<(), E>) -> Result<(), E> {
+        let upper = self.upper();
+        (0..self.dim()).try_for_each(|row| {
+            let left = upper.column(row).take_while(|entry| entry.0 < row);
+            let entries = left.chain(self.lower().column(row)).map(|(column, value)| (column as u32, value));
+            let (columns, values): (Vec<u32>, Vec<f64>) = entries.unzip();
+            take(&columns, &values)
+        })
+    }
+
     /// The lower triangle, diagonal included.
     pub fn lower(&self) -> &SparseMatrix {
         &self.lower
@@ -256,7 +277,7 @@ impl SymmetricMatrix {
         self.product(0..self.dim(), x, |value| value)
     }
 
-    /// The products of A with columns, one after the other.
+    /// The products of A with columns of length `dim`, one after the other.
     pub fn mul_all(&self, columns: &[f64]) -> Vec<f64> {
         columns.chunks(self.dim().max(1)).flat_map(|column| self.mul(column)).collect()
     }
