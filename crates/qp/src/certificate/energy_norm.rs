@@ -185,11 +185,6 @@ impl EnergyNorm {
         norm
     }
 
-    /// The displacement of the equilibrated stiffness under an equilibrated load.
-    pub fn scaled_displacement(&self, load: &[f64]) -> Vec<f64> {
-        self.cholesky.solve(load)
-    }
-
     /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
     ///
     /// Infinite if the force acts on a dof without stiffness.
@@ -295,6 +290,12 @@ impl EnergyNorm {
     fn scaled(&self, force: &[f64]) -> Vec<f64> {
         force.iter().zip(&self.equilibration.diagonal).map(|(&r, &d)| ldexp(r, d)).collect()
     }
+}
+
+/// `2^length sqrt(2^stiffness) x`
+pub fn ldexp_root(x: f64, stiffness: i32, length: i32) -> f64 {
+    let root = if stiffness % 2 == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+    ldexp(root * x, stiffness.div_euclid(2) + length)
 }
 
 /// Springs D on rows C that press, or that are equalities: with them a singular K becomes `K_D = K + B_C' D B_C`.

@@ -14,9 +14,8 @@
 //! A. Berman, R. J. Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, SIAM (1994), theorem 6.2.3:
 //! condition I27 of an M-matrix.
 
-use super::energy_norm::{Boundary, EnergyNorm, RowsOnBoundary};
+use super::energy_norm::{Boundary, EnergyNorm, RowsOnBoundary, ldexp_root};
 use super::scales::compliance_of_rows;
-use super::units::ldexp_root;
 use crate::linear::multigrid::Multigrid;
 use crate::linear::selected_inverse::FACTORISATIONS;
 use crate::linear::watch::Watch;

@@ -203,7 +203,7 @@ pub(crate) fn response(engine: &Factored, load: &Load) -> Option<Vec<f64>> {
     let loading = load.swept(engine, &vec![0.0; engine.selection.kept.len()]);
     let moved = match &engine.condensation {
         Some(condensed) => condensed.free_displacement(&loading.sweep),
-        None => norm.scaled_displacement(&loading.scaled(loading.unit)),
+        None => norm.equilibrated().displacement(&loading.scaled(loading.unit)),
     };
     Some(loading.expand(engine, loading.unit, &moved))
 }

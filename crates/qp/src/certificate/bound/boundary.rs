@@ -36,8 +36,7 @@ pub fn energy_error_bound(norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
     let bound = on_boundary
         .unwrap_or_else(|| bound_row_by_row(norm, answer, Some(closed)).smaller(bound_row_by_row(norm, answer, None)));
     let (underflow, rounding) = (underflow(answer), rounding_of_residual(answer));
-    let bound = bound.widened(norm.rounding());
-    let with_lost = |bound: f64, rounding: f64| bound + underflow + norm.loss() * rounding;
+    let with_lost = |bound: f64, rounding: f64| norm.rounding() * bound + underflow + norm.loss() * rounding;
     let of_part = |(bound, rounding): (f64, &f64)| with_lost(bound, *rounding);
     ErrorBound {
         whole: with_lost(bound.whole, rounding.iter().sum()),
