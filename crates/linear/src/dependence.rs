@@ -114,27 +114,22 @@ pub fn merged<T: Copy>(
 mod tests {
     use super::*;
 
-    fn dependence(rows: &[&[f64]]) -> Dependence {
-        let entry = |(row, values): (usize, &&[f64])| -> Vec<(usize, usize, f64)> {
-            values.iter().enumerate().map(|(column, &value)| (row, column, value)).collect()
-        };
-        let triplets: Vec<_> = rows.iter().enumerate().flat_map(entry).collect();
-        let matrix = SparseMatrix::from_triplets(rows.len(), rows[0].len(), &triplets).unwrap();
+    fn dependence<const N: usize>(rows: &[[f64; N]]) -> Dependence {
+        let matrix = SparseMatrix::from_table(rows.len(), N, &rows.concat()).unwrap();
         Dependence::of(&matrix, &(0..rows.len()).collect::<Vec<_>>(), || false).unwrap()
     }
 
     #[test]
     fn rows_that_differ_in_the_last_bit_are_independent() {
-        let found = dependence(&[&[0.1, 0.2], &[0.1, 0.2 + f64::EPSILON / 8.0], &[1e-300, 0.0]]);
+        let found = dependence(&[[0.1, 0.2], [0.1, 0.2 + f64::EPSILON / 8.0], [1e-300, 0.0]]);
         assert_eq!(found.independent, [true, true, false]);
-        let found = dependence(&[&[0.1, 0.2], &[0.1, 0.2 + f64::EPSILON / 4.0]]);
+        let found = dependence(&[[0.1, 0.2], [0.1, 0.2 + f64::EPSILON / 4.0]]);
         assert_eq!(found, Dependence { independent: vec![true; 2], takes_part: vec![false; 2] });
     }
 
     #[test]
     fn only_rows_of_a_dependence_take_part() {
-        let rows: [&[f64]; 4] = [&[0.1, -0.3, 0.0], &[0.0, 0.0, 7.5], &[-0.4, 1.2, 0.0], &[0.0, 0.0, 0.0]];
-        let found = dependence(&rows);
+        let found = dependence(&[[0.1, -0.3, 0.0], [0.0, 0.0, 7.5], [-0.4, 1.2, 0.0], [0.0; 3]]);
         assert_eq!(found.independent, [true, true, false, false]);
         assert_eq!(found.takes_part, [true, false, true, true]);
     }

@@ -379,11 +379,9 @@ mod tests {
     #[test]
     fn rows_that_follow_within_an_accuracy_are_left_out_unless_they_contradict() {
         // The third is the sum of the others, except for 1e-12 in one entry; the last is the first with another value.
-        let entries =
-            [(0, 0, 1.0), (0, 1, 2.0), (1, 1, 1.0), (1, 2, -1.0), (2, 0, 1.0), (2, 1, 3.0), (2, 2, -1.0 + 1e-12)];
         let rows = |value: f64| {
-            let again = [(3, 0, 1.0), (3, 1, 2.0)];
-            let rows = SparseMatrix::from_triplets(4, 3, &[&entries[..], &again].concat()).unwrap();
+            let entries = [[1.0, 2.0, 0.0], [0.0, 1.0, -1.0], [1.0, 3.0, -1.0 + 1e-12], [1.0, 2.0, 0.0]];
+            let rows = SparseMatrix::from_table(4, 3, &entries.concat()).unwrap();
             [1e-10, 1e-14].map(|accuracy| rows.independent_rows(&[1.0, 2.0, 3.0, value], accuracy))
         };
         assert_eq!(rows(1.0), [vec![0, 1], vec![0, 1, 2]]);

@@ -305,8 +305,7 @@ mod tests {
 
     #[test]
     fn a_direction_of_negative_energy_is_found_by_one_analysis_unless_the_watch_is_over() {
-        let entries = [(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)];
-        let matrix = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &entries).unwrap()).unwrap();
+        let matrix = SymmetricMatrix::from_table(2, &[1.0, 2.0, 2.0, 1.0]).unwrap();
         let shifts = matrix.shifts(Analysis::of(&matrix).unwrap()).unwrap();
         let direction = |watch: &Watch| matrix.negative_direction(&shifts, watch).unwrap();
         let found = direction(&Watch::default()).unwrap();
@@ -314,10 +313,9 @@ mod tests {
         assert_eq!(direction(&Watch::default().within(0.0)), None);
     }
 
-    fn is_semidefinite(diagonal: [f64; 2], coupling: f64) -> bool {
-        let entries = [(0, 0, diagonal[0]), (1, 0, coupling), (1, 1, diagonal[1])];
-        let lower = SparseMatrix::from_triplets(2, 2, &entries).unwrap();
-        SymmetricMatrix::from_lower(lower).unwrap().is_semidefinite().unwrap()
+    fn is_semidefinite([first, second]: [f64; 2], coupling: f64) -> bool {
+        let matrix = SymmetricMatrix::from_table(2, &[first, coupling, coupling, second]).unwrap();
+        matrix.is_semidefinite().unwrap()
     }
 
     #[test]

@@ -137,7 +137,7 @@ impl Existence {
         springs
     }
 
-    /// The error if the load drives a mode without energy that no row stops, and some displacement meets the rows.
+    /// The error if the load drives a mode without energy that no row stops; that the rows can be met is left open.
     pub fn unbounded(&self) -> Option<Error> {
         let along_load: Vec<f64> = self.against_load.values.iter().map(|value| -value.rounded()).collect();
         let mode = self.mode(&self.cone(&|_| true).nearest(&along_load)?).filter(NullMode::escapes)?;

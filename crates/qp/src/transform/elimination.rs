@@ -57,7 +57,10 @@ impl Elimination {
         if let Err(None) = found {
             found = Self::cut(problem, LONG);
         }
-        found.map_or_else(|error| error.map_or(Ok(None), Err), |elimination| Ok(Some(elimination)))
+        match found {
+            Err(Some(error)) => Err(error),
+            found => Ok(found.ok()),
+        }
     }
 
     /// Returns `true` if a long equality is cut: its own pair of rows, put into a factor, would fill that.
