@@ -119,6 +119,7 @@ impl AugmentedMatrix {
         Ok(Self { stiffness: joined.lower().clone(), squares, analysis })
     }
 
+    /// The same with factors on so many threads.
     pub fn with_threads(self, threads: usize) -> Self {
         AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
     }

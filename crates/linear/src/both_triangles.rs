@@ -1,31 +1,16 @@
-//! The lower triangle of a symmetric matrix given with both triangles, in one pass, and the way back.
+//! The lower triangle of a symmetric matrix given with both triangles, in one pass.
 //!
 //! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image
 //! in column r, which was walked before. As c grows, the mirror images of row r come in the order of column r: only a
 //! cursor for each column must be kept.
 
-use super::{SparseMatrix, SymmetricMatrix, check_rows};
+use super::columns::{Columns, Taken};
+use super::{SparseMatrix, check_rows};
 use crate::error::Error;
 
 /// Two triangles count as equal if mirrored entries differ by at most this times the larger diagonal entry of their row
 /// and column: assembly in another order differs by rounding, and 1e-10 is far above it.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
-
-/// Compressed columns with indices of any type, as given.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Columns<'a, S, R> {
-    pub starts: &'a [S],
-    pub rows: &'a [R],
-    pub values: &'a [f64],
-}
-
-/// The triangle that gives the values if mirrored entries differ by rounding: the lower one for columns, the upper one
-/// for rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Taken {
-    Lower,
-    Upper,
-}
 
 /// A symmetric matrix that takes its columns, or its rows, with both triangles, one after another: its lower triangle
 /// under construction.
@@ -42,34 +27,6 @@ pub struct SymmetricLines {
 }
 
 impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
-    /// Calls `take(column, rows, values)` for each column, from the first on.
-    pub fn each(self, mut take: impl FnMut(usize, &[R], &[f64]) -> Result<(), Error>) -> Result<(), Error> {
-        let (columns, entries) = (self.starts.len().saturating_sub(1), self.values.len());
-        if self.rows.len() != entries {
-            let (name, found) = ("row indices", self.rows.len());
-            return Err(Error::Length { name, found, expected: entries, of: "values" });
-        }
-        if self.starts.is_empty() || self.start(0)? != 0 || self.start(columns)? != entries {
-            let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
-            return Err(Error::Pattern { message });
-        }
-        let mut first = 0;
-        for column in 0..columns {
-            let end = self.start(column + 1)?;
-            let (Some(rows), Some(values)) = (self.rows.get(first..end), self.values.get(first..end)) else {
-                let message = format!("the column starts decrease after column {column} (indices from 0)");
-                return Err(Error::Pattern { message });
-            };
-            take(column, rows, values)?;
-            first = end;
-        }
-        Ok(())
-    }
-
-    fn start(&self, column: usize) -> Result<usize, Error> {
-        let start = self.starts.get(column).and_then(|&start| start.try_into().ok());
-        start.ok_or_else(|| Error::Pattern { message: format!("the start of column {column} is no index (from 0)") })
-    }
     /// The lower triangle.
     pub fn lower(self) -> Result<SparseMatrix, Error> {
         Ok(self.walked(Taken::Lower)?.0)
@@ -87,52 +44,6 @@ impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
         let mut lines = SymmetricLines::new(self.starts.len().saturating_sub(1), self.values.len(), taken)?;
         self.each(|_, rows, values| lines.take(rows, values))?;
         lines.matched()
-    }
-}
-
-impl Taken {
-    /// Checks that the indices of a line increase and lie inside a matrix of this shape, and that its values are
-    /// finite.
-    pub fn check<I: Copy + TryInto<usize>>(
-        self,
-        (rows, columns): (usize, usize),
-        number: usize,
-        indices: &[I],
-        values: &[f64],
-    ) -> Result<(), Error> {
-        // A walked line of the matrix is a row or a column; this names its entries in errors.
-        let [line, entry] = match self {
-            Taken::Lower => ["column", "row"],
-            Taken::Upper => ["row", "column"],
-        };
-        let mut before = None;
-        for (&index, &value) in indices.iter().zip(values) {
-            let Ok(index) = index.try_into() else {
-                let message = format!("a {entry} of {line} {number} is negative (indices from 0)");
-                return Err(Error::Pattern { message });
-            };
-            let place = self.place(index, number);
-            if index >= rows {
-                return Err(Error::IndexOutOfRange { row: place.0, column: place.1, rows, columns });
-            }
-            if let Some(before) = before.replace(index).filter(|&before| before >= index) {
-                let where_to = format!("{entry} {index} of {line} {number} does not lie beyond {entry} {before}");
-                return Err(Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") });
-            }
-            if !value.is_finite() {
-                let at = format!("{place:?}");
-                return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
-            }
-        }
-        Ok(())
-    }
-
-    /// Row and column of an entry, or of a pair of mirrored entries, in a line that is walked as a column.
-    pub fn place<T>(self, row: T, column: T) -> (T, T) {
-        match self {
-            Taken::Lower => (row, column),
-            Taken::Upper => (column, row),
-        }
     }
 }
 
@@ -242,28 +153,5 @@ impl SymmetricLines {
             return Err(Error::NotSymmetric { row, column, value, mirrored });
         }
         Ok(())
-    }
-}
-
-impl SymmetricMatrix {
-    /// Number of entries in each row, both triangles.
-    pub fn row_lengths(&self) -> Vec<u32> {
-        let mut lengths: Vec<u32> = (0..self.dim()).map(|row| self.lower().column_rows(row).len() as u32).collect();
-        self.lower().triplets().filter(|entry| entry.0 != entry.1).for_each(|(row, _, _)| lengths[row] += 1);
-        lengths
-    }
-
-    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order.
-    ///
-    /// # Errors
-    /// Those of `take`.
-    pub fn each_row<E>(&self, mut take: impl FnMut(&[u32], &[f64]) -> Result<(), E>) -> Result<(), E> {
-        let upper = self.upper();
-        (0..self.dim()).try_for_each(|row| {
-            let left = upper.column(row).take_while(|entry| entry.0 < row);
-            let entries = left.chain(self.lower().column(row)).map(|(column, value)| (column as u32, value));
-            let (columns, values): (Vec<u32>, Vec<f64>) = entries.unzip();
-            take(&columns, &values)
-        })
     }
 }

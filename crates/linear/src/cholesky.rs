@@ -49,15 +49,9 @@ impl Structure {
 #[derive(Clone, Debug)]
 pub struct Cholesky {
     analysis: Analysis,
-    values: Values,
+    /// Of a whole triangle or of block columns; shared, because a factor is the largest object in memory.
+    values: Arc<Vec<f64>>,
     smallest_pivot: f64,
-}
-
-/// Shared, because a factor is the largest object in memory.
-#[derive(Clone, Debug)]
-enum Values {
-    InColumns(Arc<Vec<f64>>),
-    Dense(LowerTriangle),
 }
 
 impl Analysis {
@@ -105,6 +99,7 @@ impl Analysis {
         Ok(Analysis { structure: Structure::Sparse(Arc::new(symbolic)), trailing: last.len(), threads: 1 })
     }
 
+    /// The same with factors on so many threads.
     pub fn with_threads(self, threads: usize) -> Self {
         Analysis { threads, ..self }
     }
@@ -174,9 +169,7 @@ impl Analysis {
         let mut place = vec![0; dim];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
         let is_in_order = place.is_sorted();
-        let mut values: Vec<f64> = Vec::new();
-        values.try_reserve_exact(dim * dim).map_err(|_| FactorError::Failed("out of memory".into()))?;
-        values.resize(dim * dim, 0.0);
+        let mut values = factor::zeros(dim * dim)?;
         for (column, &to) in place.iter().enumerate() {
             let (rows, own) = lower.column_slices(column);
             if is_in_order && rows.len() + column == dim {
@@ -190,7 +183,7 @@ impl Analysis {
         }
         let triangle = dense_factor::factorise(dim, values, self.threads)?;
         let smallest_pivot = factor::smallest_pivot((0..dim).map(|column| triangle.diagonal(column)))?;
-        Ok(Cholesky { analysis: self.clone(), values: Values::Dense(triangle), smallest_pivot })
+        Ok(Cholesky { analysis: self.clone(), values: triangle.values().clone(), smallest_pivot })
     }
 
     fn factorised(&self, permuted: Permuted) -> Result<Cholesky, FactorError> {
@@ -199,7 +192,7 @@ impl Analysis {
             // Only a matrix without columns has no supernodes.
             None => (Vec::new(), f64::INFINITY),
         };
-        Ok(Cholesky { analysis: self.clone(), values: Values::InColumns(Arc::new(values)), smallest_pivot })
+        Ok(Cholesky { analysis: self.clone(), values: Arc::new(values), smallest_pivot })
     }
 
     /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
@@ -302,40 +295,37 @@ impl Cholesky {
 
     /// L^-1 X of columns X, one after the other, both in the order of elimination.
     pub fn forward_all(&self, columns: Vec<f64>) -> Vec<f64> {
-        match &self.values {
-            Values::Dense(triangle) => dense_factor::forward_all(triangle, columns),
-            Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::forward(own, columns)),
+        match self.triangle() {
+            Some(triangle) => dense_factor::forward_all(&triangle, columns),
+            None => self.in_columns().map_or_else(Vec::new, |own| factor::forward(own, columns)),
         }
     }
 
     /// L'^-1 X of columns X, one after the other, both in the order of elimination.
     pub fn backward_all(&self, mut columns: Vec<f64>) -> Vec<f64> {
-        match &self.values {
-            Values::Dense(triangle) => {
-                columns.chunks_mut(self.dim()).for_each(|column| triangle.sweep(column, true));
-                columns
-            }
-            Values::InColumns(_) => self.in_columns().map_or_else(Vec::new, |own| factor::backward(own, columns)),
-        }
+        let Some(triangle) = self.triangle() else {
+            return self.in_columns().map_or_else(Vec::new, |own| factor::backward(own, columns));
+        };
+        columns.chunks_mut(self.dim()).for_each(|column| triangle.sweep(column, true));
+        columns
     }
 
     /// The trailing block of L that belongs to the columns put last, m x m. Its product with its transpose is their
     /// Schur complement.
     pub fn trailing_block(&self) -> LowerTriangle {
         let size = self.analysis.trailing;
-        if let Values::Dense(triangle) = &self.values {
-            return triangle.last(size);
-        }
-        let block = self.in_columns().map(|own| factor::trailing_block(own, size));
-        LowerTriangle::new(size, block.unwrap_or_default())
+        let of_columns = || self.in_columns().map_or_else(Vec::new, |own| factor::trailing_block(own, size));
+        self.triangle().map_or_else(|| LowerTriangle::new(size, of_columns()), |triangle| triangle.last(size))
+    }
+
+    /// The factor as a whole triangle, if it is stored so.
+    fn triangle(&self) -> Option<LowerTriangle> {
+        self.is_dense().then(|| LowerTriangle::new(self.dim(), self.values.clone()))
     }
 
     /// The factor in block columns; `None` for a whole triangle, and for a matrix without columns.
     fn in_columns(&self) -> Option<Factor<'_>> {
-        match &self.values {
-            Values::InColumns(values) => Some(Factor::new(self.supernodes()?, values)),
-            Values::Dense(_) => None,
-        }
+        Some(Factor::new(self.supernodes()?, &self.values))
     }
 
     /// The structure of the factor, in block columns.

@@ -8,6 +8,7 @@ use super::dot;
 pub struct Blocks<'a> {
     /// The block of each unknown; not read if there is only one block.
     pub of_unknown: &'a [usize],
+    /// Number of blocks.
     pub count: usize,
 }
 
@@ -15,6 +16,7 @@ impl Blocks<'_> {
     /// All unknowns in one block.
     pub const ONE: Blocks<'static> = Blocks { of_unknown: &[], count: 1 };
 
+    /// The block of an unknown.
     pub fn of(&self, unknown: usize) -> usize {
         if self.count == 1 { 0 } else { self.of_unknown[unknown] }
     }

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use pulp::{Arch, Simd, WithSimd};
-
 use crate::error::Error;
+use crate::real::for_processor;
 
 /// The maximum norm: the entry farthest from zero, by its magnitude; 0 for an empty slice. For the crates of this
 /// workspace.
@@ -57,6 +56,25 @@ pub fn take_out(vector: &mut [f64], direction: &[f64]) -> f64 {
     share
 }
 
+/// The part of a vector that is orthogonal to some unit vectors; the second turn removes the rounding of the first.
+pub fn across(basis: &[Vec<f64>], mut vector: Vec<f64>) -> Vec<f64> {
+    basis.iter().chain(basis).for_each(|direction| _ = take_out(&mut vector, direction));
+    vector
+}
+
+/// Extends an orthonormal basis by a vector; returns `false` if it leaves at most this share of its length.
+pub fn extend(basis: &mut Vec<Vec<f64>>, vector: Vec<f64>, share: f64) -> bool {
+    let whole = norm(&vector);
+    let mut rest = across(basis, vector);
+    let length = norm(&rest);
+    let is_new = length > share * whole;
+    if is_new {
+        rest.iter_mut().for_each(|value| *value /= length);
+        basis.push(rest);
+    }
+    is_new
+}
+
 /// Checks that a vector has an entry for each of those that it belongs to, and that its values are allowed.
 pub fn check_vector(
     name: &'static str,
@@ -89,15 +107,16 @@ pub struct LowerTriangle {
 
 impl LowerTriangle {
     /// The triangle of `size` columns of `size` values each; values above the diagonal are not read.
-    pub fn new(size: usize, values: Vec<f64>) -> Self {
-        LowerTriangle { size, values: Arc::new(values) }
+    pub fn new(size: usize, values: impl Into<Arc<Vec<f64>>>) -> Self {
+        LowerTriangle { size, values: values.into() }
     }
 
     /// The values, column by column, n x n; those above the diagonal have no meaning.
-    pub(super) fn values(&self) -> &[f64] {
+    pub(super) fn values(&self) -> &Arc<Vec<f64>> {
         &self.values
     }
 
+    /// The diagonal entry of a row.
     pub fn diagonal(&self, place: usize) -> f64 {
         self.values[place * self.size + place]
     }
@@ -109,7 +128,7 @@ impl LowerTriangle {
         }
         let first = self.size - size;
         let rows = |column: usize| &self.values[column * self.size + first..(column + 1) * self.size];
-        LowerTriangle::new(size, (first..self.size).flat_map(rows).copied().collect())
+        LowerTriangle::new(size, (first..self.size).flat_map(rows).copied().collect::<Vec<f64>>())
     }
 
     /// Number of columns n.
@@ -131,7 +150,7 @@ impl LowerTriangle {
 
     /// Replaces b by `L^-1 b`, from its first entry that is not zero, or by `L'^-1 b`.
     pub(super) fn sweep(&self, b: &mut [f64], is_backward: bool) {
-        Arch::new().dispatch(Sweep { triangle: self, vector: b, is_backward });
+        swept(self, b, is_backward);
     }
 
     /// `L'^-1 y`.
@@ -185,20 +204,9 @@ impl LowerTriangle {
     }
 }
 
-/// A sweep through a triangle, or through its transpose, in place.
-struct Sweep<'a> {
-    triangle: &'a LowerTriangle,
-    vector: &'a mut [f64],
-    is_backward: bool,
-}
-
-impl WithSimd for Sweep<'_> {
-    type Output = ();
-
-    // A plain closure would be a call to code that is not compiled for the processor.
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Sweep { triangle, vector, is_backward } = self;
+for_processor! {
+    /// A sweep through a triangle, or through its transpose, in place.
+    fn swept['a](triangle: &'a LowerTriangle, vector: &'a mut [f64], is_backward: bool) -> () {
         if is_backward {
             for j in (0..triangle.size).rev() {
                 let column = triangle.column(j);
@@ -225,6 +233,7 @@ pub struct UpperTriangle {
 }
 
 impl UpperTriangle {
+    /// Number of rows and columns.
     pub fn size(&self) -> usize {
         self.columns.len()
     }

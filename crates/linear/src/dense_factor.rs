@@ -7,10 +7,9 @@ use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
-use pulp::{Arch, Simd, WithSimd};
-
 use super::dense::{LowerTriangle, subtract, wide_dot};
 use super::factor::{FactorError, call, memory};
+use super::real::for_processor;
 
 /// Columns that are swept one by one: a block of so few gains nothing.
 const FEW_COLUMNS: usize = 4;
@@ -22,7 +21,7 @@ const SMALL: usize = 32;
 /// on this number of threads.
 pub(super) fn factorise(size: usize, mut values: Vec<f64>, threads: usize) -> Result<LowerTriangle, FactorError> {
     if size <= SMALL {
-        Arch::new().dispatch(ColumnByColumn { size, values: &mut values })?;
+        column_by_column(size, &mut values)?;
     } else {
         let par = par(threads);
         call(|| {
@@ -41,40 +40,27 @@ pub fn par(threads: usize) -> Par {
     if threads > 1 { Par::rayon(threads) } else { Par::Seq }
 }
 
-/// The factor in place of the matrix, by pairs of columns: all others are fetched half as often.
-struct ColumnByColumn<'a> {
-    size: usize,
-    values: &'a mut [f64],
-}
-
-impl WithSimd for ColumnByColumn<'_> {
-    type Output = Result<(), FactorError>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        column_by_column(self.size, self.values)
-    }
-}
-
-#[inline(always)]
-fn column_by_column(size: usize, values: &mut [f64]) -> Result<(), FactorError> {
-    for j in (0..size).step_by(2) {
-        let (left, right) = values.split_at_mut((j + 2).min(size) * size);
-        let (first, second) = left[j * size..].split_at_mut(size);
-        divide_by_pivot(&mut first[j..])?;
-        if second.is_empty() {
-            break;
+for_processor! {
+    /// The factor in place of the matrix, by pairs of columns: all others are fetched half as often.
+    fn column_by_column['a](size: usize, values: &'a mut [f64]) -> Result<(), FactorError> {
+        for j in (0..size).step_by(2) {
+            let (left, right) = values.split_at_mut((j + 2).min(size) * size);
+            let (first, second) = left[j * size..].split_at_mut(size);
+            divide_by_pivot(&mut first[j..])?;
+            if second.is_empty() {
+                break;
+            }
+            subtract(&mut second[j + 1..], first[j + 1], &first[j + 1..]);
+            divide_by_pivot(&mut second[j + 1..])?;
+            for (k, target) in (j + 2..).zip(right.chunks_mut(size)) {
+                let (first, second) = (&first[k..], &second[k..]);
+                let (of_first, of_second) = (first[0], second[0]);
+                let both = first.iter().zip(second).map(|(a, b)| of_first * a + of_second * b);
+                target[k..].iter_mut().zip(both).for_each(|(entry, both)| *entry -= both);
+            }
         }
-        subtract(&mut second[j + 1..], first[j + 1], &first[j + 1..]);
-        divide_by_pivot(&mut second[j + 1..])?;
-        for (k, target) in (j + 2..).zip(right.chunks_mut(size)) {
-            let (first, second) = (&first[k..], &second[k..]);
-            let (of_first, of_second) = (first[0], second[0]);
-            let both = first.iter().zip(second).map(|(a, b)| of_first * a + of_second * b);
-            target[k..].iter_mut().zip(both).for_each(|(entry, both)| *entry -= both);
-        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Divides a column of the factor, from its diagonal entry down, by the root of that.

@@ -13,6 +13,7 @@ const PRIME: u64 = (1 << BITS) - 1;
 
 const BITS: i32 = 61;
 
+/// Which rows of a matrix follow from others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dependence {
     /// A basis: rows that do not follow from those before them.

@@ -6,14 +6,12 @@
 
 use std::collections::HashMap;
 
+use super::twice::Sum;
 use super::{SparseMatrix, SymmetricMatrix, Twice};
 use crate::error::Error;
 
 /// A pivot has at least this share of the largest entry of its row.
 pub const PIVOT: f64 = 0.1;
-
-/// A sum below this share of its terms is zero: far above the rounding of twice the working precision.
-const CANCELLED: f64 = 1e-26;
 
 /// A row follows from others, except for the rounding of its entries, if less than this share of them is left.
 pub const FOLLOWS: f64 = 4.0 * f64::EPSILON;
@@ -25,36 +23,6 @@ pub type Sparse = Vec<(usize, Twice)>;
 fn taken_out(values: &mut Sparse, place: usize) -> Option<Twice> {
     let found = values.binary_search_by_key(&place, |entry| entry.0);
     found.ok().map(|found| values.remove(found).1)
-}
-
-/// A sum with the magnitudes of its terms.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sum {
-    pub value: Twice,
-    pub terms: f64,
-}
-
-impl Sum {
-    pub fn add(&mut self, term: Twice) {
-        self.value = self.value + term;
-        self.terms += term.rounded().abs();
-    }
-
-    /// Adds a multiple of another sum, with the terms of that.
-    pub fn add_share(&mut self, share: Twice, of: Sum) {
-        self.value = self.value + share * of.value;
-        self.terms += share.rounded().abs() * of.terms;
-    }
-
-    /// Zero if the terms cancel.
-    pub fn settled(self) -> Twice {
-        self.beyond(CANCELLED)
-    }
-
-    /// Zero if at most this share of the terms is left.
-    pub fn beyond(self, share: f64) -> Twice {
-        if self.value.rounded().abs() > share * self.terms { self.value } else { Twice::ZERO }
-    }
 }
 
 /// Sums by their places, in memory that serves one vector after another.
@@ -90,7 +58,9 @@ impl Sums {
 /// A dof that an equality gives: `u_dof = constant + sum of others`.
 #[derive(Clone, Debug)]
 pub struct Pivot {
+    /// The unknown that it gives.
     pub dof: usize,
+    /// Its value if all others are zero.
     pub constant: Twice,
     /// Dofs that stay, with their coefficients.
     pub others: Sparse,
@@ -115,6 +85,7 @@ impl Pivot {
 /// An equation that follows from others: the sum of all these equations, with their weights, is zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Following {
+    /// The equation.
     pub row: usize,
     /// Rows with weights, its own among them with weight one.
     pub weights: Vec<(usize, f64)>,
@@ -165,7 +136,12 @@ pub enum Remainder {
     /// `sum of others + constant = 0`, not yet solved for a dof.
     Row(Pivot),
     /// Nothing is left, exactly or except for rounding: with these weights the sum of the equalities is zero.
-    Follows { weights: Sparse, is_exact: bool },
+    Follows {
+        /// The weights.
+        weights: Sparse,
+        /// `true` if exactly nothing is left.
+        is_exact: bool,
+    },
     /// Nothing is left but a number: with these weights the equalities contradict each other.
     Contradicts(Sparse),
     /// No more is left than rounding of the entries may leave.
@@ -175,6 +151,7 @@ pub enum Remainder {
 /// The pivots so far. None depends on another.
 #[derive(Default)]
 pub struct Pivots {
+    /// In the order in which they were found.
     pub pivots: Vec<Pivot>,
     by_dof: HashMap<usize, usize>,
     /// The pivots that depend on a dof that stays.

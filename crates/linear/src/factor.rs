@@ -52,6 +52,14 @@ pub(super) fn memory(request: StackReq) -> Result<MemBuffer, FactorError> {
     MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
 }
 
+/// Zeros, which come untouched from the system. Memory is requested first, because a vector of zeros ends the program if
+/// memory is short.
+pub(super) fn zeros(count: usize) -> Result<Vec<f64>, FactorError> {
+    let request = Vec::<f64>::new().try_reserve_exact(count);
+    request.map_err(|_| FactorError::Failed("out of memory".into()))?;
+    Ok(vec![0.0; count])
+}
+
 pub(super) type Factor<'a> = supernodal::SupernodalLltRef<'a, usize, f64>;
 
 /// The lower triangle of a matrix in compressed columns, in the order of elimination; the rows of a column are in any
@@ -67,12 +75,7 @@ pub(super) fn factorise(
     permuted: &Permuted,
     par: Par,
 ) -> Result<(Vec<f64>, f64), FactorError> {
-    let size = supernodes.len_val();
-    // Memory is requested first, because a vector of zeros ends the program if memory is short; the zeros come
-    // untouched from the system.
-    let request = Vec::<f64>::new().try_reserve_exact(size);
-    request.map_err(|_| FactorError::Failed("out of memory".into()))?;
-    let mut values = vec![0.0; size];
+    let mut values = zeros(supernodes.len_val())?;
     let scratch =
         supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(supernodes, par, Default::default());
     let mut buffer = memory(scratch)?;

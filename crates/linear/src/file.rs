@@ -2,8 +2,7 @@
 //! numbers that take more room than the numbers in memory are read, and written, piece by piece.
 
 use std::fs::File;
-use std::io::Write;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use crate::error::Error;
@@ -17,22 +16,22 @@ const MOST_OF_STREAM: u64 = 64 << 20;
 /// # Errors
 /// [`Error::File`] for a file that cannot be read, and for one that is longer.
 pub fn read_capped(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
-    read(path, most).map_err(|source| Error::File { action: "read", path: path.into(), source })
-}
-
-fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    let mut file = Capped::open(path, most)?;
-    let mut bytes = Vec::new();
-    bytes.try_reserve_exact(file.length as usize)?;
-    file.read_to_end(&mut bytes)?;
+    let (mut file, mut bytes) = (open_capped(path, most)?, Vec::new());
+    let read = bytes.try_reserve_exact(file.length as usize).map_err(io::Error::from);
+    read.and_then(|()| file.read_to_end(&mut bytes)).map_err(unread(path))?;
     Ok(bytes)
 }
 
+/// The error of a file that cannot be read.
+pub fn unread(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
+    move |source| Error::File { action: "read", path: path.into(), source }
+}
+
 /// A file that is read up to a cap; beyond it, reading fails.
-pub struct Capped {
+pub(crate) struct Capped {
     file: File,
     /// Bytes of a regular file; 0 for other files, of unknown length.
-    pub length: u64,
+    pub(crate) length: u64,
     most: u64,
     left: u64,
 }
@@ -60,8 +59,8 @@ impl Read for Capped {
 }
 
 /// A file to be read piece by piece, at most `most` bytes.
-pub fn open_capped(path: &Path, most: u64) -> Result<Capped, Error> {
-    Capped::open(path, most).map_err(|source| Error::File { action: "read", path: path.into(), source })
+pub(crate) fn open_capped(path: &Path, most: u64) -> Result<Capped, Error> {
+    Capped::open(path, most).map_err(unread(path))
 }
 
 fn open(path: &Path) -> io::Result<File> {
@@ -84,7 +83,7 @@ pub fn open_regular(path: &Path) -> Result<(File, u64), Error> {
         }
         Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file, whose length is known"))
     });
-    opened.map_err(|source| Error::File { action: "read", path: path.into(), source })
+    opened.map_err(unread(path))
 }
 
 /// Returns `true` for a named pipe, which would wait for a writer when it is opened. A pipe that a shell has already
@@ -106,10 +105,8 @@ fn is_named_pipe(_: &Path) -> bool {
 /// # Errors
 /// As [`read_capped`], and for bytes that are not UTF-8.
 pub fn read_text_capped(path: &Path, most: u64) -> Result<String, Error> {
-    String::from_utf8(read_capped(path, most)?).map_err(|_| {
-        let source = io::Error::new(io::ErrorKind::InvalidData, "its text is not valid UTF-8");
-        Error::File { action: "read", path: path.into(), source }
-    })
+    let invalid = |_| io::Error::new(io::ErrorKind::InvalidData, "its text is not valid UTF-8");
+    String::from_utf8(read_capped(path, most)?).map_err(invalid).map_err(unread(path))
 }
 
 /// A file to be written piece by piece: it is never in memory as a whole.

@@ -12,7 +12,6 @@
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
-#![allow(missing_docs)]
 #![allow(
     clippy::missing_errors_doc,
     reason = "what users see of it has them; the rest is for the crates of this workspace"
@@ -21,6 +20,7 @@
 mod augmented;
 mod both_triangles;
 mod cholesky;
+mod columns;
 mod compliance;
 mod conjugate_gradients;
 mod dense;
@@ -58,13 +58,14 @@ pub mod watch;
 pub use augmented::{Augmented, AugmentedMatrix};
 pub use both_triangles::SymmetricLines;
 pub use cholesky::{Analysis, Cholesky};
-pub use compliance::Compliance;
+pub use compliance::{AT_ONCE, Compliance};
 pub use conjugate_gradients::{Blocks, Iterate};
 use dense::wide_product;
 pub use dense::{
-    LowerTriangle, UpperTriangle, check_finite, check_vector, dot, largest, norm, subtract, take_out, turned,
+    LowerTriangle, UpperTriangle, across, check_finite, check_vector, dot, extend, largest, norm, subtract, take_out,
+    turned,
 };
-pub use dense_factor::{forward_all, par, products};
+pub use dense_factor::par;
 pub use dependence::Dependence;
 pub use error::Error;
 pub use factor::{FactorError, call, if_definite};
@@ -82,10 +83,9 @@ pub use twice::{Accumulator, ExactSum, Twice};
 
 use std::sync::Arc;
 
-use pulp::{Arch, Simd, WithSimd};
-
-use both_triangles::{Columns, Taken};
+use columns::{Columns, Taken};
 use grouped::group_starts;
+use real::for_processor;
 
 /// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.
 ///
@@ -266,6 +266,7 @@ impl SparseMatrix {
         SparseMatrix { rows, pattern: Arc::new(Pattern::of(column_starts, row_indices)), values: Arc::new(values) }
     }
 
+    /// The matrix of the same pattern with these values, in the order of [`values`](Self::values).
     pub fn with_values(&self, values: Vec<f64>) -> Self {
         SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
     }
@@ -407,7 +408,7 @@ impl SparseMatrix {
     /// The product A x, of which `entry` makes the entries of A.
     fn product(&self, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut y = vec![0.0; self.rows];
-        Arch::new().dispatch(AddedProduct { matrix: self, x, y: &mut y, entry });
+        add_product(self, x, &mut y, entry);
         y
     }
 
@@ -484,21 +485,9 @@ impl SparseMatrix {
     }
 }
 
-/// The product A x, added to y, of which `entry` makes the entries of A.
-struct AddedProduct<'a, E> {
-    matrix: &'a SparseMatrix,
-    x: &'a [f64],
-    y: &'a mut [f64],
-    entry: E,
-}
-
-impl<E: Fn(f64) -> f64> WithSimd for AddedProduct<'_, E> {
-    type Output = ();
-
-    // A plain closure would be a call to code that is not compiled for the processor.
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let AddedProduct { matrix, x, y, entry } = self;
+for_processor! {
+    /// Adds the product A x to y; `entry` makes the entries of A.
+    fn add_product['a, E: Fn(f64) -> f64](matrix: &'a SparseMatrix, x: &'a [f64], y: &'a mut [f64], entry: E) -> () {
         for (column, &at_column) in x.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
             matrix.with_rows(column, y, |y, value| *y += entry(value) * at_column);
         }

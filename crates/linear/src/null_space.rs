@@ -2,6 +2,7 @@
 //! singular one that passed its Cholesky factorisation by rounding.
 
 use super::power_iteration::{generic, power_iteration};
+use super::twice::Sum;
 use super::{
     Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot,
     largest, norm, take_out,
@@ -46,6 +47,7 @@ const SOFTEST_STEPS: usize = 5;
 const LEAST_NEGATIVE: f64 = 1e-12;
 const NEGATIVE_BY_COLUMN: f64 = 8.0 * f64::EPSILON;
 
+/// The vectors that a matrix maps to zero.
 #[derive(Clone, Debug, Default)]
 pub struct NullSpace {
     /// Linearly independent vectors of length about one.
@@ -68,22 +70,17 @@ impl NullSpace {
     /// coefficients and right-hand sides*, Numer. Math. 6 (1964) 405-409.
     pub const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
 
+    /// Returns `true` if every vector vanishes exactly under the matrix.
     pub fn is_exact(&self) -> bool {
         self.shares.iter().all(|&share| share == 0.0)
     }
 
     /// The vectors on which A vanishes exactly and those that `is_declared`, and the largest share of the others.
     pub fn declared(self, is_declared: impl Fn(&[Twice]) -> bool) -> (Self, f64) {
-        let (mut kept, mut most) = (NullSpace { found: self.found, ..NullSpace::default() }, 0.0_f64);
-        for (vector, share) in self.vectors.into_iter().zip(self.shares) {
-            if share == 0.0 || is_declared(&vector) {
-                kept.vectors.push(vector);
-                kept.shares.push(share);
-            } else {
-                most = most.max(share);
-            }
-        }
-        (kept, most)
+        let all = self.vectors.into_iter().zip(self.shares);
+        let (kept, others): (Vec<_>, Vec<_>) = all.partition(|(vector, share)| *share == 0.0 || is_declared(vector));
+        let (vectors, shares) = kept.into_iter().unzip();
+        (NullSpace { vectors, shares, found: self.found }, others.iter().map(|other| other.1).fold(0.0, f64::max))
     }
 }
 
@@ -169,12 +166,15 @@ impl SymmetricMatrix {
         let mut vector: Vec<Twice> = vector.iter().map(|&value| value.into()).collect();
         let mut left = self.resistance(&vector);
         for _ in 0..MOST_CORRECTIONS {
-            let forces: Vec<f64> = left.iter().map(|entry| entry.0).collect();
+            let forces: Vec<f64> = left.iter().map(|force| force.value.rounded()).collect();
             let correction = factor.solve(&forces);
             let next = vector.iter().zip(correction).map(|(&value, change)| value - change.into());
-            let next = without_noise(next.collect());
+            let mut next: Vec<Twice> = next.collect();
+            let least = NO_ENTRY * next.iter().map(|value| value.rounded().abs()).fold(0.0, f64::max);
+            next.iter_mut().filter(|value| value.rounded().abs() <= least).for_each(|value| *value = Twice::ZERO);
             let of_next = self.resistance(&next);
-            let most = |left: &[(f64, f64)]| left.iter().fold(0.0, |most: f64, (force, _)| most.max(force.abs()));
+            let size = |force: &Sum| force.value.rounded().abs();
+            let most = |left: &[Sum]| left.iter().map(size).fold(0.0, f64::max);
             // A NaN in either also ends the loop.
             let is_less = most(&of_next) < 0.5 * most(&left);
             if !is_less {
@@ -182,27 +182,21 @@ impl SymmetricMatrix {
             }
             (vector, left) = (next, of_next);
         }
-        let shares = left.iter().filter(|entry| entry.1 > 0.0).map(|(force, terms)| force.abs() / terms);
+        let shares = left.iter().filter(|sum| sum.terms > 0.0).map(|sum| sum.value.rounded().abs() / sum.terms);
         let share = shares.fold(0.0, f64::max);
         (vector, share)
     }
 
-    /// The entries of `A v`, each with the sum of the magnitudes of its terms.
-    pub fn resistance(&self, vector: &[Twice]) -> Vec<(f64, f64)> {
-        let mut sums = vec![(Twice::ZERO, 0.0); vector.len()];
-        let mut add = |row: usize, value: f64, of: Twice| {
-            let term = Twice::from(value) * of;
-            let (sum, terms) = &mut sums[row];
-            *sum = *sum + term;
-            *terms += term.rounded().abs();
-        };
+    /// The entries of `A v`.
+    pub fn resistance(&self, vector: &[Twice]) -> Vec<Sum> {
+        let mut sums = vec![Sum::default(); vector.len()];
         for (row, column, value) in self.lower().triplets() {
-            add(row, value, vector[column]);
+            sums[row].add(Twice::from(value) * vector[column]);
             if row != column {
-                add(column, value, vector[row]);
+                sums[column].add(Twice::from(value) * vector[row]);
             }
         }
-        sums.into_iter().map(|(sum, terms)| (sum.rounded(), terms)).collect()
+        sums
     }
 
     /// A unit null vector, orthogonal to those `found`.
@@ -303,16 +297,6 @@ impl AugmentedMatrix {
             factor => factor.map(Some),
         }
     }
-}
-
-/// A vector without the entries that are negligible beside the largest.
-pub fn without_noise(mut vector: Vec<Twice>) -> Vec<Twice> {
-    let largest = vector.iter().fold(0.0, |largest: f64, value| largest.max(value.rounded().abs()));
-    vector
-        .iter_mut()
-        .filter(|value| value.rounded().abs() <= NO_ENTRY * largest)
-        .for_each(|value| *value = Twice::ZERO);
-    vector
 }
 
 #[cfg(test)]

@@ -2,20 +2,11 @@
 
 use super::real::Real;
 
-/// Numbers in 0..1 that are spread evenly, other ones for each number.
-fn spread(number: usize) -> impl Fn(usize) -> f64 {
-    let (golden, silver) = (0.618_033_988_749_895, 0.414_213_562_373_095);
-    move |index| (index as f64 * golden + number as f64 * silver).fract()
-}
-
-/// A vector without symmetry, different for each number.
-pub fn generic(length: usize, number: usize) -> Vec<f64> {
-    let spread = spread(number + 1);
-    (0..length).map(|index| spread(index) - 0.5).collect()
-}
+/// The golden section: its multiples, less whole numbers, are spread evenly.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// A vector of numbers between -1/2 and 1/2 that look random, different for each number.
-pub fn random(length: usize, number: usize) -> Vec<f64> {
+pub fn generic(length: usize, number: usize) -> Vec<f64> {
     let first = (number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) << 20;
     let of = |index: usize| (scramble((index as u64).wrapping_add(first)) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
     (0..length).map(of).collect()
@@ -37,8 +28,7 @@ pub fn power_iteration<T: Real>(
     steps: usize,
     mut map: impl FnMut(&mut Vec<T>) -> bool,
 ) -> Vec<T> {
-    let spread = spread(0);
-    let mut x: Vec<T> = (0..dim).map(|index| T::of(spread(index) + least)).collect();
+    let mut x: Vec<T> = (0..dim).map(|index| T::of((index as f64 * GOLDEN).fract() + least)).collect();
     for _ in 0..steps {
         if !map(&mut x) {
             break;

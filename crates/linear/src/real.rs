@@ -1,4 +1,4 @@
-//! The floating-point numbers in which a multigrid hierarchy is stored.
+//! The floating-point numbers in which a multigrid hierarchy is stored, and loops compiled for the processor.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -47,3 +47,25 @@ impl Real for f32 {
         value as f32
     }
 }
+
+/// A function whose loops are compiled for the processor that runs them. A plain function would not be, and a closure
+/// would be a call to code that is not.
+macro_rules! for_processor {
+    ($(#[$doc:meta])* fn $name:ident[$($generics:tt)*]($($argument:ident: $type:ty),*) -> $result:ty $body:block) => {
+        $(#[$doc])*
+        fn $name<$($generics)*>($($argument: $type),*) -> $result {
+            struct Work<A>(A);
+            impl<$($generics)*> pulp::WithSimd for Work<($($type,)*)> {
+                type Output = $result;
+                #[inline(always)]
+                fn with_simd<S: pulp::Simd>(self, _: S) -> $result {
+                    let Work(($($argument,)*)) = self;
+                    $body
+                }
+            }
+            pulp::Arch::new().dispatch(Work(($($argument,)*)))
+        }
+    };
+}
+
+pub(crate) use for_processor;

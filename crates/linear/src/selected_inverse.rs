@@ -19,7 +19,7 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::{Accum, Mat, MatMut, Par};
 
 use super::Cholesky;
-use super::factor::{FactorError, call};
+use super::factor::{FactorError, call, zeros};
 
 /// Number of factorisations that take as many multiplications.
 pub const FACTORISATIONS: f64 = 2.0;
@@ -40,9 +40,7 @@ impl Cholesky {
     /// The entries of the inverse in the pattern of the factor; `None` if memory does not suffice.
     pub fn selected_inverse(&self) -> Option<SelectedInverse<'_>> {
         let nodes = self.supernodes()?;
-        let mut values = Vec::new();
-        values.try_reserve_exact(self.entries()).ok()?;
-        values.resize(self.entries(), 0.0);
+        let values = zeros(self.entries()).ok()?;
         let mut place = vec![0; self.dim()];
         self.order().iter().enumerate().for_each(|(to, &column)| place[column] = to);
         let mut node_of = vec![0; self.dim()];

@@ -24,6 +24,7 @@ impl<T: Copy + Default> Spare<T> {
         }
     }
 
+    /// A vector of zeros of this length.
     pub fn zeros(&self, length: usize) -> Vec<T> {
         let mut vector = self.take(length);
         vector.fill(T::default());

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::both_triangles::Columns;
+use super::columns::Columns;
 use super::dense::wide_product;
 use super::dependence::merged;
 use super::threads::{SharedRows, in_order};
@@ -170,12 +170,9 @@ impl SymmetricMatrix {
             for (p, a) in rows.column(i) {
                 for (q, b) in rows.column(j) {
                     // Entries off the diagonal have a mirror image (j, i).
-                    match (i == j, p >= q) {
-                        (true, true) => entries.push((p, q, a * value * b)),
-                        (true, false) => {}
-                        (false, true) if p == q => entries.push((p, p, 2.0 * a * value * b)),
-                        (false, true) => entries.push((p, q, a * value * b)),
-                        (false, false) => entries.push((q, p, a * value * b)),
+                    let times = if i != j && p == q { 2.0 } else { 1.0 };
+                    if i != j || p >= q {
+                        entries.push((p.max(q), p.min(q), times * a * value * b));
                     }
                 }
             }
@@ -217,17 +214,13 @@ impl SymmetricMatrix {
     }
 
     /// The matrix P A P' with its columns in another order: column `order[k]` of A becomes column k.
-    pub fn ordered(&self, order: &[usize]) -> Self {
+    pub fn ordered(&self, order: &[usize]) -> Result<Self, Error> {
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
         let entries: Vec<_> = (self.lower.triplets())
             .map(|(i, j, value)| (place[i].max(place[j]), place[i].min(place[j]), value))
             .collect();
-        match SparseMatrix::from_triplets(self.dim(), self.dim(), &entries) {
-            Ok(lower) => SymmetricMatrix { lower },
-            // Not reached: places and values are those of a valid matrix.
-            Err(_) => self.clone(),
-        }
+        Self::from_lower(SparseMatrix::from_triplets(self.dim(), self.dim(), &entries)?)
     }
 
     /// Number of rows and columns of the symmetric matrix.
@@ -239,6 +232,27 @@ impl SymmetricMatrix {
     pub fn entries(&self) -> usize {
         let has_diagonal = |&column: &usize| self.lower.column_rows(column).first() == Some(&(column as u32));
         2 * self.lower.entries() - (0..self.dim()).filter(has_diagonal).count()
+    }
+
+    /// Number of entries in each row, both triangles.
+    pub fn row_lengths(&self) -> Vec<u32> {
+        let mut lengths: Vec<u32> = (0..self.dim()).map(|row| self.lower().column_rows(row).len() as u32).collect();
+        self.lower().triplets().filter(|entry| entry.0 != entry.1).for_each(|(row, _, _)| lengths[row] += 1);
+        lengths
+    }
+
+    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order.
+    ///
+    /// # Errors
+    /// Those of `take`.
+    pub fn each_row<E>(&self, mut take: impl FnMut(&[u32], &[f64]) -> Result<(), E>) -> Result<(), E> {
+        let upper = self.upper();
+        (0..self.dim()).try_for_each(|row| {
+            let left = upper.column(row).take_while(|entry| entry.0 < row);
+            let entries = left.chain(self.lower().column(row)).map(|(column, value)| (column as u32, value));
+            let (columns, values): (Vec<u32>, Vec<f64>) = entries.unzip();
+            take(&columns, &values)
+        })
     }
 
     /// The lower triangle, diagonal included.
@@ -263,7 +277,7 @@ impl SymmetricMatrix {
         self.product(0..self.dim(), x, |value| value)
     }
 
-    /// The products of A with columns, one after the other.
+    /// The products of A with columns of length `dim`, one after the other.
     pub fn mul_all(&self, columns: &[f64]) -> Vec<f64> {
         columns.chunks(self.dim().max(1)).flat_map(|column| self.mul(column)).collect()
     }

@@ -3,7 +3,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use pulp::{Arch, Simd, WithSimd};
+use crate::real::for_processor;
 
 /// Products below this magnitude may lose their last bits to underflow.
 const LEAST_PRODUCT: f64 = f64::MIN_POSITIVE / f64::EPSILON / f64::EPSILON;
@@ -19,6 +19,7 @@ pub struct Twice {
 }
 
 impl Twice {
+    /// Zero.
     pub const ZERO: Twice = Twice { head: 0.0, tail: 0.0 };
 
     /// The nearest double.
@@ -26,6 +27,7 @@ impl Twice {
         self.head
     }
 
+    /// The absolute value.
     pub fn abs(self) -> Self {
         if self.head < 0.0 { -self } else { self }
     }
@@ -114,10 +116,48 @@ impl Div for Twice {
     }
 }
 
-/// A sum; zero if its terms cancel to less than `rounding` of the sum of their magnitudes.
-pub fn sum(terms: impl Iterator<Item = Twice>, rounding: f64) -> Twice {
-    let (sum, size) = terms.fold((Twice::ZERO, 0.0_f64), |(sum, size), term| (sum + term, size + term.rounded().abs()));
-    if sum.rounded().abs() > rounding * size { sum } else { Twice::ZERO }
+/// A sum below this share of its terms is zero: far above the rounding of twice the working precision.
+const CANCELLED: f64 = 1e-26;
+
+/// A sum with the magnitudes of its terms.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sum {
+    /// The sum so far.
+    pub value: Twice,
+    /// The sum of the sizes of its terms.
+    pub terms: f64,
+}
+
+impl Sum {
+    /// Adds a term.
+    pub fn add(&mut self, term: Twice) {
+        self.value = self.value + term;
+        self.terms += term.rounded().abs();
+    }
+
+    /// Adds a multiple of another sum, with the terms of that.
+    pub fn add_share(&mut self, share: Twice, of: Sum) {
+        self.value = self.value + share * of.value;
+        self.terms += share.rounded().abs() * of.terms;
+    }
+
+    /// Zero if the terms cancel.
+    pub fn settled(self) -> Twice {
+        self.beyond(CANCELLED)
+    }
+
+    /// Zero if at most this share of the terms is left.
+    pub fn beyond(self, share: f64) -> Twice {
+        if self.value.rounded().abs() > share * self.terms { self.value } else { Twice::ZERO }
+    }
+}
+
+impl FromIterator<Twice> for Sum {
+    fn from_iter<I: IntoIterator<Item = Twice>>(terms: I) -> Self {
+        let mut sum = Sum::default();
+        terms.into_iter().for_each(|term| sum.add(term));
+        sum
+    }
 }
 
 /// Sums that keep the rounding errors of their terms.
@@ -132,22 +172,12 @@ pub struct Accumulator {
     sums: Vec<Twice>,
 }
 
-/// The product of a symmetric matrix with x, added to `sums`, and that of their magnitudes, added to `terms`.
-struct SymmetricProduct<'a, C> {
-    /// The entries `(row, value)` of a column of the lower triangle.
-    column: C,
-    x: &'a [f64],
-    sums: &'a mut [Twice],
-    terms: &'a mut [f64],
-}
-
-impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for SymmetricProduct<'_, C> {
-    type Output = ();
-
-    // A plain closure would be a call to code that is not compiled for the processor.
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let SymmetricProduct { column, x, sums, terms } = self;
+for_processor! {
+    /// Adds the product of a symmetric matrix with x to `sums`, and that of their magnitudes to `terms`; `column` gives
+    /// the entries `(row, value)` of a column of the lower triangle.
+    fn add_symmetric['a, I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I](
+        column: C, x: &'a [f64], sums: &'a mut [Twice], terms: &'a mut [f64]
+    ) -> () {
         // One length for all: an index is then checked once.
         let (sums, terms) = (&mut sums[..x.len()], &mut terms[..x.len()]);
         for (index, &at_column) in x.iter().enumerate() {
@@ -165,27 +195,16 @@ impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Symmetric
     }
 }
 
-/// The product of a matrix with x, or of the transposed matrix, added to `sums`.
-struct ColumnProduct<'a, C> {
-    /// The entries `(row, value)` of a column.
-    column: C,
-    x: &'a [f64],
-    sums: &'a mut [Twice],
-    is_transposed: bool,
-}
-
-impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for ColumnProduct<'_, C> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let ColumnProduct { column, x, sums, is_transposed } = self;
+for_processor! {
+    /// Adds the product of a matrix with x, or of the transposed matrix, to `sums`; `column` gives the entries
+    /// `(row, value)` of a column.
+    fn add_columns['a, I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I](
+        column: C, x: &'a [f64], sums: &'a mut [Twice], is_transposed: bool
+    ) -> () {
         if is_transposed {
             for (index, own) in sums.iter_mut().enumerate() {
-                for (row, value) in column(index) {
-                    if x[row] != 0.0 {
-                        own.add_product(value, x[row]);
-                    }
+                for (row, value) in column(index).filter(|entry| x[entry.0] != 0.0) {
+                    own.add_product(value, x[row]);
                 }
             }
             return;
@@ -218,18 +237,18 @@ impl Accumulator {
         x: &[f64],
     ) -> Vec<f64> {
         let mut terms = vec![0.0; x.len()];
-        Arch::new().dispatch(SymmetricProduct { column, x, sums: &mut self.sums, terms: &mut terms });
+        add_symmetric(column, x, &mut self.sums, &mut terms);
         terms
     }
 
     /// Adds `A x` to as many sums as A has rows; `column` gives the entries `(row, value)` of its columns.
     pub fn add_columns<I: Iterator<Item = (usize, f64)>>(&mut self, column: impl Fn(usize) -> I, x: &[f64]) {
-        Arch::new().dispatch(ColumnProduct { column, x, sums: &mut self.sums, is_transposed: false });
+        add_columns(column, x, &mut self.sums, false);
     }
 
     /// Adds `A' x` to as many sums as A has columns, without the terms of entries of x that are zero.
     pub fn add_transposed<I: Iterator<Item = (usize, f64)>>(&mut self, column: impl Fn(usize) -> I, x: &[f64]) {
-        Arch::new().dispatch(ColumnProduct { column, x, sums: &mut self.sums, is_transposed: true });
+        add_columns(column, x, &mut self.sums, true);
     }
 
     /// The sums, each rounded once; not finite if a term overflows.
@@ -312,9 +331,9 @@ mod tests {
 
     #[test]
     fn a_small_term_survives_beside_large_ones_that_cancel() {
-        let terms = [1e8, 3e-17, -1e8].map(Twice::from);
-        assert_eq!(sum(terms.into_iter(), 1e-26).rounded(), 3e-17);
-        assert_eq!(sum(terms.into_iter(), 1e-24), Twice::ZERO);
+        let sum: Sum = [1e8, 3e-17, -1e8].map(Twice::from).into_iter().collect();
+        assert_eq!(sum.beyond(1e-26).rounded(), 3e-17);
+        assert_eq!(sum.beyond(1e-24), Twice::ZERO);
     }
 
     /// (1 + e)(1 - e) - 1 = -e^2, which a sum of rounded products would lose.

@@ -12,7 +12,7 @@ use crate::error::{Error, LinearError};
 use crate::linear::SymmetricMatrix;
 use crate::linear::file::Streamed;
 use crate::linear::matrix_market::{
-    AllowedValues, Content, format_vector, read_vector, vector, write_columns, write_entries,
+    Allowed, Content, FINITE, GAPS, format_vector, matrix, read_vector, vector, write_columns, write_entries,
 };
 use crate::linear::multigrid::NearNullSpace;
 use crate::problem::ContactProblem;
@@ -22,25 +22,13 @@ use crate::solution::Solution;
 pub const STIFFNESS: &str = "K.mtx";
 
 /// Reads the problem of a directory.
-///
-/// # Errors
-/// [`LinearError::File`] and [`LinearError::FileSyntax`] for a file that is missing or malformed, and those of
-/// [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
-    let file = directory.join(STIFFNESS);
-    let stiffness = Content::read(&file, AllowedValues::Finite)?;
-    stiffness.check_filled(&file, stiffness.rows.max(stiffness.columns))?;
-    let (is_symmetric, stiffness) = (stiffness.symmetric, stiffness.matrix()?);
+    let (is_symmetric, stiffness) = matrix(&directory.join(STIFFNESS), None)?;
     let stiffness =
         if is_symmetric { SymmetricMatrix::from_lower(stiffness) } else { SymmetricMatrix::from_full(&stiffness) }?;
     let load = read_vector(&directory.join("f.mtx"))?;
-    let file = directory.join("B.mtx");
-    let contact = Content::read(&file, AllowedValues::Finite)?;
-    // A body has many dofs without a contact row: B must have as many columns as the stiffness.
-    let empty = if contact.columns == load.len() { contact.rows } else { contact.rows.max(contact.columns) };
-    contact.check_filled(&file, empty)?;
-    let contact = contact.matrix()?;
-    let gap = vector(&directory.join("g.mtx"), AllowedValues::FiniteOrInfinite)?;
+    let (_, contact) = matrix(&directory.join("B.mtx"), Some(load.len()))?;
+    let gap = vector(&directory.join("g.mtx"), GAPS)?;
     let problem = with_equalities(directory, ContactProblem::new(stiffness, load, contact, gap)?)?;
     match near_null(directory, problem.dofs())? {
         Some(near_null) => problem.with_near_null(near_null),
@@ -58,10 +46,8 @@ fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactP
         (false, true) => return missing(rows, "there is e.mtx: every value needs a row of E"),
         (true, true) => {}
     }
-    let content = Content::read(&rows, AllowedValues::Finite)?;
-    let fits = content.columns == problem.dofs();
-    content.check_filled(&rows, if fits { content.rows } else { content.rows.max(content.columns) })?;
-    problem.with_equalities(&content.matrix()?, read_vector(&values)?)
+    let (_, rows) = matrix(&rows, Some(problem.dofs()))?;
+    problem.with_equalities(&rows, read_vector(&values)?)
 }
 
 /// Reads the gaps in `g1.mtx` and the load in `f1.mtx` of a directory, as [`ContactProblem::read_other_end`] describes.
@@ -72,7 +58,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
             "it is missing, and so is f1.mtx: a sweep needs the gaps or the load of the other end".to_string();
         return Err(fault(gap_file, message));
     }
-    let end = |file: &Path, values: AllowedValues, own: &[f64], of: &str| {
+    let end = |file: &Path, values: Allowed, own: &[f64], of: &str| {
         if !file.exists() {
             return Ok(own.to_vec());
         }
@@ -82,8 +68,8 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
         }
         Err(fault(file.to_path_buf(), format!("it has length {}, but there are {} {of}", end.len(), own.len())))
     };
-    let gap = end(&gap_file, AllowedValues::FiniteOrInfinite, problem.inequalities_given().1, "contact rows")?;
-    let load = end(&load_file, AllowedValues::Finite, problem.load(), "dofs")?;
+    let gap = end(&gap_file, GAPS, problem.inequalities_given().1, "contact rows")?;
+    let load = end(&load_file, FINITE, problem.load(), "dofs")?;
     let last = problem.with(load, gap)?;
     let mut rows = problem.gap().iter().zip(last.gap()).enumerate();
     match rows.find(|(_, (first, last))| first.is_finite() != last.is_finite()) {
@@ -103,7 +89,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
 fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
     let file = directory.join("near_null.mtx");
     if file.exists() {
-        let content = Content::read(&file, AllowedValues::Finite)?;
+        let content = Content::read(&file, FINITE)?;
         if content.rows != dofs || content.columns == 0 {
             let found = format!("it is {} x {}", content.rows, content.columns);
             return Err(fault(
@@ -118,7 +104,7 @@ fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Err
     if !file.exists() {
         return Ok(None);
     }
-    let content = Content::read(&file, AllowedValues::Finite)?;
+    let content = Content::read(&file, FINITE)?;
     let (nodes, dimension) = (content.rows, content.columns);
     if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
         let message = format!(

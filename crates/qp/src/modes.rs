@@ -167,7 +167,7 @@ impl<'a> Pencil<'a> {
     fn of(matrices: &'a [SymmetricMatrix; 2], threads: usize, watch: &'a Watch) -> Result<Self, Error> {
         let [stiffness, mass] = matrices;
         let analysis = Analysis::sparse_with_last(&stiffness.combined(1.0, 0.0, mass)?, &[])?.with_threads(threads);
-        let ordered = mass.ordered(analysis.order());
+        let ordered = mass.ordered(analysis.order())?;
         Ok(Pencil { matrices, analysis, ordered, threads, watch })
     }
 
@@ -275,19 +275,14 @@ impl Shifted<'_> {
         };
         pairs.values.truncate(with_mass(&pairs, count));
         let vectors = space.vectors(&pairs, pairs.values.len());
-        let mut found = Modes { is_complete, ..Modes::default() };
         let mut all = self.pairs(&vectors);
         all.sort_by(|one, other| one.0.total_cmp(&other.0));
-        for (value, residual, vector) in all {
-            found.values.push(value);
-            found.residuals.push(residual);
-            found.vectors.push(vector);
-        }
-        Ok(found)
+        let (values, (residuals, vectors)) = all.into_iter().unzip();
+        Ok(Modes { values, vectors, residuals, is_complete, ..Modes::default() })
     }
 
     /// The eigenvalue, residual and vector, with mass one, of vectors of the operator, one after the other.
-    fn pairs(&self, vectors: &[f64]) -> Vec<(f64, f64, Vec<f64>)> {
+    fn pairs(&self, vectors: &[f64]) -> Vec<(f64, (f64, Vec<f64>))> {
         let Pencil { matrices: [stiffness, mass], ordered, analysis, .. } = self.pencil;
         let (dim, order, diagonal) = (ordered.dim(), analysis.order(), stiffness.diagonal());
         self.in_parts(vectors, |part| {
@@ -312,7 +307,7 @@ impl Shifted<'_> {
             let residual = |(value, rest): (&f64, &[f64])| norm(rest) / (value + self.shift).sqrt();
             let residuals = values.iter().zip(rests.chunks(dim)).map(residual).collect::<Vec<f64>>();
             let vectors = x.chunks(dim).map(<[f64]>::to_vec);
-            values.into_iter().zip(residuals).zip(vectors).map(|((value, residual), x)| (value, residual, x)).collect()
+            values.into_iter().zip(residuals.into_iter().zip(vectors)).collect()
         })
     }
 

@@ -1,14 +1,14 @@
 //! The number of negative eigenvalues of a symmetric matrix, by the signs of its pivots.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::MemStack;
 use faer::sparse::linalg::cholesky::supernodal::{
     SupernodalLdltRef, factorize_supernodal_numeric_ldlt, factorize_supernodal_numeric_ldlt_scratch,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut};
 
-use super::super::power_iteration::random;
-use super::super::{Analysis, FactorError, SymmetricMatrix, call, largest, par};
+use super::super::factor::{memory, zeros};
+use super::super::{Analysis, SymmetricMatrix, call, generic, largest, par};
 use crate::error::Error;
 
 /// A solution with the factor leaves at most this share of its load, if the pivots are those of the matrix and not of
@@ -30,16 +30,12 @@ pub fn negative_eigenvalues(
     let Some(nodes) = analysis.supernodes() else { return Ok(None) };
     let (dim, par) = (matrix.dim(), par(threads));
     let permuted = analysis.permuted(matrix.lower(), |_, _, value| value);
-    let lacking = || FactorError::Failed("out of memory".into());
-    let mut values: Vec<f64> = Vec::new();
-    values.try_reserve_exact(nodes.len_val()).map_err(|_| lacking())?;
-    values.resize(nodes.len_val(), 0.0);
-    let load: Vec<f64> = random(dim, 0);
+    let mut values = zeros(nodes.len_val())?;
+    let load: Vec<f64> = generic(dim, 0);
     let mut solution: Vec<f64> = analysis.order().iter().map(|&column| load[column]).collect();
     let work = || {
         let of_factor = factorize_supernodal_numeric_ldlt_scratch::<usize, f64>(nodes, par, Default::default());
-        let request = of_factor.or(nodes.solve_in_place_scratch::<f64>(1, par));
-        let mut buffer = MemBuffer::try_new(request).map_err(|_| lacking())?;
+        let mut buffer = memory(of_factor.or(nodes.solve_in_place_scratch::<f64>(1, par)))?;
         let structure = SymbolicSparseColMatRef::new_unsorted_checked(dim, dim, &permuted.starts, None, &permuted.rows);
         let done = factorize_supernodal_numeric_ldlt(
             &mut values,

@@ -4,8 +4,7 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
-use super::super::power_iteration::random;
-use super::super::{FactorError, call, dot, norm};
+use super::super::{FactorError, call, generic, norm, take_out};
 use crate::error::Error;
 
 /// Number of columns that are added at once: eigenvalues of up to this multiplicity converge together.
@@ -57,6 +56,7 @@ pub struct Krylov<A> {
 
 /// Eigenpairs of the operator in the space, eigenvalues decreasing.
 pub struct Pairs {
+    /// The eigenvalues.
     pub values: Vec<f64>,
     /// The norm of `A y - value y` for the unit vector y of each pair.
     pub residuals: Vec<f64>,
@@ -82,6 +82,7 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
         space
     }
 
+    /// Number of vectors of the basis.
     pub fn columns(&self) -> usize {
         self.projected.len()
     }
@@ -149,15 +150,12 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
     /// that lies in the span of those before it is replaced by a random one.
     fn orthonormal(&mut self, mut columns: Vec<f64>, count: usize, scale: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
         let (mut found, mut coordinates): (Vec<f64>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
-        let mut missing = 0;
         for column in columns.chunks_mut(self.dim) {
             let mut shares = vec![0.0; count];
             let before = norm(column);
             for pass in 0..2 {
                 for (share, other) in shares.iter_mut().zip(found.chunks(self.dim)) {
-                    let part = dot(other, column);
-                    *share += part;
-                    column.iter_mut().zip(other).for_each(|(value, other)| *value -= part * other);
+                    *share += take_out(column, other);
                 }
                 if pass == 0 && norm(column) > ORTHOGONAL * before {
                     break;
@@ -175,22 +173,17 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
                     }
                     found.extend_from_slice(column);
                 }
-                false => missing += 1,
+                false if place < count => found.extend(self.fresh(&found)),
+                false => {}
             }
             coordinates.push(shares);
-        }
-        for _ in 0..missing {
-            if found.len() < count * self.dim {
-                let column = self.fresh(&found);
-                found.extend(column);
-            }
         }
         (found, coordinates)
     }
 
     /// A random unit vector that is orthogonal to the basis and to `others`.
     fn fresh(&mut self, others: &[f64]) -> Vec<f64> {
-        let mut column = random(self.dim, self.taken);
+        let mut column = generic(self.dim, self.taken);
         self.taken += 1;
         self.clean(&mut column, others);
         column
@@ -200,8 +193,7 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
     fn clean(&self, column: &mut [f64], others: &[f64]) {
         for _ in 0..PASSES {
             for other in self.basis.chunks(self.dim).chain(others.chunks(self.dim)) {
-                let part = dot(other, column);
-                column.iter_mut().zip(other).for_each(|(value, other)| *value -= part * other);
+                take_out(column, other);
             }
             let length = norm(column);
             column.iter_mut().for_each(|value| *value /= length);

@@ -5,21 +5,15 @@
 
 mod parse;
 
-pub use parse::{AllowedValues, Content};
+pub use parse::{Allowed, Content, FINITE, GAPS};
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use crate::error::Error;
-use crate::file::{Streamed, open_capped};
+use crate::file::Streamed;
 use crate::{SparseMatrix, SymmetricMatrix};
-use parse::{Quotes, parse};
-
-/// Most bytes of a matrix in text, which is not held in memory: fifty million dofs of a body in space.
-const MOST_OF_MATRIX: u64 = 64 << 30;
-
-/// Largest number of empty rows or columns: nothing is allocated from an announced size alone.
-const MOST_EMPTY: usize = 1_000_000;
+use parse::BOUNDS;
 
 /// The Matrix Market file of a vector in any unit, as text: an array of one column, one entry per line, in the order of
 /// the vector.
@@ -34,14 +28,14 @@ impl SparseMatrix {
     /// As [`read_vector`].
     #[doc(hidden)]
     pub fn read(file: &Path) -> Result<Self, Error> {
-        let mut content = Content::read(file, AllowedValues::Finite)?;
-        content.check_filled(file, content.rows.max(content.columns))?;
-        if content.symmetric {
-            let below = content.entries.iter().filter(|(row, column, _)| row != column);
-            let above: Vec<_> = below.map(|&(row, column, value)| (column, row, value)).collect();
-            content.entries.extend(above);
+        let (is_symmetric, lower) = matrix(file, None)?;
+        if !is_symmetric {
+            return Ok(lower);
         }
-        content.matrix()
+        let below = lower.triplets().filter(|(row, column, _)| row != column);
+        let above: Vec<_> = below.map(|(row, column, value)| (column, row, value)).collect();
+        let all: Vec<_> = lower.triplets().chain(above).collect();
+        SparseMatrix::from_triplets(lower.rows(), lower.columns(), &all)
     }
 
     /// Reads a file as [`read_vector`] does, in which `-inf` and `inf` stand for no bound. For the crates of this
@@ -51,7 +45,7 @@ impl SparseMatrix {
     /// As [`read_vector`].
     #[doc(hidden)]
     pub fn read_bounds(file: &Path) -> Result<Vec<f64>, Error> {
-        vector(file, AllowedValues::Bounds)
+        vector(file, BOUNDS)
     }
 
     /// The matrix as a Matrix Market file of this name.
@@ -87,14 +81,14 @@ pub fn write_columns(out: &mut dyn Write, columns: &[impl AsRef<[f64]>]) -> io::
 /// # Errors
 /// [`Error::File`] and [`Error::FileSyntax`].
 pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
-    vector(file, AllowedValues::Finite)
+    vector(file, FINITE)
 }
 
 /// Reads a vector with `values`, in the unit of its file.
 ///
 /// # Errors
 /// As [`read_vector`].
-pub fn vector(file: &Path, values: AllowedValues) -> Result<Vec<f64>, Error> {
+pub fn vector(file: &Path, values: Allowed) -> Result<Vec<f64>, Error> {
     let content = Content::read(file, values)?;
     if content.columns != 1 && content.rows != 1 {
         let message = format!("a vector has one column, but this is {} x {}", content.rows, content.columns);
@@ -109,53 +103,15 @@ pub fn vector(file: &Path, values: AllowedValues) -> Result<Vec<f64>, Error> {
     Ok(vector)
 }
 
-/// If `file` is a link out of its folder, errors do not quote the content.
-fn quotes(file: &Path) -> Quotes {
-    let folder = match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    match (file.canonicalize(), folder.canonicalize()) {
-        (Ok(file), Ok(folder)) if file.starts_with(&folder) => Quotes::Allowed,
-        _ => Quotes::Withheld,
-    }
-}
-
-impl Content {
-    /// Reads the content of a file.
-    ///
-    /// # Errors
-    /// As [`read_vector`].
-    pub fn read(file: &Path, values: AllowedValues) -> Result<Content, Error> {
-        parse(file, open_capped(file, MOST_OF_MATRIX)?, values, quotes(file))
-    }
-
-    /// Refuses a number of rows or columns (`lines`) that is not credible for the entries of the file.
-    ///
-    /// # Errors
-    /// [`Error::FileSyntax`].
-    pub fn check_filled(&self, file: &Path, lines: usize) -> Result<(), Error> {
-        let (rows, columns, entries) = (self.rows, self.columns, self.entries.len());
-        if lines <= entries.saturating_add(MOST_EMPTY) {
-            return Ok(());
-        }
-        let message =
-            format!("a matrix of {rows} x {columns} with {entries} entries is almost empty; correct its size");
-        Err(Error::FileSyntax { file: file.to_path_buf(), line: self.line, message })
-    }
-
-    /// The entries as a matrix: of a symmetric one the lower triangle.
-    ///
-    /// # Errors
-    /// As [`SparseMatrix::from_triplets`].
-    pub fn matrix(&self) -> Result<SparseMatrix, Error> {
-        SparseMatrix::from_triplets(self.rows, self.columns, &self.entries)
-    }
-
-    /// The columns of an array.
-    pub fn columns(&self) -> Vec<Vec<f64>> {
-        let mut columns = vec![vec![0.0; self.rows]; self.columns];
-        self.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);
-        columns
-    }
+/// A matrix, and whether the file holds its lower triangle only. A body has many dofs without a row: a matrix of rows
+/// must have as many columns as there are `dofs`, or else be credible by its entries.
+///
+/// # Errors
+/// As [`read_vector`].
+pub fn matrix(file: &Path, dofs: Option<usize>) -> Result<(bool, SparseMatrix), Error> {
+    let content = Content::read(file, FINITE)?;
+    let fits = dofs == Some(content.columns);
+    content.check_filled(file, if fits { content.rows } else { content.rows.max(content.columns) })?;
+    let matrix = SparseMatrix::from_triplets(content.rows, content.columns, &content.entries)?;
+    Ok((content.symmetric, matrix))
 }

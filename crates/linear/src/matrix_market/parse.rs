@@ -1,10 +1,13 @@
 //! Reading the text of a Matrix Market file, line by line; every error names its line.
 
 use std::io::{self, BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::error::Error;
-use crate::file::Capped;
+use crate::file::{Capped, open_capped, unread};
+
+/// Most bytes of a matrix in text, which is not held in memory: fifty million dofs of a body in space.
+const MOST_OF_MATRIX: u64 = 64 << 30;
 
 /// Bytes of a text that are read at a time.
 const PIECE: usize = 1 << 20;
@@ -14,6 +17,9 @@ const LONGEST: usize = 1 << 16;
 
 /// More rows or columns than this are refused before anything is allocated.
 const LARGEST_DIMENSION: usize = 100_000_000;
+
+/// Largest number of empty rows or columns: nothing is allocated from an announced size alone.
+const MOST_EMPTY: usize = 1_000_000;
 
 /// The content of a file: shape, entries (indices from 0), and whether only one triangle is stored.
 #[derive(Debug)]
@@ -30,178 +36,199 @@ pub struct Content {
     pub entries: Vec<(usize, usize, f64)>,
 }
 
-/// The required content of the second line of a file of coordinates.
-const COORDINATE_SIZES: &str = "3 whole numbers (rows, columns and entries)";
-
 /// Least bytes of an entry or a value, with the end of its line.
 const LEAST_OF_ENTRY: u64 = 2;
 
 /// Words of a file in an error are cut to this number of characters.
 const LONGEST_EXCERPT: usize = 80;
 
-/// The values that a file may hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AllowedValues {
-    /// Finite numbers.
-    Finite,
-    /// Gaps: `inf` is a row without obstacle.
-    FiniteOrInfinite,
-    /// Lower and upper bounds: `-inf` and `inf` are none.
-    Bounds,
-}
+/// The values that a file may hold, and the same in words.
+pub type Allowed = (fn(f64) -> bool, &'static str);
 
-/// Permission for an error to quote the content of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quotes {
-    Allowed,
-    /// A link leads out of the folder, perhaps to a file that the reader of the error may not see.
-    Withheld,
-}
+/// Finite numbers.
+pub const FINITE: Allowed = (f64::is_finite, "finite");
 
-/// Parses an open file; errors name its path.
-pub(super) fn parse(file: &Path, text: Capped, values: AllowedValues, quotes: Quotes) -> Result<Content, Error> {
-    let source = TextSource { file, length: text.length, values, quotes };
-    let mut lines = TextLines::of(file, text);
-    let header = match lines.next()? {
-        Some((_, first)) => source.header(first)?,
-        None => return Err(source.fault(1, "the file is empty")),
-    };
-    let Some((line, sizes)) = lines.next_data()? else {
-        return Err(source.fault(1, "the line with the sizes is missing"));
-    };
-    let (rows, columns, announced) = source.sizes(&header, line, sizes)?;
-    let symmetric = header.symmetric;
-    let content = Content { line, rows, columns, symmetric, entries: Vec::new() };
-    match header.is_array {
-        true => source.array(content, &mut lines),
-        false => source.coordinates(content, announced, &mut lines),
+/// Gaps: `inf` is a row without obstacle.
+pub const GAPS: Allowed = (|gap| gap > f64::NEG_INFINITY, "finite, or inf for a row without obstacle");
+
+/// Lower and upper bounds: `-inf` and `inf` are none.
+pub const BOUNDS: Allowed = (|bound| !bound.is_nan(), "a number, or -inf or inf without a bound");
+
+impl Content {
+    /// Reads a file with these values; errors name its path.
+    pub fn read(file: &Path, allowed: Allowed) -> Result<Self, Error> {
+        let text = open_capped(file, MOST_OF_MATRIX)?;
+        let (length, may_quote) = (text.length, is_inside(file));
+        let reader = BufReader::with_capacity(PIECE, text);
+        let mut lines = TextLines { file, may_quote, reader, number: 0, bytes: Vec::new(), text: String::new() };
+        if !lines.advance()? {
+            return Err(lines.fault_at(1, "the file is empty"));
+        }
+        let (is_array, symmetric) = lines.header()?;
+        if !lines.advance_to_data()? {
+            return Err(lines.fault_at(1, "the line with the sizes is missing"));
+        }
+        let (rows, columns, announced) = lines.sizes(is_array, symmetric)?;
+        let mut content = Content { line: lines.number, rows, columns, symmetric, entries: Vec::new() };
+        // Room for the announced entries, as far as the length of the file makes their number credible: without it, a
+        // growing vector would take twice the memory for a while. Without reserved room, entries are taken one by one.
+        let _ = content.entries.try_reserve_exact(announced.min((length / LEAST_OF_ENTRY) as usize));
+        match is_array {
+            true => lines.array(&mut content, allowed)?,
+            false => lines.coordinates(&mut content, announced, allowed)?,
+        }
+        Ok(content)
+    }
+
+    /// Refuses a number of rows or columns (`lines`) that is not credible for the entries of the file.
+    pub fn check_filled(&self, file: &Path, lines: usize) -> Result<(), Error> {
+        let (rows, columns, entries) = (self.rows, self.columns, self.entries.len());
+        if lines <= entries.saturating_add(MOST_EMPTY) {
+            return Ok(());
+        }
+        let message =
+            format!("a matrix of {rows} x {columns} with {entries} entries is almost empty; correct its size");
+        Err(Error::FileSyntax { file: file.to_path_buf(), line: self.line, message })
+    }
+
+    /// The columns of an array.
+    pub fn columns(&self) -> Vec<Vec<f64>> {
+        let mut columns = vec![vec![0.0; self.rows]; self.columns];
+        self.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);
+        columns
     }
 }
 
-/// A file and its permitted content.
-struct TextSource<'a> {
+/// Returns `false` if the file is a link out of its folder, perhaps to one that the reader of an error may not see.
+fn is_inside(file: &Path) -> bool {
+    let folder = match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    matches!((file.canonicalize(), folder.canonicalize()), (Ok(file), Ok(folder)) if file.starts_with(&folder))
+}
+
+/// The lines of a file, one at a time.
+struct TextLines<'a> {
     file: &'a Path,
-    /// Bytes of the file, if known.
-    length: u64,
-    values: AllowedValues,
-    quotes: Quotes,
+    /// Permission for an error to quote the content of the file.
+    may_quote: bool,
+    reader: BufReader<Capped>,
+    /// Number of the present line, from 1.
+    number: usize,
+    bytes: Vec<u8>,
+    /// The present line without blanks at its ends.
+    text: String,
 }
 
-/// The content of the first line.
-struct Header {
-    is_array: bool,
-    symmetric: bool,
-}
-
-impl TextSource<'_> {
-    fn fault(&self, line: usize, message: impl Into<String>) -> Error {
+impl TextLines<'_> {
+    fn fault_at(&self, line: usize, message: impl Into<String>) -> Error {
         Error::FileSyntax { file: self.file.to_path_buf(), line, message: message.into() }
     }
 
-    fn header(&self, first: &str) -> Result<Header, Error> {
-        let words: Vec<String> = first.split_whitespace().map(str::to_lowercase).collect();
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
-            let expected = "%%MatrixMarket matrix coordinate|array real|integer general|symmetric";
-            let message = format!("the first line is {}; it must be `{expected}`", self.quotes.excerpt(first));
-            return Err(self.fault(1, message));
-        };
-        let wrong = |what: &str, found: &str, allowed: &str| {
-            self.fault(1, format!("the {what} is {}; it must be {allowed}", self.quotes.excerpt(found)))
-        };
-        let is_array = match layout {
-            "coordinate" => false,
-            "array" => true,
-            other => return Err(wrong("layout", other, "`coordinate` or `array`")),
-        };
-        if !["real", "integer", "double"].contains(&field) {
-            return Err(wrong("field", field, "`real` or `integer`"));
-        }
-        match symmetry {
-            "general" => Ok(Header { is_array, symmetric: false }),
-            "symmetric" => Ok(Header { is_array, symmetric: true }),
-            other => Err(wrong("symmetry", other, "`general` or `symmetric`")),
+    /// The error of the present line.
+    fn fault(&self, message: impl Into<String>) -> Error {
+        self.fault_at(self.number, message)
+    }
+
+    /// The beginning of a text from the file, in quotation marks.
+    fn excerpt(&self, words: &str) -> String {
+        match words.char_indices().nth(LONGEST_EXCERPT) {
+            _ if !self.may_quote => {
+                "something that is not shown (a link leads to a file outside the folder)".to_string()
+            }
+            Some((end, _)) => format!("`{}...`", &words[..end]),
+            None => format!("`{words}`"),
         }
     }
 
-    /// Rows, columns and, in a file of coordinates, the number of entries announced.
-    fn sizes(&self, header: &Header, line: usize, sizes: &str) -> Result<(usize, usize, usize), Error> {
-        let numbers: Option<Vec<usize>> = sizes.split_whitespace().map(|word| word.parse().ok()).collect();
-        let (rows, columns, announced) = match (numbers.as_deref(), header.is_array) {
-            (Some(&[rows, columns]), true) => (rows, columns, 0),
+    /// The content of the first line: whether the file is an array, and whether it is symmetric.
+    fn header(&self) -> Result<(bool, bool), Error> {
+        let words: Vec<String> = self.text.split_whitespace().map(str::to_lowercase).collect();
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
+            let expected = "%%MatrixMarket matrix coordinate|array real|integer general|symmetric";
+            let found = self.excerpt(&self.text);
+            return Err(self.fault(format!("the first line is {found}; it must be `{expected}`")));
+        };
+        let one_of = |what: &str, found: &str, allowed: [&str; 2]| match allowed.iter().position(|word| *word == found)
+        {
+            Some(place) => Ok(place == 1),
+            None => {
+                let [one, other] = allowed;
+                let found = self.excerpt(found);
+                Err(self.fault(format!("the {what} is {found}; it must be `{one}` or `{other}`")))
+            }
+        };
+        let is_array = one_of("layout", layout, ["coordinate", "array"])?;
+        one_of("field", if field == "double" { "real" } else { field }, ["real", "integer"])?;
+        Ok((is_array, one_of("symmetry", symmetry, ["general", "symmetric"])?))
+    }
+
+    /// Rows, columns and the number of entries, which a file of coordinates announces.
+    fn sizes(&self, is_array: bool, symmetric: bool) -> Result<(usize, usize, usize), Error> {
+        let numbers: Option<Vec<usize>> = self.text.split_whitespace().map(|word| word.parse().ok()).collect();
+        let (rows, columns, announced) = match (numbers.as_deref(), is_array) {
+            (Some(&[rows, columns]), true) => (rows, columns, rows.saturating_mul(columns)),
             (Some(&[rows, columns, announced]), false) => (rows, columns, announced),
             (_, is_array) => {
-                let names = if is_array { "2 whole numbers (rows and columns)" } else { COORDINATE_SIZES };
-                let message = format!("the sizes are {}; they must be {names}", self.quotes.excerpt(sizes));
-                return Err(self.fault(line, message));
+                let (count, names) = if is_array { (2, "rows and columns") } else { (3, "rows, columns and entries") };
+                let found = self.excerpt(&self.text);
+                return Err(self.fault(format!("the sizes are {found}; they must be {count} whole numbers ({names})")));
             }
         };
         if rows.max(columns) > LARGEST_DIMENSION {
             let message = format!("{rows} x {columns} is too large; at most {LARGEST_DIMENSION} each way");
-            return Err(self.fault(line, message));
+            return Err(self.fault(message));
         }
-        if header.symmetric && rows != columns {
-            let message = format!("a symmetric matrix must be square, not {rows} x {columns}");
-            return Err(self.fault(line, message));
+        if symmetric && rows != columns {
+            return Err(self.fault(format!("a symmetric matrix must be square, not {rows} x {columns}")));
         }
         Ok((rows, columns, announced))
     }
 
     /// One value a line, column by column.
-    fn array(&self, mut content: Content, lines: &mut TextLines) -> Result<Content, Error> {
-        let Content { rows, columns, symmetric, .. } = content;
-        self.make_room(&mut content, rows.saturating_mul(columns));
+    fn array(&mut self, content: &mut Content, allowed: Allowed) -> Result<(), Error> {
+        let Content { rows, columns, symmetric, .. } = *content;
         let mut places =
             (0..columns).flat_map(|column| (if symmetric { column } else { 0 }..rows).map(move |row| (row, column)));
-        while let Some((line, word)) = lines.next_data()? {
-            let not_a_number = |_| self.fault(line, format!("{} is not a number", self.quotes.excerpt(word)));
-            let value = word.parse().map_err(not_a_number)?;
-            self.values.check(value).map_err(|message| self.fault(line, message))?;
+        while self.advance_to_data()? {
+            let not_a_number = |_| self.fault(format!("{} is not a number", self.excerpt(&self.text)));
+            let value = self.checked(self.text.parse().map_err(not_a_number)?, allowed)?;
             let Some((row, column)) = places.next() else {
-                return Err(self.fault(line, format!("there are more values than the {rows} x {columns} announced")));
+                return Err(self.fault(format!("there are more values than the {rows} x {columns} announced")));
             };
             content.entries.push((row, column, value));
         }
-        match places.next() {
-            Some((row, column)) => {
-                let message = format!("the file ends before the value of ({}, {})", row + 1, column + 1);
-                Err(self.fault(lines.number(), message))
-            }
-            None => Ok(content),
-        }
+        let Some((row, column)) = places.next() else { return Ok(()) };
+        Err(self.fault(format!("the file ends before the value of ({}, {})", row + 1, column + 1)))
     }
 
     /// One entry a line: row, column, value.
-    fn coordinates(&self, mut content: Content, announced: usize, lines: &mut TextLines) -> Result<Content, Error> {
-        self.make_room(&mut content, announced);
-        while let Some((line, words)) = lines.next_data()? {
-            let entry = self.entry(&content, words).map_err(|message| self.fault(line, message))?;
+    fn coordinates(&mut self, content: &mut Content, announced: usize, allowed: Allowed) -> Result<(), Error> {
+        while self.advance_to_data()? {
+            let (row, column, value) = self.entry(content)?;
             if content.entries.len() == announced {
-                return Err(self.fault(line, format!("there are more entries than the {announced} announced")));
+                return Err(self.fault(format!("there are more entries than the {announced} announced")));
             }
-            self.values.check(entry.2).map_err(|message| self.fault(line, message))?;
-            content.entries.push(entry);
+            content.entries.push((row, column, self.checked(value, allowed)?));
         }
         let found = content.entries.len();
         if found < announced {
-            let message = format!("the file ends after {found} of {announced} entries");
-            return Err(self.fault(lines.number(), message));
+            return Err(self.fault(format!("the file ends after {found} of {announced} entries")));
         }
-        Ok(content)
+        Ok(())
     }
 
-    /// Reserves room for the announced entries, as far as the length of the file makes their number credible: without
-    /// it, a growing vector would take twice the memory for a while.
-    fn make_room(&self, content: &mut Content, announced: usize) {
-        let credible = (self.length / LEAST_OF_ENTRY) as usize;
-        // Without reserved room, entries are taken one by one.
-        let _ = content.entries.try_reserve_exact(announced.min(credible));
+    fn checked(&self, value: f64, (is_allowed, words): Allowed) -> Result<f64, Error> {
+        let refused = || self.fault(format!("the value is {value}; it must be {words}"));
+        is_allowed(value).then_some(value).ok_or_else(refused)
     }
 
-    /// The entry of a line, indices from 0, or its error.
-    fn entry(&self, content: &Content, line: &str) -> Result<(usize, usize, f64), String> {
+    /// The entry of the present line, indices from 0.
+    fn entry(&self, content: &Content) -> Result<(usize, usize, f64), Error> {
         let Content { rows, columns, symmetric, .. } = *content;
-        let mut words = line.split_whitespace();
+        let mut words = self.text.split_whitespace();
         let mut word = || words.next();
         let entry = match (word(), word(), word(), word()) {
             (Some(row), Some(column), Some(value), None) => {
@@ -210,88 +237,36 @@ impl TextSource<'_> {
             _ => None,
         };
         let Some(((row, column), value)): Option<((usize, usize), f64)> = entry else {
-            return Err(format!("{} is not an entry; it must be `row column value`", self.quotes.excerpt(line)));
+            let found = self.excerpt(&self.text);
+            return Err(self.fault(format!("{found} is not an entry; it must be `row column value`")));
         };
         if row == 0 || column == 0 || row > rows || column > columns {
-            return Err(format!("entry ({row}, {column}) lies outside {rows} x {columns} (indices from 1)"));
+            let message = format!("entry ({row}, {column}) lies outside {rows} x {columns} (indices from 1)");
+            return Err(self.fault(message));
         }
         if symmetric && row < column {
             let rule = "a symmetric file holds the lower triangle";
-            return Err(format!("entry ({row}, {column}) lies above the diagonal; {rule}"));
+            return Err(self.fault(format!("entry ({row}, {column}) lies above the diagonal; {rule}")));
         }
         Ok((row - 1, column - 1, value))
     }
-}
 
-impl AllowedValues {
-    fn check(self, value: f64) -> Result<(), String> {
-        match self {
-            _ if value.is_finite() => Ok(()),
-            AllowedValues::FiniteOrInfinite if value == f64::INFINITY => Ok(()),
-            AllowedValues::Bounds if !value.is_nan() => Ok(()),
-            AllowedValues::Bounds => {
-                Err(format!("the value is {value}; it must be a number, or -inf or inf without a bound"))
-            }
-            AllowedValues::Finite => Err(format!("the value is {value}; it must be finite")),
-            AllowedValues::FiniteOrInfinite => {
-                Err(format!("the value is {value}; it must be finite, or inf for a row without obstacle"))
+    /// Reads the next line that is neither blank nor a comment; `false` at the end of the file.
+    fn advance_to_data(&mut self) -> Result<bool, Error> {
+        while self.advance()? {
+            if !self.text.is_empty() && !self.text.starts_with('%') {
+                return Ok(true);
             }
         }
-    }
-}
-
-impl Quotes {
-    /// The beginning of a text from a file, in quotation marks.
-    fn excerpt(self, words: &str) -> String {
-        match (self, words.char_indices().nth(LONGEST_EXCERPT)) {
-            (Quotes::Withheld, _) => {
-                "something that is not shown (a link leads to a file outside the folder)".to_string()
-            }
-            (Quotes::Allowed, Some((end, _))) => format!("`{}...`", &words[..end]),
-            (Quotes::Allowed, None) => format!("`{words}`"),
-        }
-    }
-}
-
-/// The lines of a file, one at a time.
-struct TextLines {
-    file: PathBuf,
-    reader: BufReader<Capped>,
-    number: usize,
-    bytes: Vec<u8>,
-    text: String,
-}
-
-impl TextLines {
-    /// Before the first line.
-    fn of(file: &Path, text: Capped) -> Self {
-        let reader = BufReader::with_capacity(PIECE, text);
-        TextLines { file: file.to_path_buf(), reader, number: 0, bytes: Vec::new(), text: String::new() }
+        Ok(false)
     }
 
-    fn number(&self) -> usize {
-        self.number
-    }
-
-    /// The next line, with its number from 1 and without blanks at its ends.
-    fn next(&mut self) -> Result<Option<(usize, &str)>, Error> {
-        let there = self.advance().map_err(|source| Error::File { action: "read", path: self.file.clone(), source })?;
-        Ok(there.then(|| (self.number, self.text.trim())))
-    }
-
-    /// The next line that is neither blank nor a comment.
-    fn next_data(&mut self) -> Result<Option<(usize, &str)>, Error> {
-        loop {
-            match self.next()? {
-                None => return Ok(None),
-                Some((_, line)) if line.is_empty() || line.starts_with('%') => {}
-                Some(_) => return Ok(Some((self.number, self.text.trim()))),
-            }
-        }
+    fn advance(&mut self) -> Result<bool, Error> {
+        self.read_line().map_err(unread(self.file))
     }
 
     /// Reads a line; `false` at the end of the file.
-    fn advance(&mut self) -> io::Result<bool> {
+    fn read_line(&mut self) -> io::Result<bool> {
         self.bytes.clear();
         self.reader.by_ref().take(LONGEST as u64).read_until(b'\n', &mut self.bytes)?;
         if self.bytes.is_empty() {
@@ -306,7 +281,7 @@ impl TextLines {
         // Some editors put a byte order mark in front.
         let mark = if self.number == 1 { "\u{feff}" } else { "" };
         self.text.clear();
-        self.text.push_str(text.strip_prefix(mark).unwrap_or(&text));
+        self.text.push_str(text.strip_prefix(mark).unwrap_or(&text).trim());
         Ok(true)
     }
 }

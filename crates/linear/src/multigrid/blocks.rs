@@ -167,22 +167,36 @@ impl<T: Real> BlockMatrix<T> {
         BlockMatrix { height, width, columns, starts, indices, values, shared_rows, shifts, is_half: false }
     }
 
+    /// The matrix of these rows, each with its block columns, increasing, and the values of its blocks.
+    pub fn of_rows<R, B>(columns: usize, size: (usize, usize), rows: impl Iterator<Item = R>) -> Self
+    where
+        R: IntoIterator<Item = (usize, B)>,
+        B: IntoIterator<Item = T>,
+    {
+        let mut matrix = Self::empty(0, columns, size);
+        for row in rows {
+            for (column, block) in row {
+                matrix.indices.push(column as u32);
+                matrix.values.extend(block);
+            }
+            matrix.starts.push(matrix.indices.len());
+        }
+        matrix
+    }
+
     /// The same matrix with each row stored by itself.
     pub fn unshared(&self) -> Self {
         let mut whole = Self::empty(0, self.columns, (self.height, self.width));
         whole.indices.reserve_exact(self.starts[self.rows()]);
-        whole.values.reserve_exact(self.starts[self.rows()] * self.block_size());
+        let size = self.block_size();
+        whole.values.reserve_exact(self.starts[self.rows()] * size);
         for row in 0..self.rows() {
             whole.indices.extend(self.columns_of(row));
-            whole.values.extend_from_slice(&self.values[self.block_range(self.places(row).0)]);
+            let places = self.places(row).0;
+            whole.values.extend_from_slice(&self.values[places.start * size..places.end * size]);
         }
         whole.starts.clone_from(&self.starts);
         whole
-    }
-
-    /// Where the values of some blocks lie.
-    fn block_range(&self, places: Range<usize>) -> Range<usize> {
-        places.start * self.block_size()..places.end * self.block_size()
     }
 
     /// Adds a row of `A x` to `sums`.
@@ -274,15 +288,12 @@ impl<T: Real> BlockMatrix<T> {
     }
 
     fn filtered(&self, is_kept: impl Fn(usize, usize, &[T]) -> bool) -> Self {
-        let mut kept = Self::empty(0, self.columns, (self.height, self.width));
-        for row in 0..self.rows() {
-            for (column, block) in self.row(row).filter(|&(column, block)| is_kept(row, column, block)) {
-                kept.indices.push(column as u32);
-                kept.values.extend_from_slice(block);
-            }
-            kept.starts.push(kept.indices.len());
-        }
-        kept
+        let is_kept = &is_kept;
+        let rows = (0..self.rows()).map(|row| {
+            let blocks = self.row(row).filter(move |&(column, block)| is_kept(row, column, block));
+            blocks.map(|(column, block)| (column, block.iter().copied()))
+        });
+        Self::of_rows(self.columns, (self.height, self.width), rows)
     }
 
     pub fn transposed(&self) -> Self {

@@ -13,6 +13,9 @@ use crate::Spare;
 use crate::power_iteration::power_iteration;
 use crate::real::Real;
 
+/// Degree of the polynomial, before and after the coarse correction.
+const DEGREE: usize = 3;
+
 /// Products that estimate the largest eigenvalue of D^-1 A.
 const POWER_STEPS: usize = 12;
 
@@ -39,26 +42,12 @@ pub struct Chebyshev<T> {
 }
 
 impl<T: Real> Chebyshev<T> {
-    /// The smoother of `matrix` by its diagonal blocks.
-    pub fn new(matrix: &BlockMatrix<T>, degree: usize, threads: usize) -> Self {
-        Self::with(matrix, inverse_diagonal(matrix), None, degree, threads)
-    }
-
-    /// The smoother of `matrix` whose D^-1 is the sum of the inverses on `patches`.
-    pub fn on_patches(matrix: &BlockMatrix<T>, patches: Patches, degree: usize, threads: usize) -> Self {
-        let inverse = patches.inverse(matrix, None, threads);
-        Self::with(matrix, inverse, Some(Arc::new(patches)), degree, threads)
-    }
-
-    fn with(
-        matrix: &BlockMatrix<T>,
-        inverse: BlockMatrix<T>,
-        patches: Option<Arc<Patches>>,
-        degree: usize,
-        threads: usize,
-    ) -> Self {
-        let mut smoother = Chebyshev { degree, inverse, patches, largest: 1.0 };
-        smoother.largest = SAFETY * smoother.largest_eigenvalue(&Operator::whole(matrix, threads, &Spare::default()));
+    /// The smoother of `matrix` by its diagonal blocks, or by the sum of the inverses on `patches`.
+    pub fn new(matrix: &BlockMatrix<T>, patches: Option<Patches>, threads: usize) -> Self {
+        let of_patches = patches.as_ref().map(|patches| patches.inverse(matrix, None, threads));
+        let inverse = of_patches.unwrap_or_else(|| inverse_diagonal(matrix));
+        let mut smoother = Chebyshev { degree: DEGREE, inverse, patches: patches.map(Arc::new), largest: 1.0 };
+        smoother.largest = SAFETY * smoother.largest_eigenvalue(matrix, threads);
         smoother
     }
 
@@ -86,13 +75,6 @@ impl<T: Real> Chebyshev<T> {
     pub fn weights(&self, k: usize) -> (f64, f64) {
         let k = k as f64;
         ((2.0 * k - 3.0) / (2.0 * k + 1.0), (8.0 * k - 4.0) / (2.0 * k + 1.0) / self.largest)
-    }
-
-    /// `D^-1 r`, in the face.
-    fn precondition(&self, operator: &Operator<T>, r: &[T], result: &mut [T]) {
-        result.fill(T::default());
-        self.inverse.add_product(1.0, r, result, operator.threads);
-        operator.project(result);
     }
 
     /// The same smoother for the matrix minus `change`; blocks and patches in which `change` has no diagonal block are
@@ -131,26 +113,24 @@ impl<T: Real> Chebyshev<T> {
     /// The same smoother with the largest eigenvalue measured where `change` has changed the matrix, if that is larger.
     pub fn measured(mut self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>, threads: usize) -> Self {
         let near = matrix.with_rows(change.filled_rows()).within(change).plus(-1.0, change);
-        self.largest =
-            self.largest.max(SAFETY * self.largest_eigenvalue(&Operator::whole(&near, threads, &Spare::default())));
+        self.largest = self.largest.max(SAFETY * self.largest_eigenvalue(&near, threads));
         self
     }
 
-    fn largest_eigenvalue(&self, operator: &Operator<T>) -> f64 {
-        let product = |x: &[T], y: &[T]| x.iter().zip(y).map(|(x, y)| x.double() * y.double()).sum::<f64>();
-        let mut moved = vec![T::default(); operator.dim()];
+    fn largest_eigenvalue(&self, matrix: &BlockMatrix<T>, threads: usize) -> f64 {
+        let spare = Spare::default();
+        let operator = Operator::whole(matrix, threads, &spare);
         let mut estimate = 1.0;
-        power_iteration(operator.dim(), -0.5, POWER_STEPS, |x| {
-            operator.mul_into(x, &mut moved);
-            let energy = product(x, &moved);
-            self.precondition(operator, &moved, x);
-            let dual = product(x, &moved);
-            if energy.is_nan() || energy <= 0.0 || !dual.is_finite() {
-                return false;
-            }
-            // The Rayleigh quotient of D^-1 A in the energy product, in which it is symmetric.
-            estimate = dual / energy;
-            true
+        power_iteration(operator.dim(), -0.5, POWER_STEPS, |x: &mut Vec<T>| {
+            let found = operator.quotient(x, |force| {
+                let mut moved = spare.zeros(force.len());
+                self.inverse.add_product(1.0, force, &mut moved, threads);
+                moved
+            });
+            found.is_some_and(|found| {
+                (estimate, *x) = found;
+                true
+            })
         });
         estimate
     }

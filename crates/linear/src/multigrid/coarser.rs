@@ -3,11 +3,11 @@
 //! The weights of the bounds and the share of closed parents were chosen by measurement on obstacle problems:
 //! unweighted means cost a few cycles more, and every share from 0.5 to 0.99 works.
 
-use super::coarsest::{is_not_zero, lower_part};
+use super::coarsest::lower_part;
 use super::hierarchy::{Hierarchy, Level};
 use super::{Levels, Multigrid};
 use crate::real::Real;
-use crate::{Spare, SymmetricMatrix, ldexp};
+use crate::{Spare, SparseMatrix, SymmetricMatrix, ldexp};
 
 /// An unknown starts at its bound if more than this share of the unknowns that it is interpolated from is at their
 /// bounds.
@@ -27,10 +27,8 @@ pub struct Coarser {
     place: Vec<u32>,
     /// The exponent of the load: the matrix of the hierarchy is `2^shift` times that of the problem.
     shift: i32,
-    /// P by its rows, in double precision.
-    starts: Vec<usize>,
-    columns: Vec<u32>,
-    values: Vec<f64>,
+    /// P by its rows, each a column, in double precision.
+    by_row: SparseMatrix,
     /// The near-null vector that P carries.
     near_null: Vec<f64>,
 }
@@ -53,16 +51,15 @@ fn coarser_of<T: Real>(hierarchy: &Hierarchy<T>, levels: fn(Hierarchy<T>) -> Lev
         return None;
     }
     let matrix = below.levels.first().map_or(&*below.coarsest_matrix, |level| &level.matrix);
-    let matrix = lower_part(matrix, is_not_zero);
+    let matrix = lower_part(matrix, false);
     let prolongator = first.prolongator.unshared();
+    let values = prolongator.values.iter().map(|value| value.double()).collect();
     Some(Coarser {
         matrix: matrix.clone(),
         multigrid: Multigrid { matrix, levels: levels(below), work: Spare::default() },
         place: hierarchy.nodes.place.clone(),
         shift: hierarchy.shift,
-        values: prolongator.values.iter().map(|value| value.double()).collect(),
-        starts: prolongator.starts,
-        columns: prolongator.indices,
+        by_row: SparseMatrix::from_parts(prolongator.columns, prolongator.starts, prolongator.indices, values),
         near_null: first.near_null.values.clone(),
     })
 }
@@ -73,7 +70,7 @@ impl Coarser {
         let mut coarse = vec![0.0; self.near_null.len()];
         for (&place, &value) in self.place.iter().zip(load) {
             let value = ldexp(value, self.shift);
-            self.row(place).for_each(|(column, weight)| coarse[column] += weight * value);
+            self.by_row.column(place as usize).for_each(|(column, weight)| coarse[column] += weight * value);
         }
         coarse
     }
@@ -84,8 +81,9 @@ impl Coarser {
         let count = self.near_null.len();
         let (mut sums, mut bounded, mut all) = (vec![[0.0; 2]; count], vec![[0.0; 2]; count], vec![0.0; count]);
         for (&place, interval) in self.place.iter().zip(bounds) {
-            let carried: f64 = self.row(place).map(|(column, weight)| weight * self.near_null[column]).sum();
-            for (column, weight) in self.row(place) {
+            let carried: f64 =
+                self.by_row.column(place as usize).map(|(column, weight)| weight * self.near_null[column]).sum();
+            for (column, weight) in self.by_row.column(place as usize) {
                 let weight = weight.powi(4);
                 all[column] += weight;
                 for side in 0..2 {
@@ -114,7 +112,7 @@ impl Coarser {
     pub fn interpolated(&self, coarse: &[f64], coarse_bounds: &[Interval], bounds: &[Interval]) -> Vec<f64> {
         let value_of = |(&place, &[lower, upper]): (&u32, &Interval)| {
             let (mut value, mut all, mut at) = (0.0, 0.0, [0.0; 2]);
-            for (column, weight) in self.row(place) {
+            for (column, weight) in self.by_row.column(place as usize) {
                 value += weight * coarse[column];
                 all += weight.abs();
                 for (at, &bound) in at.iter_mut().zip(&coarse_bounds[column]) {
@@ -128,11 +126,5 @@ impl Coarser {
             }
         };
         self.place.iter().zip(bounds).map(value_of).collect()
-    }
-
-    /// The entries of P in the row of a place.
-    fn row(&self, place: u32) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let range = self.starts[place as usize]..self.starts[place as usize + 1];
-        self.columns[range.clone()].iter().map(|&column| column as usize).zip(self.values[range].iter().copied())
     }
 }

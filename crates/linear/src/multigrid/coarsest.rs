@@ -25,27 +25,25 @@ pub(super) struct Coarsest {
 }
 
 impl Coarsest {
-    /// Factorises a coarsest matrix from the entries that are `kept`, as in [`lower_part`]: all of them, if a face will
-    /// change them. One that is singular to the precision of its entries is held by a shift.
-    pub fn of<T: Real>(blocks: &BlockMatrix<T>, kept: fn(f64) -> bool) -> Result<Self, FactorError> {
-        let matrix = lower_part(blocks, kept);
+    /// Factorises a coarsest matrix, with its zeros if a face will change them. One that is singular to the precision of
+    /// its entries is held by a shift.
+    pub fn of<T: Real>(blocks: &BlockMatrix<T>, with_zeros: bool) -> Result<Self, FactorError> {
+        let matrix = lower_part(blocks, with_zeros);
         let analysis = Analysis::of(&matrix)?;
         Self::factorised::<T>(&matrix, analysis)
     }
 
     fn factorised<T: Real>(matrix: &SymmetricMatrix, analysis: Analysis) -> Result<Self, FactorError> {
         let equilibration = Equilibration::of(matrix);
-        match analysis.factor_equilibrated(matrix, &equilibration) {
-            Ok(cholesky) if cholesky.smallest_pivot() > LEAST_PIVOT * T::EPSILON => {
-                Ok(Coarsest { analysis, cholesky, equilibration, is_shifted: false })
-            }
+        let (cholesky, is_shifted) = match analysis.factor_equilibrated(matrix, &equilibration) {
+            Ok(cholesky) if cholesky.smallest_pivot() > LEAST_PIVOT * T::EPSILON => (cholesky, false),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => {
                 let shifted = equilibration.apply(matrix).shifted_factor(SHIFT)?;
-                let cholesky = shifted.ok_or(FactorError::NotPositiveDefinite)?;
-                Ok(Coarsest { analysis, cholesky, equilibration, is_shifted: true })
+                (shifted.ok_or(FactorError::NotPositiveDefinite)?, true)
             }
-            Err(error) => Err(error),
-        }
+            Err(error) => return Err(error),
+        };
+        Ok(Coarsest { analysis, cholesky, equilibration, is_shifted })
     }
 
     /// Factorises the coarsest `matrix`, of which this is the factor, minus `change`, the reduction by a face. Unknowns
@@ -72,8 +70,8 @@ impl Coarsest {
         }
         // Without the unknowns that are gone, another order has less fill.
         match rest.indices.len() == matrix.indices.len() && !is_gone.contains(&true) {
-            true => Self::factorised::<T>(&lower_part(&rest, |_| true), self.analysis.clone()),
-            false => Self::of(&rest, is_not_zero),
+            true => Self::factorised::<T>(&lower_part(&rest, true), self.analysis.clone()),
+            false => Self::of(&rest, false),
         }
     }
 
@@ -89,13 +87,8 @@ impl Coarsest {
     }
 }
 
-/// For a matrix whose entries will not be others.
-pub(super) fn is_not_zero(value: f64) -> bool {
-    value != 0.0
-}
-
-/// The matrix of the blocks, one unknown after another: its diagonal, and the entries that are `kept`.
-pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>, kept: fn(f64) -> bool) -> SymmetricMatrix {
+/// The matrix of the blocks, one unknown after another; zeros beside the diagonal may be left out.
+pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>, with_zeros: bool) -> SymmetricMatrix {
     let size = blocks.height;
     let dim = blocks.rows() * size;
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -107,7 +100,7 @@ pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>, kept: fn(f64) -> bool
                 for i in 0..size {
                     let row = other * size + i;
                     let value = block[j * size + i].double();
-                    if row >= column && (row == column || kept(value)) {
+                    if row >= column && (row == column || with_zeros || value != 0.0) {
                         rows.push(row as u32);
                         values.push(value);
                     }

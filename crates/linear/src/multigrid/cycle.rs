@@ -61,7 +61,7 @@ impl<T: Real> Hierarchy<T> {
             threads: self.threads,
             spare: &self.spare,
         };
-        let smoother = face.and_then(|face| face.smoother(depth)).unwrap_or(&level.smoother);
+        let smoother = face.and_then(|face| face.smoothers.get(depth)?.as_ref()).unwrap_or(&level.smoother);
         let mut x = self.spare.zeros(rest.len());
         let step = smoother.smooth(&operator, &mut x, &mut rest);
         operator.add_product(-1.0, &step, &mut rest);
@@ -96,19 +96,14 @@ impl<T: Real> Hierarchy<T> {
     fn share_taken(&self, cycles: usize) -> f64 {
         let Some(level) = self.levels.first() else { return 1.0 };
         let operator = Operator::whole(&level.matrix, self.threads, &self.spare);
-        let product = |x: &[T], y: &[T]| x.iter().zip(y).map(|(x, y)| x.double() * y.double()).sum::<f64>();
-        let mut force = vec![T::default(); operator.dim()];
         let mut share = 1.0;
         power_iteration(operator.dim(), -0.5, cycles, |error| {
-            operator.mul_into(error, &mut force);
-            let taken = self.descend(0, self.spare.copy(&force), None);
-            let (energy, of_taken) = (product(error, &force), product(&taken, &force));
-            if energy.is_nan() || energy <= 0.0 || !of_taken.is_finite() {
-                return false;
-            }
-            share = of_taken / energy;
-            error.iter_mut().zip(&taken).for_each(|(error, &taken)| *error -= taken);
-            true
+            let found = operator.quotient(error, |force| self.descend(0, self.spare.copy(force), None));
+            found.is_some_and(|(of_taken, taken)| {
+                share = of_taken;
+                error.iter_mut().zip(&taken).for_each(|(error, &taken)| *error -= taken);
+                true
+            })
         });
         share
     }

@@ -71,12 +71,15 @@ impl Preconditioned<'_> {
         watch: &Watch,
     ) -> Option<Vec<DualNorm>> {
         let blocks = Blocks { of_unknown, count };
-        let mut largest = vec![0.0_f64; blocks.count];
-        force.iter().enumerate().for_each(|(i, value)| {
-            let largest = &mut largest[blocks.of(i)];
-            *largest = largest.max(value.abs());
-        });
-        let units: Vec<i32> = largest.iter().map(|&largest| -exponent(largest)).collect();
+        let largest = |values: &[f64]| {
+            let mut largest = vec![0.0_f64; blocks.count];
+            values.iter().enumerate().for_each(|(i, value)| {
+                let largest = &mut largest[blocks.of(i)];
+                *largest = largest.max(value.abs());
+            });
+            largest
+        };
+        let units: Vec<i32> = largest(force).into_iter().map(|largest| -exponent(largest)).collect();
         let force: Vec<f64> = force.iter().enumerate().map(|(i, &value)| ldexp(value, units[blocks.of(i)])).collect();
         let mut iterate = Iterate::new(vec![0.0; force.len()], force.clone(), blocks);
         let mut lanczos = vec![Lanczos::default(); blocks.count];
@@ -86,13 +89,11 @@ impl Preconditioned<'_> {
             }
             let both: Vec<f64> = force.iter().zip(&iterate.rest).map(|(force, rest)| force + rest).collect();
             let known = blocks.dots(&iterate.solution, &both);
-            let mut has_rest = vec![false; blocks.count];
-            let rest = iterate.rest.iter().enumerate().filter(|entry| *entry.1 != 0.0);
-            rest.for_each(|(i, _)| has_rest[blocks.of(i)] = true);
+            let rest = largest(&iterate.rest);
             let mut step = self.multigrid.cycle(&iterate.rest);
             let in_cycle = blocks.dots(&iterate.rest, &step);
             for (index, lanczos) in lanczos.iter_mut().enumerate().filter(|entry| entry.1.found.is_none()) {
-                match has_rest[index] {
+                match rest[index] > 0.0 {
                     true => lanczos.turn(known[index], in_cycle[index], cycles),
                     false => lanczos.end_without_rest(known[index], cycles - 1),
                 }

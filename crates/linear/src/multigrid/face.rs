@@ -19,7 +19,7 @@
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
-use super::coarsest::{Coarsest, is_not_zero};
+use super::coarsest::Coarsest;
 use super::held::{Held, Hold, ways};
 use super::hierarchy::{Hierarchy, Level};
 use crate::FactorError;
@@ -29,12 +29,11 @@ use crate::real::Real;
 #[derive(Debug)]
 pub struct FaceLevels<T> {
     pub held: Held<T>,
-    /// The smoother of the finest level, if a pivot gives way or if it works on patches.
-    pub finest: Option<Chebyshev<T>>,
     /// C of each level except the finest.
     pub changes: Vec<BlockMatrix<T>>,
-    /// Smoothers of each level except the finest and the coarsest.
-    pub smoothers: Vec<Chebyshev<T>>,
+    /// The smoother of each level except the coarsest; none of the finest, unless a pivot gives way or it works on
+    /// patches: the face does not change it then.
+    pub smoothers: Vec<Option<Chebyshev<T>>>,
     pub coarsest: Coarsest,
 }
 
@@ -62,23 +61,14 @@ impl<T: Real> FaceLevels<T> {
             smoother(level, &if is_kept { change } else { change.plus(-1.0, &ways(&hierarchy.nodes, holds)) })
         });
         let matrices = || hierarchy.matrices().skip(1).zip(&changes);
+        let coarser = hierarchy.levels.iter().skip(1).zip(&changes);
         let smoothers =
-            hierarchy.levels.iter().skip(1).zip(&changes).map(|(level, change)| smoother(level, change)).collect();
+            [finest].into_iter().chain(coarser.map(|(level, change)| Some(smoother(level, change)))).collect();
         let coarsest = match matrices().last() {
             Some((matrix, change)) => hierarchy.coarsest.in_face(matrix, change)?,
-            None => Coarsest::of(&held.held_matrix(&hierarchy.coarsest_matrix, &hierarchy.nodes, holds), is_not_zero)?,
+            None => Coarsest::of(&held.held_matrix(&hierarchy.coarsest_matrix, &hierarchy.nodes, holds), false)?,
         };
-        Ok(FaceLevels { held, finest, changes, smoothers, coarsest })
-    }
-}
-
-impl<T> FaceLevels<T> {
-    /// The smoother of a level, the finest first; `None` if the face does not change it.
-    pub fn smoother(&self, depth: usize) -> Option<&Chebyshev<T>> {
-        match depth.checked_sub(1) {
-            Some(place) => self.smoothers.get(place),
-            None => self.finest.as_ref(),
-        }
+        Ok(FaceLevels { held, changes, smoothers, coarsest })
     }
 }
 

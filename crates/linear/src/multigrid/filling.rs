@@ -133,22 +133,18 @@ impl Filling<'_> {
     fn rows(&self, groups: Range<usize>, next: &mut [u32], first: &[u32]) -> BlockRows {
         let (size, mut met, mut rows) = (self.size, Vec::new(), BlockRows::default());
         for group in groups.start as u32..groups.end as u32 {
-            if self.nodes(group).all(|node| first[node as usize] != node) {
-                rows.lengths.extend(self.nodes(group).map(|_| 0));
-                continue;
-            }
-            met.clear();
-            met.push(group);
-            met.extend_from_slice(self.graph.neighbours(group));
-            met.sort_unstable();
-            // Groups with dofs that do not follow each other meet from both sides.
-            met.dedup();
             for node in self.nodes(group) {
                 let before = rows.columns.len();
                 if first[node as usize] != node {
                     rows.lengths.push(0);
                     continue;
                 }
+                met.clear();
+                met.push(group);
+                met.extend_from_slice(self.graph.neighbours(group));
+                met.sort_unstable();
+                // Groups with dofs that do not follow each other meet from both sides.
+                met.dedup();
                 for &of_other in &met {
                     for other in self.nodes(of_other) {
                         let first = rows.values.len();

@@ -131,26 +131,23 @@ mod tests {
 
     /// A symmetric matrix of `count` nodes, each coupled with itself, with some around it, and with one far away.
     fn symmetric<const H: usize>(count: usize) -> BlockMatrix<f64> {
-        let mut matrix = BlockMatrix::empty(0, count, (H, H));
-        for row in 0..count {
-            let far = |row: usize| row + 7 * (count / 9) < count && row.is_multiple_of(5);
+        let far = |row: usize| row + 7 * (count / 9) < count && row.is_multiple_of(5);
+        let rows = (0..count).map(|row| {
             let mut columns: Vec<usize> = (row.saturating_sub(3)..(row + 4).min(count)).collect();
             columns.extend(far(row).then_some(row + 7 * (count / 9)));
             columns.extend(row.checked_sub(7 * (count / 9)).filter(|&other| far(other)));
             columns.sort_unstable();
             columns.dedup();
-            for column in columns {
-                let entry = |i: usize, j: usize| {
+            columns.into_iter().map(move |column| {
+                let entry = move |i: usize, j: usize| {
                     let (low, high) =
                         if (row, i) <= (column, j) { ((row, i), (column, j)) } else { ((column, j), (row, i)) };
                     ((low.0 * 31 + low.1 * 7 + high.0 * 17 + high.1) as f64).sin()
                 };
-                matrix.indices.push(column as u32);
-                matrix.values.extend((0..H * H).map(|place| entry(place / H, place % H)));
-            }
-            matrix.starts.push(matrix.indices.len());
-        }
-        matrix
+                (column, (0..H * H).map(move |place| entry(place / H, place % H)))
+            })
+        });
+        BlockMatrix::of_rows(count, (H, H), rows)
     }
 
     fn check<const H: usize>(count: usize) {
@@ -200,14 +197,12 @@ mod tests {
         let matrix = symmetric::<2>(300);
         let mut half = matrix.clone();
         half.keep_half();
-        let mut prolongator = BlockMatrix::empty(0, 40, (2, 3));
-        for row in 0..300 {
-            for column in [row / 8, row / 8 + 1] {
-                prolongator.indices.push(column as u32);
-                prolongator.values.extend((0..6).map(|place| ((row * 13 + column * 5 + place) as f64).sin()));
-            }
-            prolongator.starts.push(prolongator.indices.len());
-        }
+        let value = |row: usize, column: usize, place: usize| ((row * 13 + column * 5 + place) as f64).sin();
+        let rows = (0..300).map(|row| {
+            let columns = [row / 8, row / 8 + 1];
+            columns.map(|column| (column, (0..6).map(move |place| value(row, column, place))))
+        });
+        let prolongator = BlockMatrix::of_rows(40, (2, 3), rows);
         let expected = prolongator.transposed().product(&matrix.product(&prolongator, 1), 1);
         for stored in [&matrix, &half] {
             let found = prolongator.galerkin_product(stored, 2);

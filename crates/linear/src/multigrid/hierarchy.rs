@@ -22,9 +22,6 @@ const THRESHOLD: f64 = 0.02;
 /// If too few connections are strong to form aggregates, all connections count as strong below this threshold.
 const LEAST_THRESHOLD: f64 = 1e-3;
 
-/// Degree of the smoothing polynomial, before and after the coarse correction.
-const DEGREE: usize = 3;
-
 /// The diagonal blocks smooth too slowly beyond this largest eigenvalue of D^-1 A. At nu = 0.3 it is 3 for linear
 /// elements and for tetrahedra of ten nodes, and 5.4 for bricks of twenty; near nu = 0.5 it is 4.6 for linear elements,
 /// 5 to 6 for tetrahedra of ten nodes, and 8.5 for bricks of twenty.
@@ -86,13 +83,13 @@ fn gathered<T: Real>(blocks: &BlockMatrix<T>, count: usize, threshold: &mut f64)
 
 /// The smoother of the finest matrix: by its diagonal blocks, or on patches if these smooth it too slowly.
 fn smoother_of_finest<T: Real>(matrix: &BlockMatrix<T>, threads: usize) -> Chebyshev<T> {
-    let by_blocks = Chebyshev::new(matrix, DEGREE, threads);
+    let by_blocks = Chebyshev::new(matrix, None, threads);
     if by_blocks.largest <= SLOW {
         return by_blocks;
     }
     let patches = Patches::of(matrix, MOST_IN_PATCH);
     match patches.count() as f64 <= PATCHES * matrix.rows() as f64 {
-        true => Chebyshev::on_patches(matrix, patches, DEGREE, threads),
+        true => Chebyshev::new(matrix, Some(patches), threads),
         false => by_blocks,
     }
 }
@@ -130,7 +127,7 @@ impl<T: Real> Hierarchy<T> {
         while blocks.rows() * blocks.height > COARSEST {
             let smoother = match levels.is_empty() {
                 true => smoother_of_finest(&blocks, threads),
-                false => Chebyshev::new(&blocks, DEGREE, threads),
+                false => Chebyshev::new(&blocks, None, threads),
             };
             let lines = if smoother.has_patches() { None } else { Lines::of(&blocks) };
             let gathered = match &lines {
@@ -159,7 +156,7 @@ impl<T: Real> Hierarchy<T> {
             blocks = next;
             threshold /= 2.0;
         }
-        let coarsest = Arc::new(Coarsest::of(&blocks, |_| true)?);
+        let coarsest = Arc::new(Coarsest::of(&blocks, true)?);
         let (coarsest_matrix, spare) = (Arc::new(blocks), Spare::default());
         Ok(Hierarchy { nodes, shift, exact, levels, coarsest_matrix, coarsest, threads, spare })
     }

@@ -122,15 +122,10 @@ mod tests {
                 entries[(j + a.1) * nx + i + a.0][(j + b.1) * nx + i + b.0] += value;
             }
         }
-        let mut matrix = BlockMatrix::empty(0, nx * ny, (1, 1));
-        for row in &entries {
-            for (column, &value) in row.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-                matrix.indices.push(column as u32);
-                matrix.values.push(value);
-            }
-            matrix.starts.push(matrix.indices.len());
-        }
-        matrix
+        let row = |row: &Vec<f64>| -> Vec<(usize, [f64; 1])> {
+            row.iter().enumerate().filter(|entry| *entry.1 != 0.0).map(|(column, &value)| (column, [value])).collect()
+        };
+        BlockMatrix::of_rows(nx * ny, (1, 1), entries.iter().map(row))
     }
 
     /// GOAL: aggregates of stretched cells stay on their lines, their prolongator too, and `A T` keeps A of the

@@ -53,19 +53,22 @@ pub struct Multigrid {
     work: Spare<f64>,
 }
 
-/// The levels in the precision in which they are stored; the iteration around them is always in double precision.
+/// What is stored in single or in double precision; the iteration around the levels is always in double precision.
 #[derive(Debug)]
-enum Levels {
-    Single(Hierarchy<f32>),
-    Double(Hierarchy<f64>),
+enum ByPrecision<S, D> {
+    Single(S),
+    Double(D),
 }
 
-/// Calls a function of the levels in their precision.
+type Levels = ByPrecision<Hierarchy<f32>, Hierarchy<f64>>;
+type LevelsInFace<'a> = ByPrecision<(&'a Hierarchy<f32>, FaceLevels<f32>), (&'a Hierarchy<f64>, FaceLevels<f64>)>;
+
+/// Calls a function of what is stored, in its precision.
 macro_rules! by_precision {
-    ($levels:expr, $hierarchy:ident => $call:expr) => {
-        match &$levels {
-            Levels::Single($hierarchy) => $call,
-            Levels::Double($hierarchy) => $call,
+    ($stored:expr, $pattern:pat => $call:expr) => {
+        match &$stored {
+            ByPrecision::Single($pattern) => $call,
+            ByPrecision::Double($pattern) => $call,
         }
     };
 }
@@ -136,17 +139,16 @@ impl Multigrid {
     /// # Errors
     /// As [`Multigrid::new`].
     pub fn face(&self, holds: &[Hold], last: Option<&Face>) -> Result<Face<'_>, Error> {
-        let levels = match &self.levels {
-            Levels::Single(hierarchy) => {
-                let last = last
-                    .and_then(|face| if let LevelsInFace::Single(_, last) = &face.levels { Some(last) } else { None });
-                FaceLevels::new(hierarchy, holds, last).map(|face| LevelsInFace::Single(hierarchy, face))
+        use ByPrecision::{Double, Single};
+        let levels = match (&self.levels, last.map(|face| &face.levels)) {
+            (Single(own), Some(Single((_, last)))) => {
+                FaceLevels::new(own, holds, Some(last)).map(|face| Single((own, face)))
             }
-            Levels::Double(hierarchy) => {
-                let last = last
-                    .and_then(|face| if let LevelsInFace::Double(_, last) = &face.levels { Some(last) } else { None });
-                FaceLevels::new(hierarchy, holds, last).map(|face| LevelsInFace::Double(hierarchy, face))
+            (Single(own), _) => FaceLevels::new(own, holds, None).map(|face| Single((own, face))),
+            (Double(own), Some(Double((_, last)))) => {
+                FaceLevels::new(own, holds, Some(last)).map(|face| Double((own, face)))
             }
+            (Double(own), _) => FaceLevels::new(own, holds, None).map(|face| Double((own, face))),
         };
         Ok(Face { levels: levels.map_err(located)?, work: &self.work })
     }
@@ -199,28 +201,16 @@ pub struct Face<'a> {
     work: &'a Spare<f64>,
 }
 
-#[derive(Debug)]
-enum LevelsInFace<'a> {
-    Single(&'a Hierarchy<f32>, FaceLevels<f32>),
-    Double(&'a Hierarchy<f64>, FaceLevels<f64>),
-}
-
 impl Face<'_> {
     /// One cycle: approximately the x in the face with A x - b orthogonal to it.
     pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
-        match &self.levels {
-            LevelsInFace::Single(hierarchy, face) => hierarchy.cycle(b, Some(face), self.work),
-            LevelsInFace::Double(hierarchy, face) => hierarchy.cycle(b, Some(face), self.work),
-        }
+        by_precision!(self.levels, (hierarchy, face) => hierarchy.cycle(b, Some(face), self.work))
     }
 
     /// Returns `true` if the matrix in the face is singular to the precision of its levels, so that the coarsest one
     /// was shifted.
     pub fn is_shifted(&self) -> bool {
-        match &self.levels {
-            LevelsInFace::Single(_, face) => face.coarsest.is_shifted,
-            LevelsInFace::Double(_, face) => face.coarsest.is_shifted,
-        }
+        by_precision!(self.levels, (_, face) => face.coarsest.is_shifted)
     }
 }
 
@@ -301,7 +291,7 @@ mod tests {
     fn levels_of_a_lattice_are_made_of_its_few_rows() {
         let nodes = 90;
         let (_, few, _, _) = Nodes::of::<f32>(&lattice(nodes, |_| 1.0), 1);
-        let smoother = Chebyshev::new(&few, 3, 1);
+        let smoother = Chebyshev::new(&few, None, 1);
         // Constants, in squares of nine nodes; each dof is a node of the hierarchy.
         let values = [1.0, 0.0, 0.0, 1.0].repeat(nodes * nodes);
         let square_of = |node: usize| (node / nodes / 3 * (nodes / 3) + node % nodes / 3) as u32;

@@ -2,7 +2,7 @@
 
 use super::nodes::Nodes;
 use crate::error::Error;
-use crate::{SymmetricMatrix, check_finite, largest, norm, take_out};
+use crate::{SymmetricMatrix, check_finite, extend, largest};
 
 /// A vector follows from those before it if less than this share of its length is left after their components are
 /// removed.
@@ -127,23 +127,9 @@ fn modes(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// The first vector that follows from those before it, by modified Gram-Schmidt.
 fn first_dependent(vectors: &[Vec<f64>]) -> Option<usize> {
-    let mut orthonormal: Vec<Vec<f64>> = Vec::with_capacity(vectors.len());
-    for (index, vector) in vectors.iter().enumerate() {
+    let mut basis = Vec::with_capacity(vectors.len());
+    vectors.iter().position(|vector| {
         let size = largest(vector);
-        if size == 0.0 {
-            return Some(index);
-        }
-        let mut rest: Vec<f64> = vector.iter().map(|value| value / size).collect();
-        let whole = norm(&rest);
-        for known in &orthonormal {
-            take_out(&mut rest, known);
-        }
-        let length = norm(&rest);
-        if length <= DEPENDENT_VECTOR * whole {
-            return Some(index);
-        }
-        rest.iter_mut().for_each(|value| *value /= length);
-        orthonormal.push(rest);
-    }
-    None
+        size == 0.0 || !extend(&mut basis, vector.iter().map(|value| value / size).collect(), DEPENDENT_VECTOR)
+    })
 }

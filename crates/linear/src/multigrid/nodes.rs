@@ -32,7 +32,9 @@ pub struct Nodes {
 /// does not, and the smoother diverges.
 #[derive(Clone, Debug)]
 pub struct Units {
+    /// The group of each unknown.
     pub groups: Vec<u32>,
+    /// The exponent of the unit of each unknown.
     pub exponents: Vec<i32>,
 }
 

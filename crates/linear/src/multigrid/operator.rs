@@ -57,6 +57,18 @@ impl<'a, T: Real> Operator<'a, T> {
         }
     }
 
+    /// The Rayleigh quotient of M A at x in the energy product, in which it is symmetric, and M A x; `moved` makes that
+    /// of A x. `None` without positive energy.
+    pub fn quotient(&self, x: &[T], moved: impl FnOnce(&[T]) -> Vec<T>) -> Option<(f64, Vec<T>)> {
+        let mut force = self.spare.take(x.len());
+        self.mul_into(x, &mut force);
+        let moved = moved(&force);
+        let product = |x: &[T]| x.iter().zip(&force).map(|(x, force)| x.double() * force.double()).sum::<f64>();
+        let (energy, dual) = (product(x), product(&moved));
+        self.spare.give(force);
+        (energy > 0.0 && dual.is_finite()).then(|| (dual / energy, moved))
+    }
+
     /// Brings a displacement into the face.
     pub fn project(&self, x: &mut [T]) {
         if let Some(held) = self.held {

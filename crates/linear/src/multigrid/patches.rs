@@ -191,17 +191,13 @@ mod tests {
     /// diagonal is 4, other entries are -1.
     fn line(elements: usize) -> BlockMatrix<f64> {
         let nodes = 2 * elements + 1;
-        let mut matrix = BlockMatrix::empty(0, nodes, (1, 1));
         let share =
             |a: usize, b: usize| (0..elements).any(|e| [a, b].iter().all(|&k| (2 * e..=2 * e + 2).contains(&k)));
-        for row in 0..nodes {
-            for column in (0..nodes).filter(|&column| share(row, column)) {
-                matrix.indices.push(column as u32);
-                matrix.values.push(if row == column { 4.0 } else { -1.0 });
-            }
-            matrix.starts.push(matrix.indices.len());
-        }
-        matrix
+        let value = |row: usize, column: usize| [if row == column { 4.0 } else { -1.0 }];
+        let row = |row: usize| {
+            (0..nodes).filter(move |&column| share(row, column)).map(move |column| (column, value(row, column)))
+        };
+        BlockMatrix::of_rows(nodes, (1, 1), (0..nodes).map(row))
     }
 
     fn all(patches: &Patches) -> Vec<&[u32]> {
@@ -229,10 +225,7 @@ mod tests {
             .sum();
         assert!(product.abs() < 1e-14, "{product:e}");
         // A change of the diagonal entry of node 4 alone.
-        let mut change = BlockMatrix::empty(4, 9, (1, 1));
-        change.indices.push(4);
-        change.values.push(1.0);
-        change.starts.resize(10, 1);
+        let change = BlockMatrix::of_rows(9, (1, 1), (0..9).map(|row| (row == 4).then_some((4, [1.0]))));
         let touched = patches.touched_by(&change);
         assert_eq!(all(&touched), [&[3, 4, 5][..]]);
         let [old, new] = [None, Some(&change)].map(|change| touched.inverse(&matrix, change, 1));

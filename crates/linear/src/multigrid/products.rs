@@ -26,7 +26,7 @@ impl<T: Real> BlockMatrix<T> {
         let slabs = SharedRows { starts: &matrix.starts, threads: most }.runs_of(SLAB);
         let mut sum: Option<Self> = None;
         for rows in slabs {
-            let mut moved = matrix.product_rows(MatrixPart::Half, self, rows.clone(), threads);
+            let mut moved = matrix.product_rows(true, self, rows.clone(), threads);
             // Rows before and after the slab are empty.
             let (before, last) = (rows.start, moved.starts[rows.len()]);
             moved.starts.splice(0..0, vec![0; before]);
@@ -45,18 +45,19 @@ impl<T: Real> BlockMatrix<T> {
 
     /// The product A B, row by row: a row of the product is a sum of rows of B, one for each entry in the row of A.
     pub fn product(&self, other: &Self, threads: usize) -> Self {
-        self.product_rows(MatrixPart::Whole, other, 0..self.rows(), threads)
+        self.product_rows(false, other, 0..self.rows(), threads)
     }
 
-    /// Some rows of the product of a part of A with B, numbered from 0.
-    fn product_rows(&self, of: MatrixPart, other: &Self, rows: Range<usize>, threads: usize) -> Self {
+    /// Some rows of the product A B, numbered from 0; `by_half` takes of A the blocks before the diagonal and half of
+    /// those on it.
+    fn product_rows(&self, by_half: bool, other: &Self, rows: Range<usize>, threads: usize) -> Self {
         if self.is_shared() && other.is_shared() && rows.len() == self.rows() {
-            return self.shared_product(of, other);
+            return self.shared_product(by_half, other);
         }
         let starts = &self.starts[rows.start..=rows.end];
         let parts = SharedRows { starts, threads }.map(|part| {
             let rows = rows.start + part.start..rows.start + part.end;
-            with_block_size!(product_rows, (self.height, self.width), ((self, of), other, rows))
+            with_block_size!(product_rows, (self.height, self.width), ((self, by_half), other, rows))
         });
         let mut product = Self::empty(0, other.columns, (self.height, other.width));
         for (starts, indices, values) in parts {
@@ -73,7 +74,7 @@ impl<T: Real> BlockMatrix<T> {
     }
 
     /// The product if rows of both are shared: a row of it is that of an earlier one if all rows that make it are.
-    fn shared_product(&self, of: MatrixPart, other: &Self) -> Self {
+    fn shared_product(&self, by_half: bool, other: &Self) -> Self {
         let (mut firsts, mut key, mut distinct) = (Firsts::default(), Vec::new(), Vec::new());
         let mut product = Self::empty(0, other.columns, (self.height, other.width));
         let mut first_of_rows = Vec::with_capacity(self.rows());
@@ -82,7 +83,7 @@ impl<T: Real> BlockMatrix<T> {
             key.clear();
             key.extend([places.start as u32, places.len() as u32]);
             let mut shift = None;
-            for k in self.columns_of(row).map(|k| k as usize).filter(|&k| of == MatrixPart::Whole || k <= row) {
+            for k in self.columns_of(row).map(|k| k as usize).filter(|&k| !by_half || k <= row) {
                 let (places, of_row) = other.places(k);
                 let shift = *shift.get_or_insert(of_row);
                 key.extend([places.start as u32, places.len() as u32, of_row.wrapping_sub(shift)]);
@@ -95,7 +96,7 @@ impl<T: Real> BlockMatrix<T> {
         }
         let rows = distinct.iter().copied();
         let (ends, indices, values) =
-            with_block_size!(product_rows, (self.height, self.width), ((self, of), other, rows));
+            with_block_size!(product_rows, (self.height, self.width), ((self, by_half), other, rows));
         (product.indices, product.values) = (indices, values);
         let (mut stored, mut start) = (vec![0..0; self.rows()], 0);
         for (&row, &end) in distinct.iter().zip(&ends) {
@@ -111,18 +112,11 @@ impl<T: Real> BlockMatrix<T> {
     }
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum MatrixPart {
-    Whole,
-    /// The blocks before the diagonal, and half of those on it.
-    Half,
-}
-
 type Rows<T> = (Vec<usize>, Vec<u32>, Vec<T>);
 
 /// The rows of a product: the ends of the rows, columns and values.
 fn product_rows<T: Real, const H: usize, const W: usize>(
-    (left, part): (&BlockMatrix<T>, MatrixPart),
+    (left, by_half): (&BlockMatrix<T>, bool),
     right: &BlockMatrix<T>,
     rows: impl ExactSizeIterator<Item = usize>,
 ) -> Rows<T> {
@@ -136,10 +130,10 @@ fn product_rows<T: Real, const H: usize, const W: usize>(
         found.clear();
         sums.clear();
         for (k, mut a) in left.row(row) {
-            if part == MatrixPart::Half && k > row {
+            if by_half && k > row {
                 break;
             }
-            if part == MatrixPart::Half && k == row {
+            if by_half && k == row {
                 half.clear();
                 half.extend(a.iter().map(|&value| T::of(0.5) * value));
                 a = &half;

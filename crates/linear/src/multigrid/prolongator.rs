@@ -153,47 +153,40 @@ pub fn smoothed<T: Real>(
 ) -> BlockMatrix<T> {
     let (height, width) = (moved.height, moved.width);
     let (inverse, step) = (&smoother.inverse, T::of(STEP / smoother.largest));
-    let size = height * width;
-    let of_node = |node: usize, columns: &[u32], values: &mut [T], column: &mut [T]| {
-        let Some((_, of_node)) = inverse.row(node).next() else { return };
-        let Some((own, before)) = tentative.row(node).next() else { return };
-        for (&of_block, block) in columns.iter().zip(values.chunks_exact_mut(size)) {
-            for j in 0..width {
-                column.iter_mut().enumerate().for_each(|(i, entry)| *entry = block[i * width + j]);
-                for i in 0..height {
-                    let mut sum = T::default();
-                    for (k, &entry) in column.iter().enumerate() {
-                        sum += of_node[i * height + k] * entry;
+    let mut values = std::mem::take(&mut moved.values);
+    let (mut nodes, mut starts, mut end) = (Vec::new(), vec![0], 0);
+    for node in 0..moved.rows() {
+        let (places, _) = moved.places(node);
+        // Rows are stored in the order in which they come first.
+        if places.start == end {
+            end = places.end;
+            nodes.push(node);
+            starts.push(end);
+        }
+    }
+    let length = |rows: &Range<usize>| (starts[rows.end] - starts[rows.start]) * height * width;
+    SharedRows { starts: &starts, threads }.with_parts([&mut values[..]], length, |rows, [mut values]| {
+        let mut column = vec![T::default(); height];
+        for row in rows {
+            let of_row = values.split_off_mut(..length(&(row..row + 1))).unwrap_or_default();
+            let node = nodes[row];
+            let Some((_, of_node)) = inverse.row(node).next() else { continue };
+            let Some((own, before)) = tentative.row(node).next() else { continue };
+            for (of_block, block) in moved.columns_of(node).zip(of_row.chunks_exact_mut(height * width)) {
+                for j in 0..width {
+                    column.iter_mut().enumerate().for_each(|(i, entry)| *entry = block[i * width + j]);
+                    for i in 0..height {
+                        let mut sum = T::default();
+                        for (k, &entry) in column.iter().enumerate() {
+                            sum += of_node[i * height + k] * entry;
+                        }
+                        let before = if of_block as usize == own { before[i * width + j] } else { T::default() };
+                        block[i * width + j] = before - step * sum;
                     }
-                    let before = if of_block as usize == own { before[i * width + j] } else { T::default() };
-                    block[i * width + j] = before - step * sum;
                 }
             }
         }
-    };
-    let mut column = vec![T::default(); height];
-    if moved.is_shared() {
-        let mut done = 0;
-        for node in 0..moved.rows() {
-            let (places, _) = moved.places(node);
-            // Rows are stored in the order in which they come first.
-            if places.start == done {
-                done = places.end;
-                let columns: Vec<u32> = moved.columns_of(node).collect();
-                of_node(node, &columns, &mut moved.values[places.start * size..places.end * size], &mut column);
-            }
-        }
-        return moved;
-    }
-    let BlockMatrix { starts, indices, values, .. } = &mut moved;
-    let length = |rows: &Range<usize>| (starts[rows.end] - starts[rows.start]) * size;
-    SharedRows { starts, threads }.with_parts([&mut values[..]], length, |rows, [mut values]| {
-        let mut column = vec![T::default(); height];
-        for node in rows {
-            let places = starts[node]..starts[node + 1];
-            let of_row = values.split_off_mut(..places.len() * size).unwrap_or_default();
-            of_node(node, &indices[places], of_row, &mut column);
-        }
     });
+    moved.values = values;
     moved
 }

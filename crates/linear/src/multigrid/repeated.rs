@@ -4,11 +4,9 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
-
 use super::blocks::BlockMatrix;
 use crate::Spare;
-use crate::real::Real;
+use crate::real::{Real, for_processor};
 
 /// Nodes that are multiplied together.
 const TILE: usize = 16;
@@ -160,7 +158,6 @@ fn add_product_in<T: Real, const H: usize>(
     }
     let components: [&[T]; H] =
         std::array::from_fn(|component| &by_component[component * nodes..(component + 1) * nodes]);
-    let arch = Arch::new();
     matrix.shared(threads).with_vectors(H, [y], |rows, [part]| {
         let (first, part) = (rows.start, part.as_chunks_mut::<H>().0);
         let mut row = rows.start;
@@ -177,7 +174,7 @@ fn add_product_in<T: Real, const H: usize>(
                         (0..H).for_each(|i| y[i] += sign * sums[i]);
                     }
                 }
-                false => arch.dispatch(RepeatedRows { matrix, components, rows: run.clone(), sums, sign }),
+                false => add_repeated(matrix, components, run.clone(), sums, sign),
             }
             row = run.end;
         }
@@ -185,21 +182,11 @@ fn add_product_in<T: Real, const H: usize>(
     spare.give(by_component);
 }
 
-/// Rows that all have the blocks of the first, at least [`TILE`] of them, and their products.
-struct RepeatedRows<'a, T, const H: usize> {
-    matrix: &'a BlockMatrix<T>,
-    components: [&'a [T]; H],
-    rows: Range<usize>,
-    sums: &'a mut [[T; H]],
-    sign: T,
-}
-
-impl<T: Real, const H: usize> WithSimd for RepeatedRows<'_, T, H> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let RepeatedRows { matrix, components, rows, sums, sign } = self;
+for_processor! {
+    /// Adds the products of rows that all have the blocks of the first, at least [`TILE`] of them.
+    fn add_repeated['a, T: Real, const H: usize](
+        matrix: &'a BlockMatrix<T>, components: [&'a [T]; H], rows: Range<usize>, sums: &'a mut [[T; H]], sign: T
+    ) -> () {
         let first = matrix.shared_rows[rows.start] as usize;
         let places = first..first + matrix.starts[rows.start + 1] - matrix.starts[rows.start];
         let blocks = matrix.values[places.start * H * H..places.end * H * H].as_chunks::<H>().0;
@@ -254,13 +241,11 @@ mod tests {
     /// The matrix of some rows, and the same with each row stored by itself.
     fn both(rows: &[(Vec<u32>, Vec<f32>)]) -> [BlockMatrix<f32>; 2] {
         let mut shared = RowByRow::new(3, rows.len());
-        let mut plain = BlockMatrix::empty(0, rows.len(), (3, 3));
-        for (columns, values) in rows {
-            shared.push(columns, values);
-            plain.indices.extend_from_slice(columns);
-            plain.values.extend_from_slice(values);
-            plain.starts.push(plain.indices.len());
-        }
+        rows.iter().for_each(|(columns, values)| shared.push(columns, values));
+        let blocks = |(columns, values): &(Vec<u32>, Vec<f32>)| -> Vec<(usize, Vec<f32>)> {
+            columns.iter().zip(values.chunks(9)).map(|(&column, block)| (column as usize, block.to_vec())).collect()
+        };
+        let plain = BlockMatrix::of_rows(rows.len(), (3, 3), rows.iter().map(blocks));
         [shared.finished(), plain]
     }
 

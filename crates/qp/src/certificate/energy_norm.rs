@@ -38,8 +38,8 @@ pub(crate) struct EnergyNorm {
     /// D and c, as exponents of two: `K^-1 = c D (c D K D)^-1 D`.
     pub(super) equilibration: Equilibration,
     pub(super) boundary: Option<Arc<Boundary>>,
-    /// Rows whose compliance the method knows.
-    pub(super) known: Option<Arc<KnownRows>>,
+    /// A contact matrix whose compliance is kept for many answers.
+    kept: Option<Arc<(SparseMatrix, RowsOnBoundary)>>,
     /// The springs that made a singular K definite.
     pub(super) springs: Option<Arc<Springs>>,
     /// The dofs without stiffness, in which the matrix has a stiffness of one, if these made K singular.
@@ -65,36 +65,13 @@ pub(super) struct Boundary {
     pub block: LowerTriangle,
 }
 
-/// Rows on the contact boundary, normalised by powers of two.
+/// Rows on the contact boundary or in the whole body, normalised by powers of two.
 #[derive(Clone, Debug)]
 pub(super) struct RowsOnBoundary {
-    /// Each row, a column: the coefficients times D, by places on the boundary; the largest is near one.
-    pub by_row: SparseMatrix,
+    /// W of the rows, each with the coefficients times D; the largest is near one.
+    pub compliance: Arc<Compliance>,
     /// Exponent by which each row was multiplied.
     pub shift: Vec<i32>,
-    /// Their compliance, if the method knows it.
-    pub compliance: Option<Arc<Compliance>>,
-}
-
-impl RowsOnBoundary {
-    /// Normalises rows, each a column.
-    pub fn of(by_row: &SparseMatrix) -> Self {
-        let entries = |row: usize| by_row.column(row).map(|entry| entry.1);
-        let largest = |row: usize| entries(row).fold(0.0, |largest: f64, b| largest.max(b.abs()));
-        let shift: Vec<i32> = (0..by_row.columns()).map(|row| -exponent(largest(row))).collect();
-        let values = (0..by_row.columns()).flat_map(|row| {
-            let shift = shift[row];
-            entries(row).map(move |b| ldexp(b, shift))
-        });
-        RowsOnBoundary { by_row: by_row.with_values(values.collect()), shift, compliance: None }
-    }
-}
-
-/// The rows of a contact matrix, as a method has them.
-#[derive(Debug)]
-pub(super) struct KnownRows {
-    contact: SparseMatrix,
-    rows: RowsOnBoundary,
 }
 
 impl EnergyNorm {
@@ -127,39 +104,30 @@ impl EnergyNorm {
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
         let watch = Watch::default();
-        EnergyNorm { cholesky, equilibration, boundary, known: None, springs: None, loose: None, watch }
+        EnergyNorm { cholesky, equilibration, boundary, kept: None, springs: None, loose: None, watch }
     }
 
-    /// The same norm with the compliance of the rows `contact`, if it serves balances of forces: the rows are `scaled`
-    /// by D and by powers of two with the exponents `shift`.
-    pub fn with_rows(self, contact: &SparseMatrix, scaled: &SparseMatrix, shift: &[i32]) -> Self {
-        let last = self.boundary.as_ref().map_or(&[][..], |boundary| &boundary.dofs);
-        let known = Compliance::of(&self.cholesky, last, scaled).map(|compliance| {
-            let (by_row, shift) = (compliance.by_row().clone(), shift.to_vec());
-            let rows = RowsOnBoundary { by_row, shift, compliance: Some(Arc::new(compliance)) };
-            Arc::new(KnownRows { contact: contact.clone(), rows })
-        });
-        EnergyNorm { known, ..self }
-    }
-
-    /// The same norm, which keeps the compliance of the rows `contact` for many answers.
+    /// The same norm, which keeps the compliance of the rows `contact` for many answers; it is made at its first use.
     pub fn keeping(self, contact: &SparseMatrix) -> Self {
-        let rows = self.rows_on_boundary(contact, |_| true).filter(|rows| rows.compliance.is_none());
-        let Some(rows) = rows else { return self };
-        let compliance = Some(Arc::new(Compliance::on(&self.cholesky, rows.by_row.clone())));
-        let known = KnownRows { contact: contact.clone(), rows: RowsOnBoundary { compliance, ..rows } };
-        EnergyNorm { known: Some(Arc::new(known)), ..self }
+        let rows = self.rows_on_boundary(contact, |_| true).filter(|rows| !rows.compliance.is_kept());
+        let Some(RowsOnBoundary { compliance, shift }) = rows else { return self };
+        let rows = RowsOnBoundary { compliance: Arc::new(compliance.kept()), shift };
+        EnergyNorm { kept: Some(Arc::new((contact.clone(), rows))), ..self }
     }
 
-    /// The compliance of the scaled rows, if it serves balances of forces.
+    /// The same if balances of forces cost less by it.
+    pub fn lending(self, contact: &SparseMatrix) -> Self {
+        if Compliance::pays(&self.cholesky, contact) { self.keeping(contact) } else { self }
+    }
+
+    /// The compliance of the normalised rows, if it is kept.
     pub fn compliance(&self) -> Option<&Compliance> {
-        self.known.as_ref()?.rows.compliance.as_deref()
+        self.kept.as_ref().map(|kept| &*kept.1.compliance)
     }
 
     /// The entries of `B K^-1 B'` for these rows; `None` if the boundary is not known, or if a row reaches beyond it.
     pub fn compliances(&self, contact: &SparseMatrix) -> Option<impl Fn(usize, usize) -> f64 + use<>> {
-        let RowsOnBoundary { by_row, shift, compliance } = self.rows_on_boundary(contact, |_| true)?;
-        let compliance = compliance.unwrap_or_else(|| Arc::new(Compliance::on(&self.cholesky, by_row)));
+        let RowsOnBoundary { compliance, shift } = self.clone().keeping(contact).rows_on_boundary(contact, |_| true)?;
         let unit = self.equilibration.factor;
         Some(move |a: usize, b: usize| ldexp(compliance.product(a, b), unit - shift[a] - shift[b]))
     }
@@ -217,11 +185,6 @@ impl EnergyNorm {
         norm
     }
 
-    /// The displacement of the equilibrated stiffness under an equilibrated load.
-    pub fn scaled_displacement(&self, load: &[f64]) -> Vec<f64> {
-        self.cholesky.solve(load)
-    }
-
     /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
     ///
     /// Infinite if the force acts on a dof without stiffness.
@@ -271,20 +234,35 @@ impl EnergyNorm {
         contact: &SparseMatrix,
         counts: impl Fn(usize) -> bool,
     ) -> Option<RowsOnBoundary> {
-        let dofs = &self.boundary.as_ref()?.dofs;
-        if let Some(known) = self.known.as_ref().filter(|known| known.contact.is_shared_with(contact)) {
-            return Some(known.rows.clone());
+        let boundary = self.boundary.as_ref()?;
+        if let Some(kept) = self.kept.as_ref().filter(|kept| kept.0.is_shared_with(contact)) {
+            return Some(kept.1.clone());
         }
         let is_entry = |entry: &(usize, f64)| entry.1 != 0.0 && counts(entry.0);
-        let rows = self.rows_at(dofs, contact, is_entry);
-        let is_whole = dofs.len() == contact.columns()
+        let rows = self.rows_at(&boundary.dofs, contact, is_entry);
+        let is_whole = boundary.dofs.len() == contact.columns()
             || rows.entries() == (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(is_entry).count();
-        is_whole.then(|| RowsOnBoundary::of(&rows))
+        is_whole.then(|| self.normalised(&rows, Some(&boundary.block)))
+    }
+
+    /// The rows of `contact` in the whole body.
+    pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> RowsOnBoundary {
+        self.normalised(&self.scaled_rows(contact), None)
     }
 
     /// The rows of `contact` in the whole body, each a column: dof, coefficient times D.
-    pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> SparseMatrix {
+    pub(super) fn scaled_rows(&self, contact: &SparseMatrix) -> SparseMatrix {
         self.rows_at(&(0..contact.columns()).collect::<Vec<_>>(), contact, |entry| entry.1 != 0.0)
+    }
+
+    /// Rows, each a column, on the block that they are in.
+    fn normalised(&self, by_row: &SparseMatrix, block: Option<&LowerTriangle>) -> RowsOnBoundary {
+        let largest = |row: usize| by_row.column(row).fold(0.0, |largest: f64, (_, b)| largest.max(b.abs()));
+        let shift: Vec<i32> = (0..by_row.columns()).map(|row| -exponent(largest(row))).collect();
+        let of_row = |row: usize| by_row.column(row).map(move |(_, b)| (b, row));
+        let values = (0..by_row.columns()).flat_map(of_row).map(|(b, row)| ldexp(b, shift[row])).collect();
+        let compliance = Arc::new(Compliance::new(&self.cholesky, block, by_row.with_values(values)));
+        RowsOnBoundary { compliance, shift }
     }
 
     fn rows_at(
@@ -312,6 +290,12 @@ impl EnergyNorm {
     fn scaled(&self, force: &[f64]) -> Vec<f64> {
         force.iter().zip(&self.equilibration.diagonal).map(|(&r, &d)| ldexp(r, d)).collect()
     }
+}
+
+/// `2^length sqrt(2^stiffness) x`
+pub fn ldexp_root(x: f64, stiffness: i32, length: i32) -> f64 {
+    let root = if stiffness % 2 == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+    ldexp(root * x, stiffness.div_euclid(2) + length)
 }
 
 /// Springs D on rows C that press, or that are equalities: with them a singular K becomes `K_D = K + B_C' D B_C`.

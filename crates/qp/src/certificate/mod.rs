@@ -7,11 +7,9 @@ mod bound;
 mod conditions;
 mod energy_norm;
 mod mode;
-mod pressed;
 mod proof;
 mod reach;
 mod scales;
-mod units;
 mod verdict;
 
 pub(crate) use bound::boundary::repaired;
@@ -22,13 +20,19 @@ pub(crate) use mode::{NullMode, Rounding, mode_along, motion_along, not_convex_a
 use std::borrow::Cow;
 
 use conditions::{energy_of, examined};
-use pressed::Pressed;
-use proof::{proven_by_cycles, proven_in};
-use units::{UnitExponents, far_units, in_units};
+use energy_norm::ldexp_root;
+use proof::{proven_by_cycles, proven_in, proven_pressed};
 
 use crate::error::Error;
+use crate::linear::{SymmetricMatrix, exponent, largest, ldexp};
 use crate::problem::{ContactProblem, Equality};
-use crate::solution::ProvenSet;
+use crate::solution::{Cancellation, Certificate, ProvenSet};
+
+/// Forces and energies beyond 2 to plus or minus this power are near the ends of double precision.
+const FAR: i32 = 800;
+
+/// A displacement below 2 to this power of what the load could do is negligible beside it, and sets no unit.
+const NOTHING: i32 = -200;
 
 /// An answer (u, lambda) of a problem, to be examined by these means.
 pub(crate) struct Examination<'a> {
@@ -93,10 +97,7 @@ impl<'a> Examination<'a> {
                 None if problem.without_stiffness().is_empty() => EnergyNorm::of(&problem.stiffness, &problem.contact)?,
                 None if far.is_none() => {
                     let found = if evidence.is_some() { evidence } else { self.certificate()?.evidence };
-                    let pressed = found.map(|found| Pressed::of(problem, answer[0], found)).transpose()?.flatten();
-                    return Ok(pressed.and_then(|Pressed { body, norm, displacement, evidence }| {
-                        proven_in(&body, &norm, [&displacement, answer[1]], Some(evidence))
-                    }));
+                    return Ok(found.map(|found| proven_pressed(problem, answer, found)).transpose()?.flatten());
                 }
                 norm => norm,
             },
@@ -120,5 +121,75 @@ impl<'a> Examination<'a> {
             _ => Bounding::Nothing,
         };
         Ok(Some((units, in_units(self.problem, &units)?, by)))
+    }
+}
+
+/// Other units of stiffness and of length for data at the ends of double precision: exponents of two, so that only the
+/// range changes.
+#[derive(Clone, Copy, Debug)]
+struct UnitExponents {
+    stiffness: i32,
+    length: i32,
+}
+
+impl UnitExponents {
+    fn displacement(&self, displacement: &[f64]) -> Vec<f64> {
+        displacement.iter().map(|&value| ldexp(value, -self.length)).collect()
+    }
+
+    fn force(&self, force: &[f64]) -> Vec<f64> {
+        force.iter().map(|&value| ldexp(value, -self.stiffness - self.length)).collect()
+    }
+
+    /// A certificate that was computed in these units, in those of the problem.
+    fn in_own(&self, certificate: Certificate) -> Certificate {
+        // An energy norm has the unit of sqrt(stiffness) times length.
+        let norm = |value: f64| ldexp_root(value, self.stiffness, self.length);
+        let force = |value: f64| ldexp(value, self.stiffness + self.length);
+        let Cancellation { dof, forces, left } = certificate.cancellation;
+        Certificate {
+            energy_error: norm(certificate.energy_error),
+            cancellation: Cancellation { dof, forces: force(forces), left: force(left) },
+            ..certificate
+        }
+    }
+}
+
+/// The units in which an answer is of order one, if forces or energies would over- or underflow in its own units.
+fn far_units(problem: &ContactProblem, displacement: &[f64]) -> Option<UnitExponents> {
+    let stiffness = exponent(largest(&problem.diagonal().values));
+    let (moved, load) = (largest(displacement), largest(&problem.load));
+    let statics = exponent(load) - stiffness;
+    let length = match (moved > 0.0, load > 0.0) {
+        (true, true) => exponent(moved).max(statics + NOTHING),
+        (true, false) => exponent(moved),
+        (false, _) => statics,
+    };
+    let is_far = |power: i32| power.abs() > FAR;
+    // A force, of the power stiffness + length, is far only if the stiffness or an energy is.
+    let far = is_far(stiffness) || is_far(length) || is_far(stiffness + 2 * length);
+    far.then_some(UnitExponents { stiffness, length })
+}
+
+fn in_units(problem: &ContactProblem, units: &UnitExponents) -> Result<ContactProblem, Error> {
+    let lower = problem.stiffness.lower();
+    let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();
+    let stiffness = SymmetricMatrix::from_lower(lower.with_values(values))?;
+    ContactProblem::computed(
+        stiffness,
+        units.force(&problem.load),
+        problem.contact.clone(),
+        units.displacement(&problem.gap),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_that_is_1e20_in_other_units_stays_a_gap() {
+        let problem = ContactProblem::of_entries(&[(0, 0, 1.0)], &[1.0], &[(0, 0, 1.0)], &[ldexp(1e20, 900)]);
+        assert_eq!(in_units(&problem, &UnitExponents { stiffness: 0, length: 900 }).unwrap().gap(), [1e20]);
     }
 }

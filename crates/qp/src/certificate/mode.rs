@@ -1,7 +1,8 @@
 //! Statements on a problem without a unique answer, rechecked in the problem itself with twice the working precision.
 
 use crate::error::{Error, LinearError};
-use crate::linear::{NullSpace, Twice, largest, twice};
+use crate::linear::twice::Sum;
+use crate::linear::{NullSpace, Twice, largest};
 use crate::problem::ContactProblem;
 
 /// A load drives a mode if its work is beyond this share of its terms.
@@ -89,7 +90,7 @@ pub fn mode_along(problem: &ContactProblem, direction: &[Twice], rounding: Round
     let kept = |&value: &Twice| if value.rounded().abs() > rounding.entry { value } else { Twice::ZERO };
     let cleaned = whole.iter().map(kept).collect();
     let is_free = |direction: &Vec<Twice>| {
-        let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
+        let resists = |force: &Sum| force.beyond(rounding.vanishes) != Twice::ZERO;
         !problem.stiffness.resistance(direction).iter().any(resists)
     };
     // Small entries may be rounded zeros or part of the mode.
@@ -97,16 +98,15 @@ pub fn mode_along(problem: &ContactProblem, direction: &[Twice], rounding: Round
     let by_row = problem.contact.transposed();
     let mut approach = vec![0.0; problem.rows()];
     for row in (0..problem.rows()).filter(|&row| problem.gap[row].is_finite()) {
-        let terms = || by_row.column(row).map(|(dof, b)| Twice::from(b) * direction[dof]);
-        approach[row] = twice::sum(terms(), rounding.zero).rounded();
-        if approach[row] != 0.0 && twice::sum(terms(), rounding.sure) == Twice::ZERO {
+        let moved: Sum = by_row.column(row).map(|(dof, b)| Twice::from(b) * direction[dof]).collect();
+        approach[row] = moved.beyond(rounding.zero).rounded();
+        if approach[row] != 0.0 && moved.beyond(rounding.sure) == Twice::ZERO {
             return None;
         }
     }
-    let work = || problem.load.iter().zip(&direction).map(|(&f, &d)| Twice::from(f) * d);
-    let terms: f64 = work().map(|term| term.rounded().abs()).sum();
-    let left = twice::sum(work(), IDLE).rounded();
-    let work = if left == 0.0 { 0.0 } else { left / terms };
+    let work: Sum = problem.load.iter().zip(&direction).map(|(&f, &d)| Twice::from(f) * d).collect();
+    let left = work.beyond(IDLE).rounded();
+    let work = if left == 0.0 { 0.0 } else { left / work.terms };
     let direction = direction.into_iter().map(Twice::rounded).collect();
     Some(NullMode { direction, approach, work, resistance: rounding.vanishes })
 }

@@ -14,15 +14,12 @@
 //! A. Berman, R. J. Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, SIAM (1994), theorem 6.2.3:
 //! condition I27 of an M-matrix.
 
-use super::energy_norm::{Boundary, EnergyNorm, RowsOnBoundary};
+use super::energy_norm::{Boundary, EnergyNorm, RowsOnBoundary, ldexp_root};
 use super::scales::compliance_of_rows;
-use super::units::ldexp_root;
 use crate::linear::multigrid::Multigrid;
 use crate::linear::selected_inverse::FACTORISATIONS;
 use crate::linear::watch::Watch;
-use crate::linear::{
-    Dependence, SparseMatrix, dot, forward_all, inverse_lengths, inverse_lengths_by_products, largest, ldexp, products,
-};
+use crate::linear::{Dependence, SparseMatrix, dot, inverse_lengths, inverse_lengths_by_products, largest, ldexp};
 use crate::problem::ContactProblem;
 
 /// Steps of power iteration for the largest eigenvalue of M D.
@@ -36,9 +33,6 @@ const OF_TERM: f64 = 2.0 * f64::EPSILON;
 
 /// Number of multiplications of a blocked factorisation that take the time of one in a sweep.
 const BLOCKED: f64 = 4.0;
-
-/// Number of rows that a sweep of the proof takes at once.
-const AT_ONCE: usize = 128;
 
 /// Upper bounds on `sqrt(G_ii)` of every row, from one solve: `solve(s)` returns about `K^-1 s`. `None` if that
 /// does not show that K is an M-matrix.
@@ -63,20 +57,24 @@ pub fn monotone_reach(problem: &ContactProblem, solve: impl FnOnce(&[f64]) -> Op
     Some(problem.contact().mul_abs(&roots))
 }
 
-/// The largest eigenvalue of M D, with the cycle M and `D = diag K`, by power iteration that starts at the smooth
-/// `displacement`. `None` if the iteration does not settle.
-pub fn largest_eigenvalue(
+/// Upper bounds on `sqrt(G_ii)` of every row from two measured eigenvalues: with the cycle M and `D = diag K`,
+///
+/// ```text
+/// K^-1 <= M / least(M K),     M <= largest(M D) D^-1
+/// ```
+///
+/// The largest is found by power iteration that starts at the smooth `displacement`. `None` if that does not settle.
+pub fn measured_reach(
     problem: &ContactProblem,
-    multigrid: &Multigrid,
+    (multigrid, least): (&Multigrid, f64),
     displacement: &[f64],
     watch: &Watch,
-) -> Option<f64> {
+) -> Option<Vec<f64>> {
     let diagonal = problem.stiffness().diagonal();
     if diagonal.iter().any(|&value| value <= 0.0) {
         return None;
     }
-    let mut x = displacement.to_vec();
-    let mut quotient = 0.0_f64;
+    let (mut x, mut quotient) = (displacement.to_vec(), 0.0_f64);
     for _ in 0..POWER_STEPS {
         let size = largest(&x);
         if size == 0.0 || !size.is_finite() || watch.is_over() {
@@ -88,18 +86,9 @@ pub fn largest_eigenvalue(
         quotient = quotient.max(dot(&force, &moved) / dot(&force, &x));
         x = moved;
     }
-    Some(quotient)
-}
-
-/// Upper bounds on `sqrt(G_ii)` of every row from two measured eigenvalues: with the cycle M and `D = diag K`,
-///
-/// ```text
-/// K^-1 <= M / least(M K),     M <= largest(M D) D^-1
-/// ```
-pub fn measured_reach(problem: &ContactProblem, least: f64, largest: f64) -> Vec<f64> {
-    let mu = least / (SAFETY * largest);
+    let mu = least / (SAFETY * quotient);
     let squares = compliance_of_rows(problem, |square, stiffness| square / stiffness);
-    squares.into_iter().map(|square| (square / mu).sqrt()).collect()
+    Some(squares.into_iter().map(|square| (square / mu).sqrt()).collect())
 }
 
 /// The rows of `rows` with a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs
@@ -110,7 +99,7 @@ pub fn within_reach(compliance: &ComplianceFactor, rows: &[(usize, f64)]) -> Vec
     let at_once = FACTORISATIONS * norm.cholesky.multiplications() / BLOCKED;
     let one_by_one = by_sweeps <= at_once || norm.is_over();
     let inverse = if one_by_one { None } else { norm.cholesky.selected_inverse() };
-    let inverse = inverse.map(|inverse| (inverse, norm.rows_in_body(compliance.contact)));
+    let inverse = inverse.map(|inverse| (inverse, norm.scaled_rows(compliance.contact)));
     let reach = |row: usize| {
         let square =
             inverse.as_ref().and_then(|(inverse, by_row)| inverse.product(&by_row.column(row).collect::<Vec<_>>()));
@@ -120,68 +109,22 @@ pub fn within_reach(compliance: &ComplianceFactor, rows: &[(usize, f64)]) -> Vec
     rows.iter().filter(|&&(row, limit)| reach(row) < limit).map(|&(row, _)| row).collect()
 }
 
-/// The columns of `L^-1 B'`; their products are the compliance of the rows.
+/// The compliance of the rows of a contact matrix: on the boundary if all rows are on it, and otherwise in the whole
+/// body.
 pub(super) struct ComplianceFactor<'a> {
     contact: &'a SparseMatrix,
     norm: &'a EnergyNorm,
-    /// The rows in the dofs that are swept: on the boundary, or in the whole body.
     rows: RowsOnBoundary,
     /// The boundary, if all rows are on it.
     boundary: Option<&'a Boundary>,
-    /// That of a sweep, relative.
-    rounding: f64,
 }
 
 impl<'a> ComplianceFactor<'a> {
     pub(super) fn of(problem: &'a ContactProblem, norm: &'a EnergyNorm) -> Self {
         let contact = &problem.contact;
-        let rounding = norm.rounding();
-        match norm.rows_on_boundary(contact, |_| true) {
-            Some(rows) => ComplianceFactor { contact, norm, rows, boundary: norm.boundary.as_deref(), rounding },
-            None => {
-                let rows = RowsOnBoundary::of(&norm.rows_in_body(contact));
-                ComplianceFactor { contact, norm, rows, boundary: None, rounding }
-            }
-        }
-    }
-
-    fn length(&self) -> usize {
-        self.boundary.map_or(self.norm.cholesky.dim(), |boundary| boundary.dofs.len())
-    }
-
-    fn column(&self, row: usize) -> Vec<f64> {
-        let mut column = vec![0.0; self.length()];
-        self.rows.by_row.column(row).for_each(|(place, b)| column[place] = b);
-        match self.boundary {
-            Some(boundary) => boundary.block.forward(column),
-            None => self.norm.cholesky.forward(&column),
-        }
-    }
-
-    /// The lower triangle of the products of the columns of these rows, column by column; `None` if there is no time,
-    /// or without a boundary.
-    fn products(&self, rows: &[usize]) -> Option<Vec<f64>> {
-        let count = rows.len();
-        if let Some(compliance) = &self.rows.compliance {
-            let of_column = |j: usize| {
-                rows.iter().enumerate().map(move |(i, &row)| if i < j { 0.0 } else { compliance.product(row, rows[j]) })
-            };
-            return Some((0..count).flat_map(of_column).collect());
-        }
-        let block = &self.boundary?.block;
-        let size = block.size();
-        let mut columns = Vec::with_capacity(count * size);
-        for some in rows.chunks(AT_ONCE) {
-            if self.norm.is_over() {
-                return None;
-            }
-            let mut forces = vec![0.0; some.len() * size];
-            for (column, &row) in forces.chunks_mut(size.max(1)).zip(some) {
-                self.rows.by_row.column(row).for_each(|(place, b)| column[place] = b);
-            }
-            columns.append(&mut forward_all(block, forces));
-        }
-        Some(products(size, &columns))
+        let on_boundary = norm.rows_on_boundary(contact, |_| true);
+        let boundary = on_boundary.as_ref().and(norm.boundary.as_deref());
+        ComplianceFactor { contact, norm, rows: on_boundary.unwrap_or_else(|| norm.rows_in_body(contact)), boundary }
     }
 
     /// `sqrt(G_ii)`, with the rounding of a sweep: the distance by which a displacement of unit energy norm moves the
@@ -190,25 +133,26 @@ impl<'a> ComplianceFactor<'a> {
         if self.norm.is_over() {
             return f64::INFINITY;
         }
-        let square = match &self.rows.compliance {
-            Some(compliance) => compliance.product(row, row),
-            None => {
-                let column = self.column(row);
+        let compliance = &self.rows.compliance;
+        let square = match compliance.is_kept() {
+            true => compliance.product(row, row),
+            false => {
+                let column = compliance.columns(&[row]);
                 dot(&column, &column)
             }
         };
-        ldexp(self.rounding * self.norm.length(square), -self.rows.shift[row])
+        ldexp(self.norm.rounding() * self.norm.length(square), -self.rows.shift[row])
     }
 
     /// The reach of all rows, if their compliance is known; otherwise upper bounds by one sweep, if the contact
     /// boundary is known: the length of a column is at most the sum of its magnitudes.
     pub(super) fn reach_at_once(&self) -> Option<Vec<f64>> {
         let all = 0..self.rows.shift.len();
-        if self.rows.compliance.is_some() {
+        if self.rows.compliance.is_kept() {
             return Some(all.map(|row| self.reach(row)).collect());
         }
-        let sums = self.rows.by_row.mul_abs_transposed(&self.boundary?.block.sums_of_inverse());
-        let reach = |row: usize| self.rounding * self.norm.length(sums[row].powi(2));
+        let sums = self.rows.compliance.by_row().mul_abs_transposed(&self.boundary?.block.sums_of_inverse());
+        let reach = |row: usize| self.norm.rounding() * self.norm.length(sums[row].powi(2));
         Some(all.map(|row| ldexp(reach(row), -self.rows.shift[row])).collect())
     }
 
@@ -221,17 +165,18 @@ impl<'a> ComplianceFactor<'a> {
     }
 
     pub fn work(&self, rows: usize) -> f64 {
-        (rows * rows) as f64 * (self.length() + rows) as f64
+        (rows * rows) as f64 * (self.rows.compliance.by_row().rows() + rows) as f64
     }
 
     /// `sqrt((G_CC^-1)_ii)` of the rows C; infinite for those that take part in a dependence.
     pub fn moved_together(&self, rows: &[usize]) -> Vec<f64> {
         let none = || vec![f64::INFINITY; rows.len()];
         let of_reciprocal = |row: usize, reciprocal: f64| {
-            self.rounding * ldexp_root(reciprocal, -self.norm.equilibration.factor, self.rows.shift[row])
+            self.norm.rounding() * ldexp_root(reciprocal, -self.norm.equilibration.factor, self.rows.shift[row])
         };
         if self.norm.is_sharp()
-            && let Some(products) = self.products(rows)
+            && self.boundary.is_some()
+            && let Some(products) = self.rows.compliance.products(rows, || self.norm.is_over())
             && let Some(reciprocals) = inverse_lengths_by_products(rows.len(), products)
         {
             return rows.iter().zip(reciprocals).map(|(&row, reciprocal)| of_reciprocal(row, reciprocal)).collect();
@@ -241,7 +186,9 @@ impl<'a> ComplianceFactor<'a> {
             return none();
         };
         let basis: Vec<usize> = (0..rows.len()).filter(|&index| independent[index]).collect();
-        let in_time = |&index: &usize| if self.norm.is_over() { None } else { Some(self.column(rows[index])) };
+        let in_time = |&index: &usize| {
+            if self.norm.is_over() { None } else { Some(self.rows.compliance.columns(&[rows[index]])) }
+        };
         let Some(columns) = basis.iter().map(in_time).collect::<Option<Vec<_>>>() else { return none() };
         let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
         let mut lengths = none();
@@ -325,8 +272,7 @@ mod tests {
             let smooth = norm.displacement(lattice.load());
             let stiffness = multigrid.preconditioning(lattice.stiffness());
             let least = stiffness.dual_norm(lattice.load(), &Watch::default()).unwrap().ritz;
-            let largest = largest_eigenvalue(&lattice, &multigrid, &smooth, &Watch::default()).unwrap();
-            let reach = measured_reach(&lattice, least, largest);
+            let reach = measured_reach(&lattice, (&multigrid, least), &smooth, &Watch::default()).unwrap();
             let exact = exact(&lattice, &norm);
             assert!(reach.iter().zip(&exact).all(|(reach, exact)| reach >= exact && *reach < 100.0 * exact));
             // Every row has the coefficient 2 and the stiffness d. The first step of the power iteration is at the
@@ -401,10 +347,9 @@ mod tests {
         let rows: Vec<_> = (0..4).flat_map(|row| (0..dofs).map(move |dof| (row, dof, of_row(row, dof)))).collect();
         let problem = ContactProblem::of_entries(&entries, &vec![1.0; dofs], &rows, &[1.0; 4]);
         let alone = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
-        let RowsOnBoundary { by_row, shift, .. } = alone.rows_on_boundary(problem.contact(), |_| true).unwrap();
-        let known = alone.clone().with_rows(problem.contact(), &by_row.transposed(), &shift);
+        let known = alone.clone().lending(problem.contact());
         let [alone, known] = [&alone, &known].map(|norm| ComplianceFactor::of(&problem, norm));
-        assert!(known.rows.compliance.is_some() && alone.rows.compliance.is_none());
+        assert!(known.rows.compliance.is_kept() && !alone.rows.compliance.is_kept());
         let all: Vec<usize> = (0..4).collect();
         let lengths = [&alone, &known].map(|of| of.moved_together(&all));
         let reach = known.reach_at_once().unwrap();

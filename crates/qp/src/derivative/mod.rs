@@ -31,7 +31,7 @@ use std::sync::Arc;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use crate::certificate::{Bounding, Examination};
+use crate::certificate::Examination;
 use crate::engine::{Engine, factored};
 use crate::error::Error;
 use crate::linear::watch::Watch;
@@ -271,12 +271,8 @@ impl Derivatives {
     fn one_sided(&self, rows: &RowStates, change: &Change) -> Result<Option<Tangent>, Error> {
         let (problem, RowStates { closed, weak, .. }) = (&self.problem, rows);
         let distances = self.on_first_rows(&change.distance);
-        let pick = |rows: &[usize]| rows.iter().map(|&row| distances[row]).collect::<Vec<f64>>();
         let held: Vec<usize> = closed.iter().collect();
-        let contact = problem.contact().select_rows(weak);
-        let small = ContactProblem::computed(problem.stiffness().clone(), change.load.clone(), contact, pick(weak))?;
-        let small = small.with_near_null_of(problem, <[f64]>::to_vec)?;
-        let small = small.with_all_equalities(&problem.contact().select_rows(&held), pick(&held))?;
+        let small = problem.with_held(change.load.clone(), [weak, &held], &distances)?;
         let Settings { watch, memory, threads, .. } = self.settings.clone();
         let settings = Settings { watch, memory, threads, ..Settings::default() };
         let found = solved(&small, &Start::default(), &settings)?;
@@ -325,26 +321,15 @@ impl Derivatives {
             }
         }
         if !is_exact {
-            error = self.bound_of(closed, force, distances, [&x, &y])?;
+            // The relative bound on the error in the energy norm by the hierarchy.
+            let rows: Vec<usize> = closed.iter().collect();
+            let on_rows: Vec<f64> = rows.iter().map(|&row| y[row]).collect();
+            let linear = self.problem.with_held(force.to_vec(), [&[], &rows], distances)?;
+            let by = self.engine.bounding(watch);
+            let examined = Examination::of(&linear, [&x, &on_rows], &by)?.certificate()?;
+            error = examined.certificate.energy_error_bound;
         }
         Ok(Some(Tangent { displacement: x, multiplier: self.problem.split(y).concat(), error }))
-    }
-
-    /// The relative bound on the error in the energy norm by the hierarchy.
-    fn bound_of(
-        &self,
-        closed: &ContactSet,
-        force: &[f64],
-        distances: &[f64],
-        [x, y]: [&[f64]; 2],
-    ) -> Result<f64, Error> {
-        let rows: Vec<usize> = closed.iter().collect();
-        let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-        let linear = self.problem.without_rows()?.with_load(force.to_vec())?;
-        let linear = linear.with_all_equalities(&self.problem.contact().select_rows(&rows), pick(distances))?;
-        let by: Bounding = self.engine.bounding(&self.settings.watch);
-        let examined = Examination::of(&linear, [x, &pick(y)], &by)?.certificate()?;
-        Ok(examined.certificate.energy_error_bound)
     }
 
     /// Number of rows as they were given: those of B and the equality rows.

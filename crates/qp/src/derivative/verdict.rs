@@ -56,14 +56,12 @@ pub(super) fn rows_of(
     }
     let sets = [problem.with_equality_rows(&solution.contact_set), closed.clone()];
     let exact = sets.iter().find_map(|set| exact_answer(problem, engine, set, answer, watch));
-    let exact = exact.filter(|(closed, weak)| {
+    let exact = exact.filter(|RowStates { closed, weak, .. }| {
         let active: Vec<usize> = closed.iter().chain(weak.iter().copied()).collect();
         let found = Dependence::of(problem.contact(), &active, || watch.is_over());
         found.is_some_and(|found| found.independent.iter().all(|&is_independent| is_independent))
     });
-    let is_kink = exact.as_ref().is_some_and(|(_, weak)| !weak.is_empty());
-    let (closed, weak) = exact.unwrap_or((closed, weak));
-    Ok(Ok(RowStates { closed, weak, is_kink }))
+    Ok(Ok(exact.unwrap_or(RowStates { closed, weak, is_kink: false })))
 }
 
 /// The proof by the data of the engine, or by a factor of the certificate.
@@ -101,17 +99,13 @@ fn exact_answer(
     set: &ContactSet,
     [displacement, multiplier]: [&Vec<f64>; 2],
     watch: &Watch,
-) -> Option<(ContactSet, Vec<usize>)> {
+) -> Option<RowStates> {
     if engine.hierarchy().is_some() {
         return None;
     }
-    let (mut u, mut lambda) = (displacement.clone(), multiplier.clone());
     // An equality has one row here.
-    let second = problem.inequalities() + problem.equality_rows()..problem.rows();
-    for opposed in second.clone() {
-        let row = opposed - problem.equality_rows();
-        lambda[row] -= std::mem::take(&mut lambda[opposed]);
-    }
+    let (mut u, mut lambda) = (displacement.clone(), problem.split(multiplier.clone()).concat());
+    lambda.resize(problem.rows(), 0.0);
     for row in (0..problem.rows()).filter(|&row| !set.contains(row)) {
         lambda[row] = 0.0;
     }
@@ -139,7 +133,7 @@ fn without_dust(values: &[f64]) -> Vec<f64> {
 
 /// The closed and the weak rows of an answer in which an equality has a multiplier of either sign on its first row;
 /// `None` if it is not exact.
-fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<(ContactSet, Vec<usize>)> {
+fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<RowStates> {
     let mut sums = vec![ExactSum::default(); problem.dofs()];
     for (i, j, stiffness) in problem.stiffness().lower().triplets() {
         sums[i].add_product(stiffness, u[j]);
@@ -183,5 +177,5 @@ fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<(Co
             _ => return None,
         }
     }
-    Some((closed, weak))
+    Some(RowStates { closed, is_kink: !weak.is_empty(), weak })
 }

@@ -72,7 +72,7 @@ impl Factored {
         let of_factor = |values: usize| bytes::of_factor(values as f64);
         match (&self.condensation, self.compliance()) {
             (Some(condensed), _) => {
-                let dofs = condensed.stiffness().dim();
+                let dofs = condensed.stiffness.dim();
                 of_factor(condensed.factor_entries()) + bytes::of_dense(dofs as f64)
             }
             (None, Some(compliance)) => compliance.bytes(),
@@ -107,7 +107,7 @@ impl Factored {
             Norm::Kept(norm) => Some(norm.clone()),
             Norm::Again(analysis) => {
                 let factor = analysis.factor(self.scaling.stiffness()).ok()?;
-                Some(EnergyNorm::new(factor, self.scaling.equilibration().clone(), Vec::new()))
+                Some(EnergyNorm::new(factor, self.scaling.equilibration.clone(), Vec::new()))
             }
         }
     }

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::factored::{Factored, Norm};
 use super::loading::{Load, Loading};
 use super::step::{Task, outcome};
-use crate::certificate::{self, Bounding, Examination};
+use crate::certificate::{self, Bounding, EnergyNorm, Examination};
 use crate::error::{Error, LinearError};
+use crate::linear::watch::Watch;
 use crate::linear::{dot, ldexp};
 use crate::method::parametric::{Event, ParametricLcp, Piece};
-use crate::method::penalty::AccuracyGoal;
 use crate::method::{Ending, Outcome, ScaledProblem, active_set};
 use crate::plan::Step;
 use crate::problem::ContactProblem;
@@ -42,7 +42,7 @@ fn find_under(engine: &Factored, loading: Arc<Loading>, gap: &[f64], task: &Task
     let method = engine.chosen(settings.method);
     let watch = engine.watch_of_loop(method, &settings.watch)?;
     let (problem, unit) = scaled(engine, &loading, gap)?;
-    let scaled = scaled_problem(engine, &problem).watched(&watch);
+    let scaled = scaled_problem(engine, &problem, watch);
     let start = task.start.contact_set.as_ref().map(|set| engine.selection.restrict_set(set));
     let bound = |displacement: &[f64], multiplier: &[f64]| {
         let by = engine.condensed_bounding(&problem, &settings.watch);
@@ -51,15 +51,15 @@ fn find_under(engine: &Factored, loading: Arc<Loading>, gap: &[f64], task: &Task
         let of_whole = loading.share_of_boundary(engine, unit, on_boundary);
         examined.map_or(f64::INFINITY, |examined| examined.certificate.energy_error_bound * of_whole)
     };
-    let goal = settings.accuracy.map(|accuracy| AccuracyGoal { accuracy, bound: &bound });
     let most_iterations = settings.max_iterations.min(task.limits.most_sets(engine.tried.set_seconds));
+    let goal = settings.accuracy.map(|accuracy| (accuracy, &bound as _));
     let outcome = outcome(task.step, &scaled, (method, start), most_iterations, goal)?;
-    let factor_seconds = scaled.factor_seconds();
+    let factor_seconds = scaled.factor_seconds.get();
     Ok(outcome.map(|outcome| Reduced { loading, problem, unit, outcome, factor_seconds }))
 }
 
-fn scaled_problem<'a>(engine: &'a Factored, problem: &'a ContactProblem) -> ScaledProblem<'a> {
-    ScaledProblem::new(problem, &engine.augmented, engine.is_definite()).with_compliance(engine.compliance())
+fn scaled_problem<'a>(engine: &'a Factored, problem: &'a ContactProblem, watch: Watch) -> ScaledProblem<'a> {
+    ScaledProblem::new(problem, &engine.augmented, engine.is_definite(), engine.compliance(), watch)
 }
 
 /// The problem that the methods work on, and the exponent of its reference displacement.
@@ -67,8 +67,8 @@ fn scaled(engine: &Factored, loading: &Loading, gap: &[f64]) -> Result<(ContactP
     let gap = engine.selection.gap(gap);
     let unit = loading.unit_with(engine, &gap);
     let (stiffness, contact) = match &engine.condensation {
-        Some(condensed) => (condensed.stiffness(), condensed.contact()),
-        None => (engine.scaling.stiffness(), engine.scaling.contact()),
+        Some(condensed) => (&condensed.stiffness, &condensed.contact),
+        None => (engine.scaling.stiffness(), &engine.scaling.contact),
     };
     let (load, gap) = (loading.scaled(unit), engine.scaling.gap(&gap, unit));
     Ok((ContactProblem::computed(stiffness.clone(), load, contact.clone(), gap)?, unit))
@@ -81,8 +81,8 @@ fn check_gap(engine: &Factored, gap: &[f64]) -> Result<(), Error> {
         None => Ok(()),
         Some(row) => {
             let allowed = "infinite in the same rows as when the problem was prepared";
-            let at = format!("entry {row}");
-            Err(LinearError::NotFinite { name: "gap vector", at, value: gap[row], allowed }.into())
+            Err(LinearError::NotFinite { name: "gap vector", at: format!("entry {row}"), value: gap[row], allowed }
+                .into())
         }
     }
 }
@@ -114,11 +114,11 @@ pub(super) fn whole(engine: &Factored, found: Reduced) -> (Outcome, f64) {
 
 /// The rows of the whole problem that contradict each other, with their weights.
 fn expand_contradiction(engine: &Factored, rows: &[usize], weights: &[f64]) -> Ending {
-    let mut scaled = vec![0.0; engine.selection.kept().len()];
+    let mut scaled = vec![0.0; engine.selection.kept.len()];
     rows.iter().zip(weights).for_each(|(&row, &weight)| scaled[row] = weight);
     // Rows are scaled like multipliers; the unit of weights is free.
-    let all = engine.expand_multiplier(&scaled, engine.scaling.equilibration().factor);
-    let rows: Vec<usize> = rows.iter().map(|&row| engine.selection.kept()[row]).collect();
+    let all = engine.expand_multiplier(&scaled, engine.scaling.equilibration.factor);
+    let rows: Vec<usize> = rows.iter().map(|&row| engine.selection.kept[row]).collect();
     let weights = rows.iter().map(|&row| all[row]).collect();
     Ending::Infeasible { rows, weights }
 }
@@ -186,7 +186,7 @@ pub(super) fn refined(engine: &Factored, task: &Task, best: &Solution) -> Option
 pub(crate) fn balanced(engine: &Factored, closed: &ContactSet, load: &[f64], gap: &[f64]) -> Option<[Vec<f64>; 2]> {
     let loading = Loading::of(engine, load, &engine.selection.gap(gap));
     let (problem, unit) = scaled(engine, &loading, gap).ok()?;
-    let task = scaled_problem(engine, &problem);
+    let task = scaled_problem(engine, &problem, Watch::default());
     let held = active_set::with_contact_set(&task, &engine.selection.restrict_set(closed)).ok()??;
     Some([loading.expand(engine, unit, &held.displacement), engine.expand_multiplier(&held.multiplier, unit)])
 }
@@ -200,10 +200,10 @@ pub(crate) fn settled(engine: &Factored, task: &Task) -> Result<Option<Vec<f64>>
 /// The displacement that a load causes if no row is closed; `None` without a factor of a definite stiffness.
 pub(crate) fn response(engine: &Factored, load: &Load) -> Option<Vec<f64>> {
     let norm = engine.norm()?;
-    let loading = load.swept(engine, &vec![0.0; engine.selection.kept().len()]);
+    let loading = load.swept(engine, &vec![0.0; engine.selection.kept.len()]);
     let moved = match &engine.condensation {
         Some(condensed) => condensed.free_displacement(&loading.sweep),
-        None => norm.scaled_displacement(&loading.scaled(loading.unit)),
+        None => norm.equilibrated().displacement(&loading.scaled(loading.unit)),
     };
     Some(loading.expand(engine, loading.unit, &moved))
 }
@@ -231,18 +231,21 @@ pub(crate) fn on_boundary(
 /// The exact way from the answer of a task to that at the gaps `to`; `None` if the task has no answer on the
 /// boundary that meets its goal.
 pub(crate) fn walk(engine: &Factored, from: &Task, to: &[f64]) -> Result<Option<Walk>, Error> {
-    let Some(condensed) = engine.condensation.as_ref().filter(|_| engine.is_definite()) else {
+    let contact = engine.selection.contact(engine.problem.contact());
+    let norm = engine.norm().map(|norm| norm.keeping(&contact));
+    let (Some(condensed), Some(compliance)) = (&engine.condensation, norm.as_ref().and_then(EnergyNorm::compliance))
+    else {
         return Err(Error::NotCondensed { step: "the exact path" });
     };
     check_gap(engine, to)?;
     let Some((found, _)) = on_boundary(engine, from, true)? else { return Ok(None) };
     let Reduced { loading, unit, problem, outcome, .. } = &found;
-    let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
+    let free = condensed.contact.mul(&condensed.free_displacement(&loading.sweep));
     let at_end = engine.scaling.gap(&engine.selection.gap(to), *unit);
     let constant = free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
     let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
-    let compliance = ParametricLcp::new(condensed.compliance(), constant, slope);
-    let (pieces, mut events) = compliance.walk(&outcome.contact_set, &from.settings.watch)?;
-    events.iter_mut().for_each(|event| event.row = engine.selection.kept()[event.row]);
+    let path = ParametricLcp::new(compliance.matrix(), constant, slope);
+    let (pieces, mut events) = path.walk(&outcome.contact_set, &from.settings.watch)?;
+    events.iter_mut().for_each(|event| event.row = engine.selection.kept[event.row]);
     Ok(Some((pieces, events, *unit)))
 }

@@ -63,7 +63,9 @@ impl Loading {
         *self.free.get_or_init(|| {
             let moved = match &engine.condensation {
                 Some(condensed) => engine.is_definite().then(|| condensed.free_displacement(&self.sweep)),
-                None if engine.is_norm_at_hand() => engine.norm().map(|norm| norm.scaled_displacement(&self.scaled)),
+                None if engine.is_norm_at_hand() => {
+                    engine.norm().map(|norm| norm.equilibrated().displacement(&self.scaled))
+                }
                 None => None,
             };
             moved.map(|moved| ldexp(largest(&moved), self.unit))
@@ -74,7 +76,7 @@ impl Loading {
     pub fn with_contact_force(mut self, engine: &Factored, force: &[f64]) -> Self {
         if let Some(condensed) = &engine.condensation {
             let scaled = engine.scaling.load(force, self.unit);
-            self.scaled.iter_mut().zip(condensed.dofs()).for_each(|(entry, &dof)| *entry += scaled[dof]);
+            self.scaled.iter_mut().zip(&condensed.contact_dofs).for_each(|(entry, &dof)| *entry += scaled[dof]);
         }
         self
     }

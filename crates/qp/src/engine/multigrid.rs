@@ -8,8 +8,9 @@ use crate::error::Error;
 use crate::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::linear::threads_of_machine;
 use crate::linear::watch::Watch;
+use crate::method::Outcome;
+use crate::method::Start;
 use crate::method::mprgp::{Limits, Mprgp, takes_travels};
-use crate::method::{Outcome, Solver, Start};
 use crate::plan::Tried;
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
@@ -86,9 +87,7 @@ impl Hierarchical {
         watch: &Watch,
     ) -> Result<Option<[Vec<f64>; 2]>, Error> {
         let rows: Vec<usize> = closed.iter().collect();
-        let values = rows.iter().map(|&row| gap[row]).collect();
-        let free = self.problem.without_rows()?.with_load(load.to_vec())?;
-        let problem = &free.with_all_equalities(&self.problem.contact().select_rows(&rows), values)?;
+        let problem = &self.problem.with_held(load.to_vec(), [&[], &rows], gap)?;
         let limits = Limits { most_cycles: MOST_HELD_CYCLES, ..Limits::to(HELD) };
         let outcome = Mprgp { problem, multigrid: &self.multigrid, limits, watch }.solve(Start::default())?;
         if !outcome.is_settled() {

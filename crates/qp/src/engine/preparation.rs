@@ -55,8 +55,8 @@ pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<
         (None, _) => Norm::Missing,
         (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
         (Some(cholesky), _) => {
-            let norm = EnergyNorm::new(cholesky, scaling.equilibration().clone(), last);
-            Norm::Kept(norm.with_rows(&contact, scaling.contact(), scaling.row_exponents()))
+            let norm = EnergyNorm::new(cholesky, scaling.equilibration.clone(), last);
+            Norm::Kept(norm.lending(&contact))
         }
     };
     let augmented = augmented(condensation.as_ref(), &scaling, analysis, threads.unwrap_or(1))?;
@@ -68,7 +68,7 @@ pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<
     let lost_pivot = (least_pivot < LOST_PIVOT).then_some(least_pivot);
     let tried = Tried {
         method,
-        condensed_dofs: condensation.as_ref().map(|condensed| condensed.stiffness().dim()),
+        condensed_dofs: condensation.as_ref().map(|condensed| condensed.stiffness.dim()),
         is_shortcut: settings.method == Method::Auto && method != Method::ActiveSet,
         lost_pivot,
         is_singular: lost_pivot.is_some(),
@@ -105,7 +105,7 @@ fn definite(
     let factor = || match analysis.is_dense() && !is_condensed {
         // Its method takes the scaled stiffness too.
         true => analysis.factor(scaling.stiffness()),
-        false => analysis.factor_equilibrated(problem.stiffness(), scaling.equilibration()),
+        false => analysis.factor_equilibrated(problem.stiffness(), &scaling.equilibration),
     };
     match settings.watch.timed(seconds::factorisation(analysis), factor) {
         Ok(cholesky) => {
@@ -134,7 +134,7 @@ fn condensed(
     let Some(factor) = factor else { return Ok(None) };
     check_time(&settings.watch, seconds::dense(last.len()))?;
     let last = last.to_vec();
-    Condensation::new(factor, cholesky.is_none(), last, scaling.contact()).map(Some)
+    Condensation::new(factor, cholesky.is_none(), last, &scaling.contact).map(Some)
 }
 
 /// The matrices that the methods factorise, analysed; an `analysis` of the stiffness is reused for them.
@@ -147,18 +147,18 @@ fn augmented(
     match condensation {
         Some(condensed) => {
             // The condensed matrix is dense: any order gives the same factor, and its last block is the whole factor.
-            let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
-            let (stiffness, contact) = (condensed.stiffness(), condensed.contact());
+            let all: Vec<usize> = (0..condensed.stiffness.dim()).collect();
+            let (stiffness, contact) = (&condensed.stiffness, &condensed.contact);
             let matrix = AugmentedMatrix::with_last(stiffness, contact, &all)?.with_threads(threads);
             Ok(Augmented::of(stiffness, contact, matrix))
         }
-        None => Ok(Augmented::new(scaling.stiffness(), scaling.contact(), analysis, threads)),
+        None => Ok(Augmented::new(scaling.stiffness(), &scaling.contact, analysis, threads)),
     }
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` if it is not safely definite.
 fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
-    let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
+    let augmented = AugmentedMatrix::with_last(scaling.stiffness(), &scaling.contact, contact_dofs)?;
     let augmented = augmented.with_threads(settings.threads.unwrap_or(1));
     check_time(&settings.watch, seconds::factorisation(augmented.analysis()))?;
     let matrix = augmented.matrix(|_| 1.0, 0.0);

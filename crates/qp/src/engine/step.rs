@@ -2,12 +2,10 @@
 
 use super::loading::Load;
 use crate::error::Error;
-use crate::method::active_set::ActiveSet;
-use crate::method::dual_active_set::DualActiveSet;
-use crate::method::interior_point::{Barrier, InteriorPoint};
+use crate::method::interior_point::{self, InteriorPoint};
 use crate::method::mprgp::Limits;
-use crate::method::penalty::{AccuracyGoal, Penalty, PenaltyLoop};
-use crate::method::{Ending, Outcome, ScaledProblem, Solver, Start};
+use crate::method::penalty::{self, AccuracyGoal, Penalty};
+use crate::method::{Ending, Outcome, ScaledProblem, Start, active_set, dual_active_set};
 use crate::plan::{PATIENCE, Step};
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
@@ -43,7 +41,7 @@ pub(super) fn outcome(
             Ok(Some(Outcome { variant, ..found }))
         }
         Step::Continuation => continued(scaled, start, most_iterations).map(Some),
-        Step::Dual => DualActiveSet::of(scaled)?.map(|method| method.solve(Start::default())).transpose(),
+        Step::Dual => dual_active_set::solve(scaled),
         _ => Ok(None),
     }
 }
@@ -55,15 +53,14 @@ fn by_method(
     goal: Option<AccuracyGoal>,
 ) -> Result<Outcome, Error> {
     let Some(cold) = scaled.start()? else { return Ok(Outcome::at_rest(scaled.problem, Ending::Unheld)) };
-    let by_sets =
-        |start: ContactSet| ActiveSet { scaled, most_iterations: most_iterations.min(PATIENCE) }.solve(start.into());
+    let by_sets = |start: ContactSet| active_set::solve(scaled, start, most_iterations.min(PATIENCE));
     match (method, start) {
         (Method::Qp(InteriorPoint { polish: true, .. }), Some(start)) => {
             let outcome = by_sets(start)?;
             Ok(Outcome { variant: if outcome.is_settled() { "-warm" } else { outcome.variant }, ..outcome })
         }
         (Method::Qp(InteriorPoint { polish, tolerance }), _) => {
-            let found = Barrier { scaled, tolerance }.solve(Start::default())?;
+            let found = interior_point::solve(scaled, tolerance)?;
             match polish {
                 // The multipliers become those of a linear solve.
                 true => Ok(Outcome { iterations: found.iterations, ..by_sets(found.contact_set)? }),
@@ -71,7 +68,7 @@ fn by_method(
             }
         }
         (Method::Penalty(ladder), start) => {
-            PenaltyLoop { scaled, ladder, goal, most_iterations }.solve(start.unwrap_or(cold).into())
+            penalty::solve(scaled, ladder, start.unwrap_or(cold), most_iterations, goal)
         }
         (_, start) => by_sets(start.unwrap_or(cold)),
     }
@@ -90,13 +87,12 @@ fn continued(scaled: &ScaledProblem, start: Option<ContactSet>, most_iterations:
     let ladder = Penalty { penetration_threshold: 0.0, ..Penalty::default() };
     let start = start.unwrap_or_else(|| ContactSet::open(scaled.problem.rows()));
     let most_on_ladder = most_iterations.min(PATIENCE.max(3 * scaled.problem.rows().isqrt()));
-    let climb = PenaltyLoop { scaled, ladder, goal: None, most_iterations: most_on_ladder };
-    let approach = climb.solve(start.into())?;
-    if scaled.watch().is_over() {
+    let approach = penalty::solve(scaled, ladder, start, most_on_ladder, None)?;
+    if scaled.watch.is_over() {
         return Ok(Outcome { ending: Ending::Unsettled, variant: "-unsettled", ..approach });
     }
     let most_iterations = most_iterations.saturating_sub(approach.iterations).max(1);
-    let second = ActiveSet { scaled, most_iterations }.solve(approach.contact_set.clone().into())?;
+    let second = active_set::solve(scaled, approach.contact_set.clone(), most_iterations)?;
     let variant = if second.is_settled() { "-continuation" } else { second.variant };
     Ok(Outcome { variant, ..second.after(approach) })
 }

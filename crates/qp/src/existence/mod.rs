@@ -21,7 +21,8 @@ use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
 use crate::certificate::{NullMode, Rounding, mode_along, not_convex_along};
 use crate::error::Error;
-use crate::linear::{Analysis, FactorError, NullSpace, Twice, generic, largest, norm, subtract, take_out, twice};
+use crate::linear::twice::Sum;
+use crate::linear::{Analysis, FactorError, NullSpace, Twice, across, extend, generic, largest, norm, subtract};
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
 use crate::transform::Scaling;
@@ -67,7 +68,7 @@ fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, E
 /// The problem in the units of `scaling`.
 fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem, Error> {
     let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
-    ContactProblem::computed(scaling.stiffness().clone(), load, scaling.contact().clone(), gap)
+    ContactProblem::computed(scaling.stiffness().clone(), load, scaling.contact.clone(), gap)
 }
 
 /// A scaled problem with a basis of the null space of its stiffness.
@@ -138,7 +139,8 @@ impl Existence {
 
     /// The error if the load drives a mode without energy that no row stops, and some displacement meets the rows.
     pub fn unbounded(&self) -> Option<Error> {
-        let mode = self.escape()?;
+        let along_load: Vec<f64> = self.against_load.values.iter().map(|value| -value.rounded()).collect();
+        let mode = self.mode(&self.cone(&|_| true).nearest(&along_load)?).filter(NullMode::escapes)?;
         Some(Error::Unbounded { mode: mode.in_words(), direction: self.expanded(&mode) })
     }
 
@@ -157,7 +159,8 @@ impl Existence {
     /// without a mode that the load drives, has an answer.
     pub fn check_unique(&self, problem: &ContactProblem, solution: &Solution, tolerance: f64) -> Result<(), Error> {
         let certificate = &solution.certificate;
-        let drift = if certificate.penetration <= tolerance { self.drift() } else { None };
+        // No row stops such a mode from any start: with it, a problem has more than one answer if it has any.
+        let drift = if certificate.penetration <= tolerance { self.idle(&|_| true) } else { None };
         let freedom = || self.freedom(problem, solution).filter(|_| certificate.conditions_hold(tolerance));
         match drift.or_else(freedom) {
             Some(mode) => Err(Error::UnderHeld { mode: mode.in_words(), direction: self.expanded(&mode) }),
@@ -171,19 +174,6 @@ impl Existence {
         let size = largest(&direction);
         direction.iter_mut().for_each(|value| *value /= size);
         direction
-    }
-
-    /// A mode without energy that the load drives and no row stops.
-    fn escape(&self) -> Option<NullMode> {
-        let cone = self.cone(&|_| true);
-        let along_load: Vec<f64> = self.against_load.values.iter().map(|value| -value.rounded()).collect();
-        self.mode(&cone.nearest(&along_load)?).filter(NullMode::escapes)
-    }
-
-    /// A mode without energy on which the load does no work, and that no row stops from any start: a problem with such
-    /// a mode has more than one answer if it has any.
-    fn drift(&self) -> Option<NullMode> {
-        self.idle(&|_| true)
     }
 
     /// A mode without energy that leads from an answer to others.
@@ -269,13 +259,10 @@ impl Existence {
 
 /// A linear function of displacements in the coordinates of a null space.
 fn coordinates<I: Iterator<Item = (usize, f64)>>(null: &NullSpace, entries: impl Fn() -> I, rounding: Rounding) -> Row {
-    let mut terms = 0.0;
-    let mut value = |vector: &Vec<Twice>| {
-        terms += entries().map(|(dof, b)| (b * vector[dof].rounded()).abs()).sum::<f64>();
-        twice::sum(entries().map(|(dof, b)| Twice::from(b) * vector[dof]), rounding.vanishes)
-    };
-    let values = null.vectors.iter().map(&mut value).collect();
-    Row { values, terms }
+    let along = |vector: &Vec<Twice>| entries().map(|(dof, b)| Twice::from(b) * vector[dof]).collect();
+    let sums: Vec<Sum> = null.vectors.iter().map(along).collect();
+    let values = sums.iter().map(|sum| sum.beyond(rounding.vanishes)).collect();
+    Row { values, terms: sums.iter().map(|sum| sum.terms).sum() }
 }
 
 /// Upper bounds on the moves of rows by the imbalance of u and lambda: a force moves its dof against no more than the
@@ -311,26 +298,11 @@ fn is_rigid(problem: &ContactProblem, displacement: &[f64], bodies: &[usize]) ->
     };
     let mut directions: Vec<Vec<f64>> = Vec::new();
     for mode in modes.vectors() {
-        let mode = own(mode);
-        let mut left = across(&directions, mode.clone());
-        let length = norm(&left);
-        if length > RIGID * norm(&mode) {
-            left.iter_mut().for_each(|value| *value /= length);
-            directions.push(left);
-        }
+        extend(&mut directions, own(mode), RIGID);
     }
     let elsewhere = displacement.iter().zip(bodies).filter(|entry| *entry.1 != body).map(|entry| entry.0.abs());
     let left = norm(&across(&directions, own(displacement))) + elsewhere.sum::<f64>();
     left <= RIGID * norm(displacement)
-}
-
-/// The part of a vector that is orthogonal to some directions.
-fn across(directions: &[Vec<f64>], mut vector: Vec<f64>) -> Vec<f64> {
-    // The second turn removes the rounding of the first.
-    for direction in directions.iter().chain(directions) {
-        take_out(&mut vector, direction);
-    }
-    vector
 }
 
 fn place_of_largest(values: &[f64]) -> usize {

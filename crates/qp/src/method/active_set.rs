@@ -14,13 +14,13 @@
 //! J. J. Júdice and F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
 //! complementarity problems*, Computers & Operations Research 21 (1994) 587-596.
 
-use std::cell::LazyCell;
+use std::cell::{Cell, LazyCell};
 use std::collections::HashSet;
 
-use super::equilibrium::{Equilibrium, WEIGHT, by_compliance, equilibrium, reach};
-use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem};
 use crate::error::Error;
-use crate::linear::largest;
+use crate::linear::{Cholesky, largest};
+use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
 /// Rounding of a multiplier, in units of the last place of the forces that balance it.
@@ -38,90 +38,79 @@ const CLEARLY: f64 = 1e-6;
 /// Number of block exchanges that may fail to reduce the number of violations before a single pivot.
 const PATIENCE: usize = 3;
 
-/// The active-set loop on a scaled problem.
-#[derive(Clone, Copy)]
-pub struct ActiveSet<'a> {
-    pub scaled: &'a ScaledProblem<'a>,
-    /// Largest number of sets, each with a factorisation.
-    pub most_iterations: usize,
-}
+/// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains
+/// about four digits, and the factorisation loses as many.
+const WEIGHT: f64 = 65536.0;
 
-impl Solver for ActiveSet<'_> {
-    /// Runs the loop from the contact set of `start`.
-    fn solve(&self, start: Start) -> Result<Outcome, Error> {
-        let scaled = self.scaled;
-        let rows = scaled.problem.rows();
-        let mut closed = start.into_set(rows);
-        let (mut displacement, mut multiplier) = (vec![0.0; scaled.problem.dofs()], vec![0.0; rows]);
-        let mut history = Vec::new();
-        let mut seen = HashSet::new();
-        let mut rule = Rule::Exchange;
-        let mut ending = Ending::Unsettled;
-        let is_over = |done: usize| done > 0 && scaled.watch().is_over();
-        while ending == Ending::Unsettled && history.len() < self.most_iterations && !is_over(history.len()) {
-            scaled.watch().step("active set", history.len() + 1);
-            let balance = match balance(scaled, &mut closed, &displacement)? {
-                Ok(balance) => balance,
+/// Corrections of the multipliers; four or five suffice if the closed rows are consistent.
+const CORRECTIONS: usize = 25;
+
+/// A correction by the compliance below this is the last: a factor that is safely definite makes the next one its
+/// square, or less.
+const SQUARED: f64 = 1e-9;
+
+/// Closed rows that still miss their gap by this, relative to the displacement, contradict each other.
+const CONTRADICTION: f64 = 1e-9;
+
+/// Runs the loop on a scaled problem from the contact set `closed`, over at most `most_iterations` sets, each with a
+/// factorisation.
+pub fn solve(scaled: &ScaledProblem, mut closed: ContactSet, most_iterations: usize) -> Result<Outcome, Error> {
+    let (mut displacement, mut multiplier) = (vec![0.0; scaled.problem.dofs()], vec![0.0; scaled.problem.rows()]);
+    let (mut history, mut seen) = (Vec::new(), HashSet::new());
+    let (mut rule, mut ending) = (Rule::Exchange, Ending::Unsettled);
+    let is_over = |done: usize| done > 0 && scaled.watch.is_over();
+    while ending == Ending::Unsettled && history.len() < most_iterations && !is_over(history.len()) {
+        scaled.watch.step("active set", history.len() + 1);
+        let is_near = |balance: &Equilibrium| wrong_rows(scaled, balance, &closed, CLEARLY).next().is_none();
+        let balance = match by_compliance(scaled, &closed, is_near) {
+            Some(balance) => balance,
+            // The rows that hold the body join the set.
+            None => match scaled.hold_with_more(&mut closed, WEIGHT, &displacement)? {
+                Ok(factor) => equilibrium(scaled.problem, &factor, &closed),
                 Err(without) => {
                     ending = without;
                     break;
                 }
-            };
-            history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
-            if !balance.consistent {
-                break;
-            }
-            let wrong: Vec<usize> = wrong_rows(scaled, &balance, &closed, SIGN_TOLERANCE).collect();
-            (displacement, multiplier) = (balance.displacement, balance.multiplier);
-            if wrong.is_empty() {
-                ending = Ending::Settled;
-            } else {
-                if !seen.insert((closed.clone(), rule)) {
-                    if matches!(rule, Rule::Pivoting { .. }) {
-                        // Pivoting returns to a set if rounding decides signs: it would then repeat without end.
-                        break;
-                    }
-                    rule = rule.pivoting(wrong.len());
-                }
-                rule.choose(&wrong).iter().for_each(|&row| closed.toggle(row));
-            }
+            },
+        };
+        history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
+        if !balance.consistent {
+            break;
         }
-        multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
-        let variant = if ending == Ending::Settled { rule.variant() } else { "-unsettled" };
-        let iterations = history.len();
-        Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, ending, variant })
+        let wrong: Vec<usize> = wrong_rows(scaled, &balance, &closed, SIGN_TOLERANCE).collect();
+        (displacement, multiplier) = (balance.displacement, balance.multiplier);
+        if wrong.is_empty() {
+            ending = Ending::Settled;
+        } else {
+            if !seen.insert((closed.clone(), rule)) {
+                if matches!(rule, Rule::Pivoting { .. }) {
+                    // Pivoting returns to a set if rounding decides signs: it would then repeat without end.
+                    break;
+                }
+                rule = Rule::Pivoting { fewest: wrong.len(), patience: 0, single: false };
+            }
+            rule.choose(&wrong).iter().for_each(|&row| closed.toggle(row));
+        }
     }
-}
-
-/// The balance of `closed`, from a displacement `near` it, once the rows that hold the body have joined the set: by the
-/// compliance of the rows if they do not follow from each other, otherwise by a factor of its own. The ending of the
-/// loop if there is none.
-fn balance(
-    scaled: &ScaledProblem,
-    closed: &mut ContactSet,
-    near: &[f64],
-) -> Result<Result<Equilibrium, Ending>, Error> {
-    let is_near = |balance: &Equilibrium| wrong_rows(scaled, balance, closed, CLEARLY).next().is_none();
-    let by_compliance = |compliance| by_compliance(scaled, compliance, closed, is_near);
-    if let Some(balance) = scaled.compliance.and_then(by_compliance) {
-        return Ok(Ok(balance));
-    }
-    let cholesky = scaled.hold_with_more(closed, WEIGHT, near)?;
-    Ok(cholesky.map(|cholesky| equilibrium(scaled.problem, &cholesky, closed)))
+    multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
+    let variant = match rule {
+        _ if ending != Ending::Settled => "-unsettled",
+        Rule::Exchange => "",
+        Rule::Pivoting { single: false, .. } => "-block-pivoting",
+        Rule::Pivoting { single: true, .. } => "-single-pivoting",
+    };
+    let iterations = history.len();
+    Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, ending, variant })
 }
 
 /// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if
 /// they do not hold the body, or contradict each other.
 pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
-    let by_compliance = |compliance| by_compliance(scaled, compliance, closed, |_| true);
-    let balance = match scaled.compliance.and_then(by_compliance) {
-        Some(balance) => balance,
-        None => {
-            let Some(cholesky) = scaled.hold(closed, WEIGHT)? else { return Ok(None) };
-            equilibrium(scaled.problem, &cholesky, closed)
-        }
+    let balance = match by_compliance(scaled, closed, |_| true) {
+        None => scaled.hold(closed, WEIGHT)?.map(|cholesky| equilibrium(scaled.problem, &cholesky, closed)),
+        balance => balance,
     };
-    Ok(Some(balance).filter(|balance| balance.consistent))
+    Ok(balance.filter(|balance| balance.consistent))
 }
 
 /// The rule by which the misclassified rows of a set give the next set.
@@ -134,22 +123,6 @@ enum Rule {
 }
 
 impl Rule {
-    fn pivoting(self, fewest: usize) -> Self {
-        match self {
-            Rule::Exchange => Rule::Pivoting { fewest, patience: 0, single: false },
-            pivoting => pivoting,
-        }
-    }
-
-    /// The suffix of a loop that this rule settled.
-    fn variant(self) -> &'static str {
-        match self {
-            Rule::Exchange => "",
-            Rule::Pivoting { single: false, .. } => "-block-pivoting",
-            Rule::Pivoting { single: true, .. } => "-single-pivoting",
-        }
-    }
-
     fn choose<'a>(&mut self, wrong: &'a [usize]) -> &'a [usize] {
         let Rule::Pivoting { fewest, patience, single } = self else { return wrong };
         if wrong.len() < *fewest {
@@ -183,7 +156,7 @@ fn wrong_rows(
     });
     // No entry of a definite matrix is larger than its largest diagonal entry. This bounds the forces without a product
     // of K: few rows pull so little that the forces themselves must be known.
-    let most = if scaled.is_definite() { MOST_ENTRY * sum_of(u) } else { f64::INFINITY };
+    let most = if scaled.is_definite { MOST_ENTRY * sum_of(u) } else { f64::INFINITY };
     let most_on_rows = MOST_OF_ROW * (u.len() as f64 * most + sum_of(problem.load()));
     let pulls = move |row: usize| {
         let is_beyond = |forces: f64| multiplier[row] > strongest + FORCE_ROUNDING * forces;
@@ -197,4 +170,108 @@ fn wrong_rows(
 
 fn sum_of(values: &[f64]) -> f64 {
     values.iter().map(|value| value.abs()).sum()
+}
+
+/// Balance of forces with the rows of a set closed.
+#[derive(Clone, Debug)]
+pub struct Equilibrium {
+    /// Displacement, one entry per dof.
+    pub displacement: Vec<f64>,
+    /// Multiplier, one entry per row, zero on open rows, of either sign on closed ones.
+    pub multiplier: Vec<f64>,
+    /// The displacement of each row, `B u`.
+    pub along_rows: Vec<f64>,
+    /// `true` if all rows of the set could be closed together.
+    pub consistent: bool,
+}
+
+/// The size of the displacements that matter: those of the contact rows or, if all of these are zero except for
+/// rounding, the displacement by the load of a stiffness of order one. `along_rows` is the displacement of the rows.
+fn reach(problem: &ContactProblem, along_rows: &[f64]) -> f64 {
+    largest(along_rows).max(largest(problem.load()))
+}
+
+/// Solves the saddle-point system of the closed rows by corrections with the factorised K + w B_C'B_C:
+///
+/// ```text
+/// (K + w B_C'B_C) du = f + B_C'l - K u + w B_C'(g - B u),     dl = w (g - B u - B du)  on C
+/// ```
+///
+/// The residuals are those of the exact system, so that neither the weight nor redundant rows reduce the accuracy.
+fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &ContactSet) -> Equilibrium {
+    let contact = problem.contact();
+    let correct = |force: &[f64], distance: &[f64]| {
+        let du = cholesky.solve(force);
+        let along = contact.mul(&du);
+        let on_row = |row: usize| if closed.contains(row) { WEIGHT * (distance[row] - along[row]) } else { 0.0 };
+        let dl = (0..distance.len()).map(on_row).collect();
+        (du, dl)
+    };
+    corrected(problem, closed, [WEIGHT, f64::EPSILON], correct, |_| true)
+}
+
+/// The same by the compliance of the rows, which solves the saddle-point system itself; `None` if closed rows follow
+/// from others. A balance that is not the one sought, because it `is_near` no answer, is left as it is after the first
+/// correction.
+fn by_compliance(
+    scaled: &ScaledProblem,
+    closed: &ContactSet,
+    is_near: impl Fn(&Equilibrium) -> bool,
+) -> Option<Equilibrium> {
+    let compliance = scaled.compliance?;
+    let held = compliance.held(closed.iter().collect())?;
+    // The first force is the load.
+    let first = Cell::new(Some(scaled.swept_load(compliance)));
+    let correct =
+        |force: &[f64], distance: &[f64]| held.solve(first.take().unwrap_or_else(|| compliance.swept(force)), distance);
+    let balance = corrected(scaled.problem, closed, [0.0, SQUARED], correct, is_near);
+    balance.consistent.then_some(balance)
+}
+
+/// The balance of the closed rows. `correct` gives the correction of displacement and multiplier for a force that is
+/// left, which contains the distances of the closed rows by their `weight`, and for these distances. A correction that
+/// is small `enough`, or rounding, is the last, and so is one to a balance that `is_near` no answer.
+fn corrected(
+    problem: &ContactProblem,
+    closed: &ContactSet,
+    [weight, enough]: [f64; 2],
+    correct: impl Fn(&[f64], &[f64]) -> (Vec<f64>, Vec<f64>),
+    is_near: impl Fn(&Equilibrium) -> bool,
+) -> Equilibrium {
+    let (contact, gap) = (problem.contact(), problem.gap());
+    let (mut unbalanced, displacement) = (problem.load().to_vec(), vec![0.0; problem.dofs()]);
+    let [multiplier, along_rows] = [(); 2].map(|()| vec![0.0; problem.rows()]);
+    let mut balance = Equilibrium { displacement, multiplier, along_rows, consistent: true };
+    let missing = |along: &[f64]| -> Vec<f64> {
+        let of_row = |(row, (b, g)): (usize, (&f64, &f64))| if closed.contains(row) { g - b } else { 0.0 };
+        along.iter().zip(gap).enumerate().map(of_row).collect()
+    };
+    let load = largest(problem.load());
+    let mut last_step = f64::INFINITY;
+    for _ in 0..CORRECTIONS {
+        let distance = missing(&balance.along_rows);
+        if weight > 0.0 || largest(&balance.multiplier) > 0.0 {
+            let push: Vec<f64> = balance.multiplier.iter().zip(&distance).map(|(l, d)| l + weight * d).collect();
+            unbalanced.iter_mut().zip(contact.mul_transposed(&push)).for_each(|(force, push)| *force += push);
+        }
+        let (du, dl) = correct(&unbalanced, &distance);
+        let Equilibrium { displacement: u, multiplier, along_rows, .. } = &mut balance;
+        u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
+        multiplier.iter_mut().zip(&dl).for_each(|(l, dl)| *l += dl);
+        *along_rows = contact.mul(u);
+        let step = relative_size(&du, largest(u).max(load)) + relative_size(&dl, largest(multiplier).max(load));
+        if step <= enough || step > 0.5 * last_step || !is_near(&balance) {
+            break;
+        }
+        last_step = step;
+        unbalanced = problem.stiffness().mul(&balance.displacement);
+        unbalanced.iter_mut().zip(problem.load()).for_each(|(force, load)| *force = load - *force);
+    }
+    let reach = closed.iter().fold(reach(problem, &balance.along_rows), |most, row| gap[row].abs().max(most));
+    let consistent = largest(&missing(&balance.along_rows)) <= CONTRADICTION * reach;
+    Equilibrium { consistent, ..balance }
+}
+
+fn relative_size(step: &[f64], size: f64) -> f64 {
+    if size == 0.0 { 0.0 } else { largest(step) / size }
 }

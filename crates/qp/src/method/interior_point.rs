@@ -5,7 +5,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT,
 };
 
-use super::{Ending, Outcome, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, ScaledProblem};
 use crate::error::{Error, LinearError};
 use crate::linear::panics::guarded;
 use crate::linear::watch::Watch;
@@ -57,48 +57,30 @@ impl Default for InteriorPoint {
     }
 }
 
-/// The interior-point method on a scaled problem.
-#[derive(Clone, Copy)]
-pub struct Barrier<'a> {
-    /// The scaled problem whose central path the method follows.
-    pub scaled: &'a ScaledProblem<'a>,
-    /// Tolerance, relative to data of order one.
-    pub tolerance: f64,
-}
-
-impl Solver for Barrier<'_> {
-    /// Solves the QP; the method has no use for a start. The contact set is that of the rows with
-    /// `z / z_scale > s / s_scale`, and `iterations` counts the steps over all units that were tried.
-    ///
-    /// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the
-    /// outcome is then unsettled, and at rest if there is no answer in it.
-    fn solve(&self, _: Start) -> Result<Outcome, Error> {
-        let (problem, watch) = (self.scaled.problem, self.scaled.watch());
-        if problem.rows() == 0 {
-            return Ok(unpolished(Outcome::at_rest(problem, Ending::Settled)));
+/// Solves the QP of a scaled problem to a tolerance that is relative to data of order one. The contact set is that of
+/// the rows with `z / z_scale > s / s_scale`, and `iterations` counts the steps over all units that were tried.
+///
+/// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the
+/// outcome is then unsettled, and at rest if there is no answer in it.
+pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<Outcome, Error> {
+    let (problem, watch) = (scaled.problem, &scaled.watch);
+    if problem.rows() == 0 {
+        return Ok(unpolished(Outcome::at_rest(problem, Ending::Settled)));
+    }
+    let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
+    let (mut iterations, mut corrections) = (0, 0);
+    loop {
+        let found = solve_in_unit(problem, tolerance, unit, watch)?;
+        iterations += found.iterations;
+        let size = largest(&found.displacement);
+        let displacement = exponent(size) - unit.displacement;
+        let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
+        let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT || size == 0.0;
+        if fits || watch.is_over() || displacement < -NOTHING_EXPONENT || corrections == UNIT_CORRECTIONS {
+            return Ok(Outcome { iterations, ..found });
         }
-        let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
-        let mut iterations = 0;
-        let mut corrections = 0;
-        loop {
-            let mut found = solve_in_unit(problem, self.tolerance, unit, watch)?;
-            iterations += found.iterations;
-            found.iterations = iterations;
-            let size = largest(&found.displacement);
-            let displacement = exponent(size) - unit.displacement;
-            let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
-            let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT;
-            if fits
-                || size == 0.0
-                || watch.is_over()
-                || displacement < -NOTHING_EXPONENT
-                || corrections == UNIT_CORRECTIONS
-            {
-                return Ok(found);
-            }
-            unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
-            corrections += 1;
-        }
+        unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
+        corrections += 1;
     }
 }
 
@@ -110,7 +92,7 @@ fn unpolished(outcome: Outcome) -> Outcome {
 
 /// Units in which the answer is of order one, as exponents of two: if a fine mesh makes the stiffness large beside the
 /// forces, multipliers of order one in the scaled problem would need a displacement far beyond the gap.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 struct Unit {
     displacement: i32,
     force: i32,
@@ -122,8 +104,6 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
     let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
     let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();
     let q: Vec<f64> = problem.load().iter().map(|&f| -ldexp(f, -unit.force)).collect();
-    let near_rows = problem.contact().select_rows(&rows);
-
     let settings = DefaultSettings::<f64> {
         verbose: false,
         tol_gap_abs: tolerance,
@@ -134,7 +114,7 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
         ..DefaultSettings::default()
     };
     let cones = [SupportedConeT::NonnegativeConeT(rows.len())];
-    let (mut p, a) = (csc(&problem.stiffness().upper()), csc(&near_rows));
+    let (mut p, a) = (csc(&problem.stiffness().upper()), csc(&problem.contact().select_rows(&rows)));
     p.nzval.iter_mut().for_each(|value| *value = ldexp(*value, unit.displacement - unit.force));
     let watch = watch.clone();
     let solved = guarded(|| {

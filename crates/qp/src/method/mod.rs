@@ -5,7 +5,6 @@
 pub mod active_set;
 mod bounds;
 pub mod dual_active_set;
-mod equilibrium;
 pub mod interior_point;
 pub mod mprgp;
 pub mod parametric;
@@ -15,5 +14,5 @@ mod start;
 mod support;
 
 pub(crate) use scaled::SIGN_TOLERANCE;
-pub use scaled::{Ending, Outcome, ScaledProblem, Solver};
+pub use scaled::{Ending, Outcome, ScaledProblem};
 pub use start::Start;

@@ -136,9 +136,9 @@ impl ParametricLcp {
             let line = self.respond(&closed)?;
             let force =
                 closed.iter().map(|row| line.constant[row].abs().max(line.slope[row].abs())).fold(0.0, f64::max);
-            let scales = RoundingScales { length: SIGN_TOLERANCE * length, force: SIGN_TOLERANCE * force };
+            let scales = [length, force].map(|scale| SIGN_TOLERANCE * scale);
             let next = (0..self.rows())
-                .filter_map(|row| line.change(row, &scales).map(|t| (t.max(now), row)))
+                .filter_map(|row| line.change(row, scales).map(|t| (t.max(now), row)))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             let end = next.map_or(1.0, |(t, _)| t.min(1.0));
             if end > now || next.is_none_or(|(t, _)| t >= 1.0) {
@@ -148,10 +148,10 @@ impl ParametricLcp {
                 Some((t, row)) if t < 1.0 => {
                     now = t;
                     let undecided: Vec<usize> =
-                        (0..self.rows()).filter(|&other| other == row || line.is_weak(other, t, &scales)).collect();
+                        (0..self.rows()).filter(|&other| other == row || line.is_weak(other, t, scales)).collect();
                     let mut next = closed.clone();
                     next.toggle(row);
-                    let after = self.turn(next, &undecided, &scales)?;
+                    let after = self.turn(next, &undecided, scales)?;
                     for &row in &undecided {
                         if after.contains(row) != closed.contains(row) {
                             events.push(Event { at: t, row, touches: after.contains(row) });
@@ -168,7 +168,7 @@ impl ParametricLcp {
 
     /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found from
     /// `next` by block pivoting on these rows, and by single pivots if that does not help.
-    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: &RoundingScales) -> Result<ContactSet, Error> {
+    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: [f64; 2]) -> Result<ContactSet, Error> {
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {
             let line = self.respond(&next)?;
@@ -185,12 +185,6 @@ impl ParametricLcp {
     }
 }
 
-/// Slopes and values below these are rounding.
-struct RoundingScales {
-    length: f64,
-    force: f64,
-}
-
 /// The multiplier of each closed row, and the violation of every other one, as a linear function of t.
 #[derive(Clone, Debug)]
 struct Linear {
@@ -204,16 +198,17 @@ impl Linear {
         self.constant[row] + t * self.slope[row]
     }
 
-    fn rounding(&self, row: usize, scales: &RoundingScales) -> f64 {
-        if self.closed.contains(row) { scales.force } else { scales.length }
+    /// Slopes and values below this are rounding: of these scales of a violation and of a force.
+    fn rounding(&self, row: usize, scales: [f64; 2]) -> f64 {
+        scales[usize::from(self.closed.contains(row))]
     }
 
     /// The t at which the row changes sides, if it moves in that direction.
-    fn change(&self, row: usize, scales: &RoundingScales) -> Option<f64> {
+    fn change(&self, row: usize, scales: [f64; 2]) -> Option<f64> {
         (self.slope[row] > self.rounding(row, scales)).then(|| -self.constant[row] / self.slope[row])
     }
 
-    fn is_weak(&self, row: usize, t: f64, scales: &RoundingScales) -> bool {
+    fn is_weak(&self, row: usize, t: f64, scales: [f64; 2]) -> bool {
         self.at(row, t).abs() <= self.rounding(row, scales)
     }
 }

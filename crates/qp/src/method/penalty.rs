@@ -12,7 +12,7 @@
 
 use std::collections::HashSet;
 
-use super::{Ending, Outcome, ScaledProblem, Solver, Start};
+use super::{Ending, Outcome, ScaledProblem};
 use crate::error::Error;
 use crate::linear::{Cholesky, largest};
 use crate::problem::ContactProblem;
@@ -51,27 +51,6 @@ impl Default for Penalty {
     }
 }
 
-/// An accuracy, with the bound that must meet it.
-#[derive(Clone, Copy)]
-pub struct AccuracyGoal<'a> {
-    /// Relative error in the energy norm.
-    pub accuracy: f64,
-    /// The bound of an answer (displacement, multiplier).
-    pub bound: &'a dyn Fn(&[f64], &[f64]) -> f64,
-}
-
-/// The penalty loop on a scaled problem.
-#[derive(Clone, Copy)]
-pub struct PenaltyLoop<'a> {
-    /// The scaled problem with penalties on its rows.
-    pub scaled: &'a ScaledProblem<'a>,
-    pub ladder: Penalty,
-    /// The relative energy error at which the ladder ends, if any.
-    pub goal: Option<AccuracyGoal<'a>>,
-    /// Largest number of factorisations on all rungs together.
-    pub most_iterations: usize,
-}
-
 /// Factor from rung to rung.
 const RUNG: f64 = 10.0;
 
@@ -81,87 +60,83 @@ const FLOOR: f64 = 0.5;
 /// Solves on the last rung after the set has settled: in the second the shift is the displacement itself.
 const FINAL_SOLVES: usize = 2;
 
-impl Solver for PenaltyLoop<'_> {
-    /// Climbs the ladder from the contact set of `start`.
-    fn solve(&self, start: Start) -> Result<Outcome, Error> {
-        let PenaltyLoop { scaled, ladder, .. } = self;
-        let mut climb = Climb::new(scaled.problem, start);
-        let mut penalty = ladder.first;
-        let mut last_bound = f64::INFINITY;
-        let multiplier = loop {
-            self.settle(&mut climb, penalty)?;
-            let multiplier = climb.multiplier(penalty);
-            if let Some(goal) = self.goal.filter(|_| climb.is_settled()) {
-                let bound = (goal.bound)(&climb.state.displacement, &multiplier);
-                if bound <= goal.accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
-                    break multiplier;
-                }
-                last_bound = bound;
-            }
-            let is_small = climb.is_settled() && climb.penetrates_at_most(scaled.problem, ladder.penetration_threshold);
-            let is_last = penalty * RUNG > ladder.last || climb.history.len() >= self.most_iterations;
-            if is_small || scaled.watch().is_over() || is_last || climb.ending == Ending::Unheld {
+/// A relative error in the energy norm, and the bound on that of an answer (displacement, multiplier).
+pub type AccuracyGoal<'a> = (f64, &'a dyn Fn(&[f64], &[f64]) -> f64);
+
+/// Climbs the ladder on a scaled problem from the contact set `closed`, by at most `most_iterations` factorisations on
+/// all rungs together. It ends at its goal, if there is one.
+pub fn solve(
+    scaled: &ScaledProblem,
+    ladder: Penalty,
+    closed: ContactSet,
+    most_iterations: usize,
+    goal: Option<AccuracyGoal>,
+) -> Result<Outcome, Error> {
+    let problem = scaled.problem;
+    let (displacement, violation) = (vec![0.0; problem.dofs()], vec![f64::NEG_INFINITY; problem.rows()]);
+    let mut climb = Climb { closed, displacement, violation, history: Vec::new(), ending: Ending::Unsettled };
+    let (mut penalty, mut last_bound) = (ladder.first, f64::INFINITY);
+    let multiplier = loop {
+        climb.settle(scaled, penalty, most_iterations)?;
+        let (multiplier, is_settled) = (climb.multiplier(penalty), climb.ending == Ending::Settled);
+        if let Some((accuracy, bound)) = goal.filter(|_| is_settled) {
+            let bound = bound(&climb.displacement, &multiplier);
+            if bound <= accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
                 break multiplier;
             }
-            penalty *= RUNG;
-        };
-        let variant = if climb.is_settled() { "" } else { "-unsettled" };
-        let Climb { closed: contact_set, state: State { displacement, .. }, history, ending } = climb;
-        Ok(Outcome { displacement, multiplier, contact_set, iterations: history.len(), history, ending, variant })
-    }
-}
-
-impl PenaltyLoop<'_> {
-    /// One rung: exchanges the rows of the set until it returns, or until the loop must end.
-    fn settle(&self, climb: &mut Climb, penalty: f64) -> Result<(), Error> {
-        let scaled = self.scaled;
-        let mut seen = HashSet::new();
-        climb.ending = Ending::Unsettled;
-        while climb.ending == Ending::Unsettled
-            && seen.insert(climb.closed.clone())
-            && climb.history.len() < self.most_iterations
-            && (climb.history.is_empty() || !scaled.watch().is_over())
-        {
-            scaled.watch().step("penalty loop", climb.history.len() + 1);
-            let cholesky = match scaled.hold_with_more(&mut climb.closed, penalty, &climb.state.displacement)? {
-                Ok(cholesky) => cholesky,
-                Err(ending) => {
-                    climb.ending = ending;
-                    break;
-                }
-            };
-            climb.history.push(Iteration { contact_set: climb.closed.clone(), penalty });
-            let springs = PenaltySprings { factor: &cholesky, closed: &climb.closed, penalty };
-            climb.state.advance(scaled.problem, &springs);
-            let next = ContactSet::from_fn(scaled.problem.rows(), |row| climb.state.violation[row] > 0.0);
-            climb.ending = Ending::of(next == climb.closed);
-            if climb.is_settled() {
-                (0..FINAL_SOLVES).for_each(|_| climb.state.advance(scaled.problem, &springs));
-            }
-            climb.closed = next;
+            last_bound = bound;
         }
-        Ok(())
-    }
+        let is_small = is_settled && climb.penetrates_at_most(problem, ladder.penetration_threshold);
+        let is_last = penalty * RUNG > ladder.last || climb.history.len() >= most_iterations;
+        if is_small || scaled.watch.is_over() || is_last || climb.ending == Ending::Unheld {
+            break multiplier;
+        }
+        penalty *= RUNG;
+    };
+    let Climb { closed: contact_set, displacement, history, ending, .. } = climb;
+    let variant = if ending == Ending::Settled { "" } else { "-unsettled" };
+    Ok(Outcome { displacement, multiplier, contact_set, iterations: history.len(), history, ending, variant })
 }
 
 /// The state of the loop between two rungs.
 struct Climb {
     closed: ContactSet,
-    state: State,
+    displacement: Vec<f64>,
+    /// B u - g of each row, kept to the relative precision of the change that made it.
+    violation: Vec<f64>,
     history: Vec<Iteration>,
     /// Settled if the last rung ended with the set that it began with.
     ending: Ending,
 }
 
 impl Climb {
-    fn new(problem: &ContactProblem, start: Start) -> Self {
-        let state =
-            State { displacement: vec![0.0; problem.dofs()], violation: vec![f64::NEG_INFINITY; problem.rows()] };
-        Climb { closed: start.into_set(problem.rows()), state, history: Vec::new(), ending: Ending::Unsettled }
-    }
-
-    fn is_settled(&self) -> bool {
-        self.ending == Ending::Settled
+    /// One rung: exchanges the rows of the set until it returns, or until the loop must end.
+    fn settle(&mut self, scaled: &ScaledProblem, penalty: f64, most_iterations: usize) -> Result<(), Error> {
+        let mut seen = HashSet::new();
+        self.ending = Ending::Unsettled;
+        while self.ending == Ending::Unsettled
+            && seen.insert(self.closed.clone())
+            && self.history.len() < most_iterations
+            && (self.history.is_empty() || !scaled.watch.is_over())
+        {
+            scaled.watch.step("penalty loop", self.history.len() + 1);
+            let factor = match scaled.hold_with_more(&mut self.closed, penalty, &self.displacement)? {
+                Ok(factor) => factor,
+                Err(ending) => {
+                    self.ending = ending;
+                    break;
+                }
+            };
+            self.history.push(Iteration { contact_set: self.closed.clone(), penalty });
+            self.advance(scaled.problem, &factor, penalty);
+            let next = ContactSet::from_fn(scaled.problem.rows(), |row| self.violation[row] > 0.0);
+            self.ending = Ending::of(next == self.closed);
+            if self.ending == Ending::Settled {
+                (0..FINAL_SOLVES).for_each(|_| self.advance(scaled.problem, &factor, penalty));
+            }
+            self.closed = next;
+        }
+        Ok(())
     }
 
     /// The forces of the closed rows as springs of this penalty.
@@ -169,42 +144,23 @@ impl Climb {
         let force = |(row, violation): (usize, &f64)| {
             if self.closed.contains(row) { -penalty * violation.max(0.0) } else { 0.0 }
         };
-        self.state.violation.iter().enumerate().map(force).collect()
+        self.violation.iter().enumerate().map(force).collect()
     }
 
     /// Returns `true` if no closed row penetrates by more than this share of the largest displacement of a row.
     fn penetrates_at_most(&self, problem: &ContactProblem, share: f64) -> bool {
-        let penetration = self.closed.iter().map(|row| self.state.violation[row]).fold(0.0, f64::max);
-        penetration <= share * largest(&problem.contact().mul(&self.state.displacement))
+        let penetration = self.closed.iter().map(|row| self.violation[row]).fold(0.0, f64::max);
+        penetration <= share * largest(&problem.contact().mul(&self.displacement))
     }
-}
 
-/// Closed rows as springs of one penalty eps.
-struct PenaltySprings<'a> {
-    /// K + eps B_C'B_C.
-    factor: &'a Cholesky,
-    closed: &'a ContactSet,
-    penalty: f64,
-}
-
-/// A displacement with the violation B u - g of each row, kept to the relative precision of the change that made it.
-struct State {
-    displacement: Vec<f64>,
-    violation: Vec<f64>,
-}
-
-impl State {
-    /// Solves (K + eps B_C'B_C) v = (f - K u) + eps B_C'(g - B u) and moves u to u + v.
-    fn advance(&mut self, problem: &ContactProblem, springs: &PenaltySprings) {
+    /// Solves (K + eps B_C'B_C) v = (f - K u) + eps B_C'(g - B u), by the factor of its matrix, and moves u to u + v.
+    fn advance(&mut self, problem: &ContactProblem, factor: &Cholesky, penalty: f64) {
         let distance: Vec<f64> = problem.violation(&self.displacement).iter().map(|violation| -violation).collect();
-        let pull: Vec<f64> = distance
-            .iter()
-            .enumerate()
-            .map(|(row, &distance)| if springs.closed.contains(row) { springs.penalty * distance } else { 0.0 })
-            .collect();
+        let on_row = |(row, distance): (usize, &f64)| if self.closed.contains(row) { penalty * distance } else { 0.0 };
+        let pull: Vec<f64> = distance.iter().enumerate().map(on_row).collect();
         let (elastic, spring) = (problem.stiffness().mul(&self.displacement), problem.contact().mul_transposed(&pull));
         let force: Vec<f64> = (0..problem.dofs()).map(|dof| problem.load()[dof] - elastic[dof] + spring[dof]).collect();
-        let change = springs.factor.solve(&force);
+        let change = factor.solve(&force);
         self.violation =
             problem.contact().mul(&change).iter().zip(&distance).map(|(moved, distance)| moved - distance).collect();
         self.displacement.iter_mut().zip(&change).for_each(|(u, v)| *u += v);

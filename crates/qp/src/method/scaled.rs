@@ -3,10 +3,9 @@
 use std::cell::{Cell, OnceCell};
 use std::time::Instant;
 
-use super::start::Start;
 use crate::error::Error;
 use crate::linear::watch::Watch;
-use crate::linear::{Augmented, AugmentedMatrix, Cholesky, Compliance, SymmetricMatrix, if_definite};
+use crate::linear::{Augmented, Cholesky, Compliance, SymmetricMatrix, if_definite};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
@@ -14,43 +13,36 @@ use crate::solution::{ContactSet, Iteration};
 /// signs a weakly active row would close and open without end.
 pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
 
-/// A method, together with the problem that it works on.
-pub trait Solver {
-    /// The result of the method from `start`.
-    fn solve(&self, start: Start) -> Result<Outcome, Error>;
-}
-
 /// A scaled problem with its pattern analysed: the input of every method.
 #[derive(Debug)]
 pub struct ScaledProblem<'a> {
     /// The data, dimensionless and of order one.
     pub problem: &'a ContactProblem,
     /// `true` if the stiffness is definite by itself: it has no modes without energy.
-    is_definite: bool,
+    pub is_definite: bool,
     augmented: &'a Augmented,
     /// The compliance of the rows, by which a method balances forces; `None` if factors of the augmented matrix cost
     /// less.
-    pub(super) compliance: Option<&'a Compliance>,
+    pub compliance: Option<&'a Compliance>,
     swept_load: OnceCell<Vec<f64>>,
-    factor_seconds: Cell<f64>,
-    watch: Watch,
+    /// Seconds spent in factorisations so far.
+    pub factor_seconds: Cell<f64>,
+    /// The watch that the loops check, and to which they report their iterations: they end with the answer so far when
+    /// it says so.
+    pub watch: Watch,
 }
 
 impl<'a> ScaledProblem<'a> {
-    /// The problem with its K + B'B.
-    pub fn new(problem: &'a ContactProblem, augmented: &'a Augmented, is_definite: bool) -> Self {
-        let (swept_load, factor_seconds, watch) = (OnceCell::new(), Cell::new(0.0), Watch::default());
-        ScaledProblem { problem, is_definite, augmented, compliance: None, swept_load, factor_seconds, watch }
-    }
-
-    /// The same problem, balanced by the compliance of its rows.
-    pub fn with_compliance(self, compliance: Option<&'a Compliance>) -> Self {
-        ScaledProblem { compliance, ..self }
-    }
-
-    /// The same problem, with loops that end with the answer so far when `watch` says so.
-    pub fn watched(self, watch: &Watch) -> Self {
-        ScaledProblem { watch: watch.clone(), ..self }
+    /// The problem with the pattern of its K + B'B.
+    pub fn new(
+        problem: &'a ContactProblem,
+        augmented: &'a Augmented,
+        is_definite: bool,
+        compliance: Option<&'a Compliance>,
+        watch: Watch,
+    ) -> Self {
+        let (swept_load, factor_seconds) = (OnceCell::new(), Cell::new(0.0));
+        ScaledProblem { problem, is_definite, augmented, compliance, swept_load, factor_seconds, watch }
     }
 
     /// The load, swept through the factor of a compliance once for all sets.
@@ -58,34 +50,15 @@ impl<'a> ScaledProblem<'a> {
         self.swept_load.get_or_init(|| compliance.swept(self.problem.load())).clone()
     }
 
-    pub fn is_definite(&self) -> bool {
-        self.is_definite
-    }
-
-    /// The watch that the loops check, and to which they report their iterations.
-    pub fn watch(&self) -> &Watch {
-        &self.watch
-    }
-
-    /// Seconds spent in factorisations so far.
-    pub fn factor_seconds(&self) -> f64 {
-        self.factor_seconds.get()
-    }
-
-    /// The analysed pattern of K + B'B.
-    pub(super) fn augmented(&self) -> Result<&AugmentedMatrix, Error> {
-        Ok(self.augmented.matrix()?)
-    }
-
     /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
     pub(super) fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> Result<SymmetricMatrix, Error> {
-        Ok(self.augmented()?.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift))
+        Ok(self.augmented.matrix()?.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift))
     }
 
     /// The factor of such a matrix; `None` if it is not positive definite.
     pub(super) fn factor(&self, matrix: SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
         let clock = Instant::now();
-        let factor = if_definite(self.augmented()?.factor(matrix));
+        let factor = if_definite(self.augmented.matrix()?.factor(matrix));
         self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
         Ok(factor?)
     }

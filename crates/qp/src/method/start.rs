@@ -76,11 +76,6 @@ impl Start {
     pub fn near(displacement: Vec<f64>) -> Self {
         Start { displacement: Some(displacement), contact_set: None }
     }
-
-    /// The contact set; if none is known, the set of `rows` open rows.
-    pub(crate) fn into_set(self, rows: usize) -> ContactSet {
-        self.contact_set.unwrap_or_else(|| ContactSet::open(rows))
-    }
 }
 
 impl From<ContactSet> for Start {

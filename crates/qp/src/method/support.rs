@@ -25,21 +25,13 @@ fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
     direction
 }
 
-/// A direction d with K d = 0 and B_C d = 0, largest entry one.
-struct FreeMode {
-    /// The direction, one entry per dof.
-    direction: Vec<f64>,
-    /// `true` if the load does work on it: `f'd > 0`.
-    driven: bool,
-}
-
 impl ScaledProblem<'_> {
     /// The start of a loop: C = 0 if K is definite; otherwise all rows are replaced by springs, which hold the body,
     /// and those in compression are closed. `None` if not even all rows together hold the body, or if K is not positive
     /// semidefinite to the largest of the shifts.
     pub fn start(&self) -> Result<Option<ContactSet>, Error> {
         let (rows, nothing_closed) = (self.problem.rows(), ContactSet::open(self.problem.rows()));
-        if self.is_definite() {
+        if self.is_definite {
             return Ok(Some(nothing_closed));
         }
         if self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])?)?.is_none() {
@@ -56,7 +48,7 @@ impl ScaledProblem<'_> {
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Option<Cholesky>, Error> {
         let matrix = self.matrix(closed, weight, 0.0)?;
         // If K is definite by itself, this is not checked again.
-        let looked_at = (!self.is_definite()).then(|| matrix.clone());
+        let looked_at = (!self.is_definite).then(|| matrix.clone());
         let holds = |cholesky: &Cholesky| looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix));
         Ok(self.factor(matrix)?.filter(holds))
     }
@@ -74,18 +66,19 @@ impl ScaledProblem<'_> {
                 return Ok(Ok(cholesky));
             }
             let mode = self.free_mode(closed, weight)?;
-            if !mode.is_some_and(|mode| self.stop(&mode, displacement, closed)) {
+            if !mode.is_some_and(|(mode, is_driven)| self.stop(&mode, is_driven, displacement, closed)) {
                 return Ok(Err(Ending::Unheld));
             }
-            if self.watch().is_over() {
+            if self.watch.is_over() {
                 return Ok(Err(Ending::Unsettled));
             }
         }
     }
 
-    /// The projection of the load onto the null space or, if the load does no work there, any null vector; `None` if no
+    /// A direction d with K d = 0 and B_C d = 0, largest entry one, and whether the load does work on it, `f'd > 0`:
+    /// the projection of the load onto the null space or, if the load does no work there, any null vector. `None` if no
     /// shift makes the matrix definite.
-    fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<Option<FreeMode>, Error> {
+    fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<Option<(Vec<f64>, bool)>, Error> {
         // A weight does not change the null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
         for shift in SHIFTS {
@@ -97,20 +90,19 @@ impl ScaledProblem<'_> {
             }
             let projected = normalised(projected);
             let still = self.matrix(closed, weight, 0.0)?.mul(&projected);
-            let driven = largest(&still) <= NOISE && self.problem.share_of_work(&projected) > WORK_TOLERANCE;
-            let direction = if driven { projected } else { normalised(cholesky.softest_vector()) };
-            return Ok(Some(FreeMode { direction, driven }));
+            let is_driven = largest(&still) <= NOISE && self.problem.share_of_work(&projected) > WORK_TOLERANCE;
+            let direction = if is_driven { projected } else { normalised(cholesky.softest_vector()) };
+            return Ok(Some((direction, is_driven)));
         }
         Ok(None)
     }
 
     /// Closes the open rows that stop a mode first, if it starts from `displacement`; a mode that the load does not
     /// drive may go either way. Returns `false` if no row stops it.
-    fn stop(&self, mode: &FreeMode, displacement: &[f64], closed: &mut ContactSet) -> bool {
+    fn stop(&self, mode: &[f64], is_driven: bool, displacement: &[f64], closed: &mut ContactSet) -> bool {
         let (contact, violation) = (self.problem.contact(), self.problem.violation(displacement));
-        let (speed, terms) = (contact.mul(&mode.direction), contact.mul_abs(&mode.direction));
-        let ways: &[f64] = if mode.driven { &[1.0] } else { &[1.0, -1.0] };
-        for way in ways {
+        let (speed, terms) = (contact.mul(mode), contact.mul_abs(mode));
+        for way in if is_driven { &[1.0][..] } else { &[1.0, -1.0] } {
             // A speed within the rounding of its own terms is zero.
             let is_stopped_by =
                 |row: &usize| speed[*row] * way > WORK_TOLERANCE * terms[*row] && !closed.contains(*row);

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use super::matrix::{MatrixRow, RowReader, dense_columns};
-use super::source::{INTEGER, REAL, indices, vector};
+use super::source::{INTEGER, REAL, RowReader, dense_columns, indices, vector};
 use super::{BLOCK_SIZE, CONTACT, COORDINATES, EQUALITIES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS, VALUES};
 use crate::error::{Error, LinearError};
 use crate::linear::file::read_text_capped;
@@ -21,10 +20,6 @@ const MOST_OF_INFO: u64 = 1 << 16;
 const SUPPORTED: u32 = u32::MAX;
 
 /// Reads the problem of a directory of PETSc files: the small ones first, then the stiffness row by row.
-///
-/// # Errors
-/// [`LinearError::File`] and [`LinearError::FileBytes`] for a file that is missing or malformed, [`LinearError::FileSyntax`] for
-/// `K.petsc.info`, and those of [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let stiffness = RowReader::open(&directory.join(STIFFNESS))?;
     let (size, columns) = stiffness.shape;
@@ -46,7 +41,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
 }
 
 /// The gaps, or values, of all rows of another file.
-fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, Error> {
+fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, LinearError> {
     let is_allowed = |gap: f64| gap > f64::NEG_INFINITY;
     let mut gap = vector(file, is_allowed, "a finite gap, or 1e20 or more for a row without obstacle")?;
     if gap.len() != rows {
@@ -58,8 +53,8 @@ fn gap(file: &Path, (of, rows): (&str, usize)) -> Result<Vec<f64>, Error> {
 }
 
 /// The error of a vector of wrong size.
-fn fault(file: &Path, message: String) -> Error {
-    LinearError::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }.into()
+fn fault(file: &Path, message: String) -> LinearError {
+    LinearError::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
 }
 
 /// The places of the free dofs in the stiffness.
@@ -77,7 +72,7 @@ impl Places {
         Places { free, dof }
     }
 
-    fn load(&self, file: &Path) -> Result<Vec<f64>, Error> {
+    fn load(&self, file: &Path) -> Result<Vec<f64>, LinearError> {
         let load = vector(file, f64::is_finite, "finite")?;
         if load.len() != self.dof.len() {
             let message = format!("it has length {}, but {STIFFNESS} has {} rows", load.len(), self.dof.len());
@@ -87,43 +82,41 @@ impl Places {
         if let Some((place, value)) = load.iter().enumerate().find(supported) {
             let message = format!("value {place} is {value} (from 0), but {FREE} does not name it: it must be 0");
             let byte = (2 * INTEGER + REAL * place as u64) as usize;
-            return Err(LinearError::FileBytes { file: file.to_path_buf(), byte, message }.into());
+            return Err(LinearError::FileBytes { file: file.to_path_buf(), byte, message });
         }
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }
 
-    /// Leaves out the columns of supported components, which must be zero.
-    fn leave_out(&self, rows: &RowReader, row: &mut MatrixRow) -> Result<(), Error> {
-        let mut kept = 0;
-        for entry in 0..row.columns.len() {
-            let (column, value) = (row.columns[entry], row.values[entry]);
-            let dof = self.dof[column as usize];
-            if dof != SUPPORTED {
-                (row.columns[kept], row.values[kept]) = (dof, value);
+    /// Leaves out the entries of supported components, which must be zero, in the last row, of the stiffness that of
+    /// place `own`; what stands on its diagonal has no meaning.
+    fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), LinearError> {
+        let (supported, mut kept) = (own.filter(|&own| self.dof[own] == SUPPORTED), 0);
+        for entry in 0..rows.columns.len() {
+            let (column, value) = (rows.columns[entry] as usize, rows.values[entry]);
+            let left = supported.unwrap_or(column);
+            if self.dof[left] != SUPPORTED {
+                (rows.columns[kept], rows.values[kept]) = (self.dof[column], value);
                 kept += 1;
-            } else if value != 0.0 {
+            } else if value != 0.0 && own != Some(column) {
                 let place = format!("entry ({}, {column}) is {value:e} (indices from 0)", rows.row());
-                return Err(rows
-                    .fault(entry, format!("{place}, but {FREE} does not name {column}: it must be 0"))
-                    .into());
+                return Err(rows.fault(entry, format!("{place}, but {FREE} does not name {left}: it must be 0")));
             }
         }
-        row.columns.truncate(kept);
-        row.values.truncate(kept);
+        rows.columns.truncate(kept);
+        rows.values.truncate(kept);
         Ok(())
     }
 
-    fn rows(&self, mut rows: RowReader) -> Result<SparseMatrix, Error> {
+    fn rows(&self, mut rows: RowReader) -> Result<SparseMatrix, LinearError> {
         if rows.shape.1 != self.dof.len() {
             let found = format!("it has {} columns, but {STIFFNESS} has {} rows", rows.shape.1, self.dof.len());
-            return Err(rows.wrong_shape(found).into());
+            return Err(rows.wrong_shape(found));
         }
         let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-        let mut row = MatrixRow::default();
-        while rows.read(&mut row)? {
-            self.leave_out(&rows, &mut row)?;
-            columns.extend(row.columns.iter().map(|&column| column as usize));
-            values.extend_from_slice(&row.values);
+        while rows.read()? {
+            self.leave_out(&mut rows, None)?;
+            columns.extend(rows.columns.iter().map(|&column| column as usize));
+            values.extend_from_slice(&rows.values);
             starts.push(columns.len());
         }
         Ok(SparseMatrix::from_csc(self.free.len(), starts, columns, values)?.transposed())
@@ -139,26 +132,16 @@ impl Places {
         problem.with_equalities(&rows, gap(&values, (EQUALITIES, rows.rows()))?)
     }
 
-    fn stiffness(&self, mut rows: RowReader) -> Result<SymmetricMatrix, Error> {
+    fn stiffness(&self, mut rows: RowReader) -> Result<SymmetricMatrix, LinearError> {
         let mut matrix = SymmetricLines::of_rows(self.free.len(), rows.entries)?;
-        let mut row = MatrixRow::default();
-        while rows.read(&mut row)? {
+        while rows.read()? {
             let own = rows.row();
-            if self.dof[own] == SUPPORTED {
-                let beside = |entry: &usize| row.columns[*entry] as usize != own && row.values[*entry] != 0.0;
-                if let Some(entry) = (0..row.columns.len()).find(beside) {
-                    let (column, value) = (row.columns[entry], row.values[entry]);
-                    let place = format!("entry ({own}, {column}) is {value:e} (indices from 0)");
-                    return Err(rows
-                        .fault(entry, format!("{place}, but {FREE} does not name {own}: it must be 0"))
-                        .into());
-                }
-                continue;
+            self.leave_out(&mut rows, Some(own))?;
+            if self.dof[own] != SUPPORTED {
+                matrix.take(&rows.columns, &rows.values).map_err(|error| self.located(error, &rows))?;
             }
-            self.leave_out(&rows, &mut row)?;
-            matrix.take(&row.columns, &row.values).map_err(|error| self.located(error, &rows))?;
         }
-        Ok(SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)?)
+        SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)
     }
 
     /// Two triangles that differ, at their places in the file.
@@ -172,7 +155,7 @@ impl Places {
 
     /// The near-null space: `near_null.petsc`, a column for each vector, or else the rigid-body modes of the nodes in
     /// `coordinates.petsc`. The latter are not exact if components are in a local frame.
-    fn near_null(&self, directory: &Path) -> Result<Option<NearNullSpace>, Error> {
+    fn near_null(&self, directory: &Path) -> Result<Option<NearNullSpace>, LinearError> {
         let of_free = |vector: &Vec<f64>| self.free.iter().map(|&place| vector[place as usize]).collect();
         let file = directory.join(NEAR_NULL);
         if file.exists() {
@@ -197,7 +180,7 @@ impl Places {
 }
 
 /// The number of dofs of a node, from `K.petsc.info`.
-fn block_size(directory: &Path) -> Result<usize, Error> {
+fn block_size(directory: &Path) -> Result<usize, LinearError> {
     let file = directory.join(INFO);
     let text = read_text_capped(&file, MOST_OF_INFO)?;
     let mut words = text.split_whitespace().skip_while(|&word| word != BLOCK_SIZE).skip(1);
@@ -205,7 +188,7 @@ fn block_size(directory: &Path) -> Result<usize, Error> {
         Some(size @ 1..=3) => Ok(size),
         _ => {
             let message = format!("it must have the line `{BLOCK_SIZE} D`, with 1, 2 or 3 dofs for each node");
-            Err(LinearError::FileSyntax { file, line: 1, message }.into())
+            Err(LinearError::FileSyntax { file, line: 1, message })
         }
     }
 }

@@ -18,7 +18,6 @@
 //! PETSc Users Manual, `MatLoad()` and `VecLoad()`: the binary formats (petsc.org).
 
 mod directory;
-mod matrix;
 mod source;
 mod write;
 

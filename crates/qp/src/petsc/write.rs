@@ -7,7 +7,6 @@ use super::{
     STIFFNESS, TOO_MANY, VALUES, VECTOR,
 };
 use crate::linear::file::Streamed;
-use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{SparseMatrix, SymmetricMatrix};
 use crate::problem::ContactProblem;
 
@@ -65,13 +64,16 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a PetscLayout) 
     let mut files = vec![
         Streamed::new(STIFFNESS, |out| write_stiffness(out, stiffness, layout)),
         Streamed::new(INFO, |out| writeln!(out, "{BLOCK_SIZE} {}", layout.size)),
-        Streamed::new(LOAD, |out| write_load(out, problem.load(), layout)),
+        Streamed::new(LOAD, |out| {
+            write_header(out, VECTOR, &[layout.places()])?;
+            write_at_places(out, &[problem.load()], layout)
+        }),
         Streamed::new(CONTACT, move |out| write_rows_of(out, &contact, layout)),
         Streamed::new(GAP, move |out| write_vector(out, gap)),
         Streamed::new(COORDINATES, |out| write_vector(out, &layout.coordinates)),
         Streamed::new(FREE, |out| {
             write_header(out, INDICES, &[place.len()])?;
-            write_integers(out, place)
+            place.iter().try_for_each(|place| out.write_all(&place.to_be_bytes()))
         }),
     ];
     if problem.equality_rows() > 0 {
@@ -80,8 +82,13 @@ pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a PetscLayout) 
         files.push(Streamed::new(EQUALITIES, move |out| write_rows_of(out, &rows, layout)));
         files.push(Streamed::new(VALUES, move |out| write_vector(out, &values)));
     }
-    let modes = problem.near_null().map(|modes| Streamed::new(NEAR_NULL, |out| write_modes(out, modes, layout)));
-    files.extend(modes);
+    files.extend(problem.near_null().map(|modes| {
+        Streamed::new(NEAR_NULL, |out| {
+            write_header(out, MATRIX, &[layout.places(), modes.count()])?;
+            out.write_all(&DENSE.to_be_bytes())?;
+            write_at_places(out, modes.vectors(), layout)
+        })
+    }));
     files
 }
 
@@ -96,10 +103,6 @@ fn integer(size: usize) -> io::Result<i32> {
     i32::try_from(size).map_err(too_large)
 }
 
-fn write_integers(out: &mut dyn Write, integers: &[u32]) -> io::Result<()> {
-    integers.iter().try_for_each(|integer| out.write_all(&integer.to_be_bytes()))
-}
-
 fn write_reals(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
     values.iter().try_for_each(|value| out.write_all(&value.to_be_bytes()))
 }
@@ -109,19 +112,11 @@ fn write_vector(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
     write_reals(out, values)
 }
 
-/// The load, with 0 at supported components.
-fn write_load(out: &mut dyn Write, load: &[f64], layout: &PetscLayout) -> io::Result<()> {
-    write_header(out, VECTOR, &[layout.places()])?;
-    layout.each_place(|_, dof| out.write_all(&dof.map_or(0.0, |dof| load[dof]).to_be_bytes()))
-}
-
 /// The vectors as columns, with 0 at supported components.
-fn write_modes(out: &mut dyn Write, modes: &NearNullSpace, layout: &PetscLayout) -> io::Result<()> {
-    write_header(out, MATRIX, &[layout.places(), modes.count()])?;
-    out.write_all(&DENSE.to_be_bytes())?;
+fn write_at_places(out: &mut dyn Write, vectors: &[impl AsRef<[f64]>], layout: &PetscLayout) -> io::Result<()> {
     layout.each_place(|_, dof| {
-        let mut vectors = modes.vectors().iter();
-        vectors.try_for_each(|vector| out.write_all(&dof.map_or(0.0, |dof| vector[dof]).to_be_bytes()))
+        let value = |vector: &[f64]| dof.map_or(0.0, |dof| vector[dof]).to_be_bytes();
+        vectors.iter().try_for_each(|vector| out.write_all(&value(vector.as_ref())))
     })
 }
 

@@ -48,12 +48,12 @@ impl Layout {
             }
             let (last, dense) = match arrangement {
                 Arrangement::Condensed => {
-                    let last = scaling.contact().columns_with_entries();
+                    let last = scaling.contact.columns_with_entries();
                     let dense = Kept::dense(last.len());
                     (last, dense)
                 }
                 Arrangement::RowsLast => {
-                    let last = EnergyNorm::last_dofs(problem.stiffness(), scaling.contact());
+                    let last = EnergyNorm::last_dofs(problem.stiffness(), &scaling.contact);
                     let boundary = Kept::boundary(last.len());
                     if last.is_empty() { continue } else { (last, boundary) }
                 }

@@ -100,7 +100,7 @@ impl Prepared {
             }
         };
         let row = |&row: &usize| elimination.as_ref().map_or(row, |elimination| elimination.rows[row]);
-        let rows = selection.kept().iter().map(row).collect();
+        let rows = selection.kept.iter().map(row).collect();
         let (matrix, offset, motions) = (SparseMatrix::from_triplets(0, 0, &[])?, Vec::new(), Vec::new());
         let (mut lower, upper) = (vec![0.0; m], vec![f64::INFINITY; m + springs.len()]);
         lower.resize(upper.len(), f64::NEG_INFINITY);

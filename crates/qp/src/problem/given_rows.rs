@@ -79,14 +79,17 @@ impl ContactProblem {
         Ok(ContactProblem { near_null: self.near_null.clone(), equality_rows: count, ..problem })
     }
 
-    /// The same body and load without any row.
-    ///
-    /// # Errors
-    /// None for a problem.
-    pub(crate) fn without_rows(&self) -> Result<Self, Error> {
-        let none = SparseMatrix::from_triplets(0, self.dofs(), &[])?;
-        let problem = ContactProblem::computed(self.stiffness.clone(), self.load.clone(), none, Vec::new())?;
-        Ok(ContactProblem { near_null: self.near_null.clone(), ..problem })
+    /// The same body under another load, with the rows `open` and with those `held` as equalities, at distances of all.
+    pub(crate) fn with_held(
+        &self,
+        load: Vec<f64>,
+        [open, held]: [&[usize]; 2],
+        distances: &[f64],
+    ) -> Result<Self, Error> {
+        let pick = |rows: &[usize]| (self.contact.select_rows(rows), rows.iter().map(|&row| distances[row]).collect());
+        let ((open, gap), (held, values)) = (pick(open), pick(held));
+        let problem = ContactProblem::computed(self.stiffness.clone(), load, open, gap)?;
+        ContactProblem { near_null: self.near_null.clone(), ..problem }.with_all_equalities(&held, values)
     }
 
     /// Number m of rows of B.

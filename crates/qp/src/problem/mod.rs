@@ -63,7 +63,7 @@ pub struct ContactProblem {
     /// have no gap.
     following: Arc<[(f64, Following)]>,
     /// The rows without an entry, and those of them whose gaps were rounding, with these gaps.
-    without_entries: Arc<[usize]>,
+    pub(crate) without_entries: Arc<[usize]>,
     rounded: Vec<(usize, f64)>,
     /// The rows that count as equalities by themselves, with a multiplier of either sign: only in a certificate, see
     /// `two_sided`.
@@ -87,15 +87,6 @@ impl PartialEq for ContactProblem {
 /// Forces of a mode below this share of their terms are rounding.
 const FREE: f64 = 1e-9;
 
-/// Gaps that other QP solvers treat as infinite; any other finite gap is a length.
-const NO_OBSTACLE: [f64; 2] = [1e20, 1e30];
-
-/// The gaps with `+inf` for every [`NO_OBSTACLE`].
-fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
-    gap.iter_mut().filter(|gap| NO_OBSTACLE.contains(gap)).for_each(|gap| *gap = f64::INFINITY);
-    gap
-}
-
 impl ContactProblem {
     /// The problem of stiffness K (n x n, in N/m), load f (length n, in N, along the positive axes), contact rows B (m
     /// x n, dimensionless) and initial gaps g (length m, in m). A row of B is positive towards the obstacle. A gap is
@@ -112,7 +103,7 @@ impl ContactProblem {
         contact: SparseMatrix,
         gap: Vec<f64>,
     ) -> Result<Self, Error> {
-        let mut problem = Self::computed(stiffness, load, contact, with_infinite(gap))?;
+        let mut problem = Self::computed(stiffness, load, contact, gap)?;
         problem.rounded = settle(&problem.without_entries, &mut problem.gap);
         Ok(problem)
     }
@@ -241,9 +232,8 @@ impl ContactProblem {
     /// As [`ContactProblem::new`].
     pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
         check_load(&load, self.dofs())?;
-        let gap = self.gaps_of_all_rows(gap);
+        let mut gap = self.gaps_of_all_rows(gap);
         check_gap(&gap, self.rows())?;
-        let mut gap = with_infinite(gap);
         let rounded = settle(&self.without_entries, &mut gap);
         let mut problem = ContactProblem { load, gap, rounded, ..self.clone() };
         let same_rows = problem.gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
@@ -268,11 +258,6 @@ impl ContactProblem {
         }
         let found = self.stiffness.is_semidefinite()?;
         Ok(*self.semidefinite.get_or_init(|| found))
-    }
-
-    /// The rows without an entry, in increasing order.
-    pub(crate) fn without_entries(&self) -> &[usize] {
-        &self.without_entries
     }
 
     /// The dofs without stiffness, in increasing order.

@@ -9,6 +9,9 @@ use crate::linear::{Accumulator, SparseMatrix, exponent, ldexp};
 /// The gap of a row without entries is rounding if it is below this share of the largest.
 const OF_LARGEST: f64 = 16.0 * f64::EPSILON;
 
+/// Gaps that other QP solvers treat as infinite; any other finite gap is a length.
+const NO_OBSTACLE: [f64; 2] = [1e20, 1e30];
+
 /// Two opposed gaps meet if they overlap by less than this times their size: the rows are an equality.
 const MEETING: f64 = 4.0 * f64::EPSILON;
 
@@ -155,9 +158,10 @@ pub(super) fn without_entries(contact: &SparseMatrix) -> Vec<usize> {
     (0..contact.rows()).filter(|&row| !has_entry[row]).collect()
 }
 
-/// Sets the gaps of these rows to zero where they are rounding beside the largest; returns the rows with their former
-/// gaps.
+/// Makes given gaps those of a problem: `+inf` for every [`NO_OBSTACLE`], and zero on these rows where they are
+/// rounding beside the largest. Returns such rows with their former gaps.
 pub(super) fn settle(without_entries: &[usize], gap: &mut [f64]) -> Vec<(usize, f64)> {
+    gap.iter_mut().filter(|gap| NO_OBSTACLE.contains(gap)).for_each(|gap| *gap = f64::INFINITY);
     let size = OF_LARGEST * largest_finite(gap);
     let is_rounding = |row: &usize| gap[*row] != 0.0 && gap[*row].abs() <= size;
     let rows: Vec<usize> = without_entries.iter().copied().filter(is_rounding).collect();

@@ -27,7 +27,7 @@ impl Diagonal {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Parts {
     /// The part of each dof, length n, numbered from 0 in the order of their first dofs.
-    of_dof: Vec<usize>,
+    pub of_dof: Vec<usize>,
     /// The part of each row; 0 for a row without dofs.
     of_row: Vec<usize>,
     count: usize,
@@ -81,11 +81,6 @@ impl Parts {
     /// The part of a row; 0 for a row without dofs.
     pub fn of_row(&self, row: usize) -> usize {
         self.of_row[row]
-    }
-
-    /// The part of each dof, length n.
-    pub fn of_dofs(&self) -> &[usize] {
-        &self.of_dof
     }
 
     /// Returns `true` if the stiffness has no coupling of two parts, not even a weak one.

@@ -319,13 +319,13 @@ pub(crate) fn check_rows(problem: &ContactProblem, settings: &Settings) -> Resul
     problem.check_rows()?;
     let (contact, rest) = (problem.contact().clone(), vec![0.0; problem.dofs()]);
     let stiffness = SymmetricMatrix::of_diagonal(Scaling::of(problem.stiffness(), &contact)?.identity(0));
-    let nearest = &ContactProblem::computed(stiffness, rest, contact, problem.gap().to_vec())?;
-    let answer = || {
-        let (start, settings) = &checked(nearest, &Start::default(), &settings.of_question())?;
-        let ladder = Ladder::of(nearest, 1, false, settings)?.without_existence();
-        answered(&mut Run::new(nearest, &ladder, start, settings))
+    let nearest = ContactProblem::computed(stiffness, rest, contact, problem.gap().to_vec())?;
+    let met = || {
+        let (start, settings) = &checked(&nearest, &Start::default(), &settings.of_question())?;
+        let ladder = Ladder::of(&nearest, 1, false, settings)?.without_existence();
+        answered(&mut Run::new(&nearest, &ladder, start, settings))
     };
-    match answer() {
+    match met() {
         Err(infeasible @ Error::Infeasible { .. }) => Err(infeasible),
         _ => Ok(()),
     }

@@ -79,7 +79,7 @@ pub struct Certificate {
     pub parts_at_rest: usize,
     /// Number of dofs without stiffness, load and contact force: the energy does not see where they are. Only without a
     /// factor of K itself.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "is_nothing")]
     pub loose_dofs: usize,
     /// The largest `E_p / F_p` over the parts that rest; F_p is the largest `|F_i| / sqrt(K_ii)` over the loads,
     /// contact forces and couplings on the part: the energy norm that they could give a single dof.
@@ -133,8 +133,9 @@ impl Serialize for Cancellation {
     }
 }
 
-fn is_zero(count: &usize) -> bool {
-    *count == 0
+/// A number that is zero, or another value that says nothing, is left out of a report.
+pub(super) fn is_nothing<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl Certificate {

@@ -74,17 +74,8 @@ impl ContactSet {
 /// One flag for each row: `true` if it is closed.
 impl FromIterator<bool> for ContactSet {
     fn from_iter<I: IntoIterator<Item = bool>>(closed: I) -> Self {
-        let mut set = Self::default();
-        for is_closed in closed {
-            if set.rows.is_multiple_of(64) {
-                set.bits.push(0);
-            }
-            set.rows += 1;
-            if is_closed {
-                set.insert(set.rows - 1);
-            }
-        }
-        set
+        let flags: Vec<bool> = closed.into_iter().collect();
+        Self::from_fn(flags.len(), |row| flags[row])
     }
 }
 

@@ -64,21 +64,13 @@ pub struct Iteration {
     #[serde(rename = "closed", serialize_with = "count")]
     pub contact_set: ContactSet,
     /// The penalty, in multiples of the local stiffness; zero if the method has none.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "certificate::is_nothing")]
     pub penalty: f64,
 }
 
 /// Serialises a contact set as the number of its closed rows.
 fn count<S: Serializer>(set: &ContactSet, serializer: S) -> Result<S::Ok, S::Error> {
     set.count().serialize(serializer)
-}
-
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
-fn is_none(count: &usize) -> bool {
-    *count == 0
 }
 
 /// Reason for the way in which an answer was found: the ways that were compared before, and the decision.
@@ -155,7 +147,7 @@ pub struct Solution {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut_short: Option<String>,
     /// Steps of refinement, each the answer for the residual of the answer before.
-    #[serde(skip_serializing_if = "is_none")]
+    #[serde(skip_serializing_if = "certificate::is_nothing")]
     pub refinements: usize,
     /// Reason why no factor was taken, in words, if [`Method::Auto`](crate::Method::Auto) decided that; otherwise
     /// empty.

@@ -12,7 +12,7 @@
 //! is `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
 
 use crate::error::{Error, LinearError};
-use crate::linear::{Analysis, Cholesky, Compliance, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
+use crate::linear::{Analysis, Cholesky, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
 
 /// If contact dofs exceed this share of all, condensing removes too little.
 const LARGEST_SHARE: f64 = 0.25;
@@ -26,11 +26,12 @@ const LEFT_OVER: f64 = 1e-12;
 /// The condensed stiffness, with the transform back to the whole body.
 #[derive(Clone, Debug)]
 pub struct Condensation {
-    contact_dofs: Vec<usize>,
+    /// The contact dofs, in increasing order.
+    pub contact_dofs: Vec<usize>,
     cholesky: Cholesky,
     trailing: LowerTriangle,
-    stiffness: SymmetricMatrix,
-    contact: SparseMatrix,
+    pub stiffness: SymmetricMatrix,
+    pub contact: SparseMatrix,
 }
 
 impl Condensation {
@@ -77,19 +78,6 @@ impl Condensation {
         self.cholesky.entries()
     }
 
-    /// The contact dofs, in increasing order.
-    pub fn dofs(&self) -> &[usize] {
-        &self.contact_dofs
-    }
-
-    pub fn stiffness(&self) -> &SymmetricMatrix {
-        &self.stiffness
-    }
-
-    pub fn contact(&self) -> &SparseMatrix {
-        &self.contact
-    }
-
     /// The forward sweep y of a load, to be kept for [`load`](Self::load) and [`expand`](Self::expand).
     pub fn sweep(&self, load: &[f64]) -> Vec<f64> {
         // Many bodies are loaded by their obstacle alone.
@@ -113,13 +101,6 @@ impl Condensation {
     pub fn free_displacement(&self, sweep: &[f64]) -> Vec<f64> {
         let size = self.contact_dofs.len();
         self.trailing.backward(sweep[sweep.len() - size..].to_vec())
-    }
-
-    /// The compliance B S^-1 B' of the contact rows (m x m, column by column), if K is definite.
-    pub fn compliance(&self) -> Vec<f64> {
-        let rows = self.contact.rows();
-        let compliance = Compliance::on(&self.cholesky, self.contact.transposed());
-        (0..rows * rows).map(|place| compliance.product(place / rows, place % rows)).collect()
     }
 
     /// The displacement of the whole body from that of the contact dofs.
@@ -151,18 +132,12 @@ fn subtract_rows(schur: &mut [f64], contact: &SparseMatrix) {
 
 /// The lower triangle of a dense matrix (n x n, column by column), zeros included.
 fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
-    let entries = size * (size + 1) / 2;
-    let (mut starts, mut rows, mut values) =
-        (Vec::with_capacity(size + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));
-    starts.push(0);
-    for column in 0..size {
-        rows.extend(column as u32..size as u32);
-        values.extend_from_slice(&matrix[column * size + column..(column + 1) * size]);
-        starts.push(rows.len());
-    }
+    let places = || (0..size).flat_map(|column| (column..size).map(move |row| (row, column)));
+    let values: Vec<f64> = places().map(|(row, column)| matrix[column * size + row]).collect();
     if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
         let at = "the condensed stiffness".to_string();
         return Err(LinearError::NotFinite { name: "matrix", at, value, allowed: "finite" }.into());
     }
-    Ok(SparseMatrix::from_parts(size, starts, rows, values))
+    let starts = (0..=size).map(|column| column * (2 * size - column + 1) / 2).collect();
+    Ok(SparseMatrix::from_parts(size, starts, places().map(|(row, _)| row as u32).collect(), values))
 }

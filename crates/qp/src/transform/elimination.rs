@@ -13,7 +13,8 @@
 //! unknown in the place of one of them, and the sum over some of these sums, until a short equality of sums is left.
 
 use crate::error::Error;
-use crate::linear::equations::{FOLLOWS, PIVOT, Pivot, Pivots, Remainder, Solved, Sparse, Sum, Sums, largest};
+use crate::linear::equations::{FOLLOWS, PIVOT, Pivot, Pivots, Remainder, Solved, Sparse, Sums, largest};
+use crate::linear::twice::Sum;
 use crate::linear::{SparseMatrix, Twice, exponent, ldexp};
 use crate::problem::{ContactProblem, Equality};
 use crate::solution::{ContactSet, Iteration, Solution};
@@ -52,10 +53,11 @@ impl Elimination {
     /// The elimination of all equalities of `problem`; `None` if it would fill the stiffness, or if it is open within
     /// rounding whether some of them follow from others or contradict them.
     pub fn of(problem: &ContactProblem) -> Result<Option<Self>, Error> {
-        match Self::cut(problem, usize::MAX)? {
-            Some(elimination) => Ok(Some(elimination)),
-            None => Self::cut(problem, LONG),
+        let mut found = Self::cut(problem, usize::MAX);
+        if let Err(None) = found {
+            found = Self::cut(problem, LONG);
         }
+        found.map_or_else(|error| error.map_or(Ok(None), Err), |elimination| Ok(Some(elimination)))
     }
 
     /// Returns `true` if a long equality is cut: its own pair of rows, put into a factor, would fill that.
@@ -63,33 +65,32 @@ impl Elimination {
         !self.sums.is_empty()
     }
 
-    /// The same with equalities of more than `long` dofs cut.
-    fn cut(problem: &ContactProblem, long: usize) -> Result<Option<Self>, Error> {
+    /// The same with equalities of more than `long` dofs cut; an error without words if there is none.
+    fn cut(problem: &ContactProblem, long: usize) -> Result<Self, Option<Error>> {
         let (equalities, by_row) = (problem.equalities().to_vec(), problem.contact().transposed());
         // Short rows first: they fill the others least.
         let mut order: Vec<usize> = (0..equalities.len()).collect();
         order.sort_by_key(|&number| by_row.column(equalities[number].row).count());
         // A dof of few equalities goes into few others; then one of few entries of K and B.
-        let mut of_equalities = vec![0; problem.dofs()];
+        let columns = [problem.stiffness().lower(), problem.contact()];
+        let entries = |dof: usize| columns.iter().map(|matrix| matrix.column(dof).count()).sum::<usize>();
+        let mut ranks: Vec<(usize, usize)> = (0..problem.dofs()).map(|dof| (0, entries(dof))).collect();
         let in_equalities = equalities.iter().flat_map(|pair| by_row.column(pair.row));
-        in_equalities.filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| of_equalities[dof] += 1);
-        let columns: Vec<usize> = (0..problem.dofs())
-            .map(|dof| problem.stiffness().lower().column(dof).count() + problem.contact().column(dof).count())
-            .collect();
+        in_equalities.filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| ranks[dof].0 += 1);
         let most = FEW + FILL * problem.stiffness().entries();
         let (mut found, mut fill, mut all_sums) = (Pivots::default(), 0, Vec::new());
         // Sums come after the dofs, and follow from no equality but their own.
-        let rank = |dof: usize| (of_equalities.get(dof).copied().unwrap_or(0), columns.get(dof).copied().unwrap_or(0));
+        let rank = |dof: usize| ranks.get(dof).copied().unwrap_or_default();
         for number in order {
             let row = equalities[number].row;
             let entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
             match found.reduced(entries, problem.gap()[row].into(), (number, FOLLOWS)) {
                 Remainder::Row(mut pivot) => {
                     let mut solve_for = |pivot: Pivot, share: f64| {
-                        let dof = pivot.best(share, rank)?;
+                        let dof = pivot.best(share, rank).ok_or(None)?;
                         fill += pivot.others.len() * (pivot.others.len() + rank(dof).1);
                         found.solve_for(dof, pivot);
-                        (fill <= most).then_some(())
+                        if fill <= most { Ok(()) } else { Err(None) }
                     };
                     while pivot.others.len() > long {
                         let mut of_sums = Sparse::new();
@@ -101,33 +102,25 @@ impl Elimination {
                             let weights = vec![(number, 1.0.into())];
                             of_sums.push((sum, unit));
                             all_sums.push(part.iter().map(|&(dof, a)| (dof, a / unit)).collect());
-                            if solve_for(Pivot { dof: 0, constant: Twice::ZERO, others, weights }, CUT_PIVOT).is_none()
-                            {
-                                return Ok(None);
-                            }
+                            solve_for(Pivot { dof: 0, constant: Twice::ZERO, others, weights }, CUT_PIVOT)?;
                         }
                         pivot.others = of_sums;
                     }
-                    if solve_for(pivot, PIVOT).is_none() {
-                        return Ok(None);
-                    }
+                    solve_for(pivot, PIVOT)?;
                 }
                 Remainder::Follows { .. } => {}
                 Remainder::Contradicts(weights) => {
                     let (rows, weights) = signed(&equalities, &weights);
-                    return match problem.overlap(&rows, &weights) {
-                        Some(_) => Err(problem.infeasible(&rows, &weights)),
-                        None => Ok(None),
-                    };
+                    return Err(problem.overlap(&rows, &weights).map(|_| problem.infeasible(&rows, &weights)));
                 }
-                Remainder::Unclear => return Ok(None),
+                Remainder::Unclear => return Err(None),
             }
         }
         let mut is_equality = vec![false; problem.rows()];
         equalities.iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| is_equality[row] = true);
         let rows = (0..problem.rows()).filter(|&row| !is_equality[row]).collect();
         let solved = Solved::of(found.pivots, problem.dofs() + all_sums.len());
-        Ok(Some(Elimination { equalities, solved, sums: all_sums, rows }))
+        Ok(Elimination { equalities, solved, sums: all_sums, rows })
     }
 
     pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {

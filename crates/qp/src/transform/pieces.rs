@@ -22,7 +22,7 @@ impl Pieces {
     /// The pieces of `problem`, given by the piece of each of its parts, from 0 to `count - 1`.
     pub fn of(problem: &ContactProblem, of_part: &[usize], count: usize) -> Self {
         let parts = problem.parts();
-        let of_dof: Vec<usize> = parts.of_dofs().iter().map(|&part| of_part[part]).collect();
+        let of_dof: Vec<usize> = parts.of_dof.iter().map(|&part| of_part[part]).collect();
         let of_row: Vec<usize> = (0..problem.rows()).map(|row| of_part[parts.of_row(row)]).collect();
         let (place_of_dof, dofs) = members(&of_dof, count);
         let (place_of_row, rows) = members(&of_row, count);

@@ -8,23 +8,19 @@ use crate::solution::ContactSet;
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowSelection {
     rows: usize,
-    kept: Vec<usize>,
+    /// The index of each selected row in the original problem.
+    pub kept: Vec<usize>,
 }
 
 impl RowSelection {
     /// Selects the rows of a problem that can close.
     pub fn of(problem: &ContactProblem) -> Self {
         let (gap, mut acts) = (problem.gap(), vec![true; problem.rows()]);
-        problem.without_entries().iter().for_each(|&row| acts[row] = false);
+        problem.without_entries.iter().for_each(|&row| acts[row] = false);
         RowSelection {
             rows: gap.len(),
             kept: (0..gap.len()).filter(|&row| gap[row].is_finite() && acts[row]).collect(),
         }
-    }
-
-    /// The index of each selected row in the original problem.
-    pub fn kept(&self) -> &[usize] {
-        &self.kept
     }
 
     /// The selected rows alone.

@@ -21,13 +21,14 @@ const SURE: i32 = 1000;
 /// The scaling of a body and its contact rows, with its inverse.
 #[derive(Clone, Debug)]
 pub struct Scaling {
-    equilibration: Equilibration,
+    pub equilibration: Equilibration,
     /// Exponent of each entry of R.
-    rows: Vec<i32>,
+    pub row_exponents: Vec<i32>,
     /// The original stiffness, and the scaled one, which is computed at its first use.
     unscaled: SymmetricMatrix,
     stiffness: OnceLock<SymmetricMatrix>,
-    contact: SparseMatrix,
+    /// The scaled rows.
+    pub contact: SparseMatrix,
 }
 
 /// The exponent of the largest entry of each row of B D, with the exponents `d` of D; zero for a row of zeros.
@@ -56,30 +57,17 @@ impl Scaling {
     pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Self, Error> {
         let equilibration = Equilibration::of(stiffness);
         let d = &equilibration.diagonal;
-        let rows: Vec<i32> = largest_exponents(contact, d).into_iter().map(|e| -e).collect();
-        let contact = contact.times_powers(&rows, |dof| d[dof]);
+        let row_exponents: Vec<i32> = largest_exponents(contact, d).into_iter().map(|e| -e).collect();
+        let contact = contact.times_powers(&row_exponents, |dof| d[dof]);
         if let Some((place, &value)) = contact.values().iter().enumerate().find(|entry| !entry.1.is_finite()) {
             let at = contact.triplets().nth(place).map_or_else(String::new, |(row, dof, _)| format!("({row}, {dof})"));
             return Err(LinearError::NotFinite { name: "matrix", at, value, allowed: "finite" }.into());
         }
-        Ok(Scaling { equilibration, rows, unscaled: stiffness.clone(), stiffness: OnceLock::new(), contact })
-    }
-
-    pub fn equilibration(&self) -> &Equilibration {
-        &self.equilibration
+        Ok(Scaling { equilibration, row_exponents, unscaled: stiffness.clone(), stiffness: OnceLock::new(), contact })
     }
 
     pub fn stiffness(&self) -> &SymmetricMatrix {
         self.stiffness.get_or_init(|| self.equilibration.apply(&self.unscaled))
-    }
-
-    pub fn contact(&self) -> &SparseMatrix {
-        &self.contact
-    }
-
-    /// The exponent of each entry of R.
-    pub fn row_exponents(&self) -> &[i32] {
-        &self.rows
     }
 
     /// The diagonal matrix, length n, that the scaling makes `2^exponent` times the identity.
@@ -96,7 +84,7 @@ impl Scaling {
 
     /// The scaled gaps for u0 = `2^unit`.
     pub fn gap(&self, gap: &[f64], unit: i32) -> Vec<f64> {
-        gap.iter().zip(&self.rows).map(|(&g, &r)| ldexp(g, r - unit)).collect()
+        gap.iter().zip(&self.row_exponents).map(|(&g, &r)| ldexp(g, r - unit)).collect()
     }
 
     /// The displacement u of a scaled displacement v, for u0 = `2^unit`.
@@ -107,12 +95,12 @@ impl Scaling {
     /// The scaled multiplier mu of a multiplier lambda, for u0 = `2^unit`.
     pub fn multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
         let exponent = self.equilibration.factor - unit;
-        multiplier.iter().zip(&self.rows).map(|(&lambda, &r)| ldexp(lambda, exponent - r)).collect()
+        multiplier.iter().zip(&self.row_exponents).map(|(&lambda, &r)| ldexp(lambda, exponent - r)).collect()
     }
 
     /// The multiplier lambda of a scaled multiplier mu, for u0 = `2^unit`.
     pub fn expand_multiplier(&self, scaled: &[f64], unit: i32) -> Vec<f64> {
         let exponent = unit - self.equilibration.factor;
-        scaled.iter().zip(&self.rows).map(|(&mu, &r)| ldexp(mu, r + exponent)).collect()
+        scaled.iter().zip(&self.row_exponents).map(|(&mu, &r)| ldexp(mu, r + exponent)).collect()
     }
 }

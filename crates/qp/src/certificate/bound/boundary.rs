@@ -36,8 +36,7 @@ pub fn energy_error_bound(norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
     let bound = on_boundary
         .unwrap_or_else(|| bound_row_by_row(norm, answer, Some(closed)).smaller(bound_row_by_row(norm, answer, None)));
     let (underflow, rounding) = (underflow(answer), rounding_of_residual(answer));
-    let bound = bound.widened(norm.rounding());
-    let with_lost = |bound: f64, rounding: f64| bound + underflow + norm.loss() * rounding;
+    let with_lost = |bound: f64, rounding: f64| norm.rounding() * bound + underflow + norm.loss() * rounding;
     let of_part = |(bound, rounding): (f64, &f64)| with_lost(bound, *rounding);
     ErrorBound {
         whole: with_lost(bound.whole, rounding.iter().sum()),
@@ -49,8 +48,8 @@ pub fn energy_error_bound(norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
 /// cannot be met together.
 pub fn bound_on_boundary(norm: &EnergyNorm, answer: &Answer, closed: &[bool]) -> Option<ErrorBound> {
     let own = beside_springs(norm, answer);
-    let first = FirstRepair::new(norm, &own, closed)?;
-    if first.is_sharp { Some(first.bound) } else { repeated(first, answer).0 }
+    let (repair, witness, bound, is_sharp) = first_repair(norm, &own, closed)?;
+    if is_sharp { Some(bound) } else { repeated(&repair, witness, answer).0 }
 }
 
 /// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not
@@ -58,9 +57,8 @@ pub fn bound_on_boundary(norm: &EnergyNorm, answer: &Answer, closed: &[bool]) ->
 pub fn repaired(problem: &ContactProblem, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
     let answer = Answer::of(problem, u, lambda);
     let own = beside_springs(norm, &answer);
-    let closed = rows_that_look_closed(&answer);
-    let first = FirstRepair::new(norm, &own, &closed)?;
-    if first.is_sharp { Some(first.repair.answer(&first.witness)) } else { Some(repeated(first, &answer).1) }
+    let (repair, witness, _, is_sharp) = first_repair(norm, &own, &rows_that_look_closed(&answer))?;
+    Some(if is_sharp { repair.answer(&witness) } else { repeated(&repair, witness, &answer).1 })
 }
 
 /// The answer with the forces of the springs of the norm in its residual.
@@ -78,9 +76,8 @@ fn beside_springs<'a>(norm: &EnergyNorm, answer: &Answer<'a>) -> Answer<'a> {
 /// The rounding of a large shift may be a large distance between rows that follow from others, and forces that
 /// cancel each other leave what the factor has rounded. A repair from the witness itself has small shifts, forces
 /// and changes of force; the distance of the answer from there needs no factor.
-fn repeated(first: FirstRepair, answer: &Answer) -> (Option<ErrorBound>, Moved) {
+fn repeated(repair: &Repair, mut witness: Witness, answer: &Answer) -> (Option<ErrorBound>, Moved) {
     let problem = answer.problem;
-    let FirstRepair { repair, mut witness, .. } = first;
     let norm = repair.norm;
     let mut multipliers = vec![answer.multiplier.to_vec()];
     let mut next = (repair.answer(&witness), repair.expanded(&witness.change));
@@ -120,28 +117,23 @@ fn repeated(first: FirstRepair, answer: &Answer) -> (Option<ErrorBound>, Moved) 
 /// A displacement with its multipliers.
 type Moved = (Vec<f64>, Vec<f64>);
 
-/// The first repair of an answer.
-struct FirstRepair<'a> {
-    repair: Repair<'a>,
-    witness: Witness,
-    bound: ErrorBound,
-    /// `true` if rounding takes no part in the bound, or the whole bound is what rounding the displacement does.
-    is_sharp: bool,
-}
-
-impl<'a> FirstRepair<'a> {
-    /// `None` if the boundary is not known, or if the rows that look closed cannot be met together.
-    fn new(norm: &'a EnergyNorm, answer: &'a Answer<'a>, closed: &[bool]) -> Option<Self> {
-        let repair = Repair::new(norm, answer)?;
-        let witness = repair.best_witness(closed)?;
-        let bound = repair.bound(&witness);
-        // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
-        let is_precise = norm.springs.is_none() || norm.loss() <= LOST_WITH_SPRINGS;
-        let is_exact = !witness.is_rounded && is_precise;
-        let is_rounding = answer.problem.parts().count() == 1 && bound.whole <= answer.rounding;
-        let is_sharp = is_exact && (is_rounding || repair.vague(&witness) <= SMALL * bound.whole);
-        Some(FirstRepair { repair, witness, bound, is_sharp })
-    }
+/// The first repair of an answer, its witness and its bound, and `true` if rounding takes no part in the bound, or the
+/// whole bound is what rounding the displacement does. `None` if the boundary is not known, or if the rows that look
+/// closed cannot be met together.
+fn first_repair<'a>(
+    norm: &'a EnergyNorm,
+    answer: &'a Answer<'a>,
+    closed: &[bool],
+) -> Option<(Repair<'a>, Witness, ErrorBound, bool)> {
+    let repair = Repair::new(norm, answer)?;
+    let witness = repair.best_witness(closed)?;
+    let bound = repair.bound(&witness);
+    // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
+    let is_precise = norm.springs.is_none() || norm.loss() <= LOST_WITH_SPRINGS;
+    let is_exact = !witness.is_rounded && is_precise;
+    let is_rounding = answer.problem.parts().count() == 1 && bound.whole <= answer.rounding;
+    let is_sharp = is_exact && (is_rounding || repair.vague(&witness) <= SMALL * bound.whole);
+    Some((repair, witness, bound, is_sharp))
 }
 
 /// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, the

@@ -138,16 +138,16 @@ pub fn placed(watched: &WatchedRows, displacement: &[f64], mut closed: Vec<bool>
     let problem = watched.problem;
     let terms = problem.contact.mul_abs(displacement);
     for _ in 0..EXCHANGES {
-        let moved = moved_to_gaps(&ClosedRows::new(watched, &closed)?, displacement);
-        let terms = |row: usize| terms[row] + problem.gap[row].abs() + moved.terms[row];
-        let is_off = |row: usize| moved.distance[row].abs() > AT_GAP * terms(row);
+        let [shift, rest, distance, moved] = moved_to_gaps(&ClosedRows::new(watched, &closed)?, displacement);
+        let terms = |row: usize| terms[row] + problem.gap[row].abs() + moved[row];
+        let is_off = |row: usize| distance[row].abs() > AT_GAP * terms(row);
         let violated: Vec<usize> =
-            (0..problem.rows()).filter(|&row| !closed[row] && moved.distance[row] > 0.0 && is_off(row)).collect();
+            (0..problem.rows()).filter(|&row| !closed[row] && distance[row] > 0.0 && is_off(row)).collect();
         let off: Vec<usize> = (0..problem.rows()).filter(|&row| closed[row] && is_off(row)).collect();
         if violated.is_empty() && off.is_empty() {
-            return Some(Placed { shift: moved.shift, rest: moved.rest, closed });
+            return Some(Placed { shift, rest, closed });
         }
-        let looser: Vec<usize> = off.iter().copied().filter(|&row| moved.distance[row] < 0.0).collect();
+        let looser: Vec<usize> = off.iter().copied().filter(|&row| distance[row] < 0.0).collect();
         // An equality that follows from other rows contradicts them if it is missed.
         if (!off.is_empty() && looser.is_empty()) || looser.iter().any(|&row| problem.is_two_sided(row)) {
             return None;
@@ -169,8 +169,9 @@ pub fn balancing(watched: &WatchedRows, closed: &[bool], residual: &[f64]) -> Op
     Some(forces)
 }
 
-/// The rows moved to their gaps as far as they can be together.
-fn moved_to_gaps(rows: &ClosedRows, u: &[f64]) -> Moved {
+/// The shift d that moves the rows to their gaps as far as they can be together, what is missing in it, the distances
+/// `B (u + d) - g`, d not rounded, and `|B| |d|`.
+fn moved_to_gaps(rows: &ClosedRows, u: &[f64]) -> [Vec<f64>; 4] {
     let problem = rows.all.problem;
     let mut distances = Distances::of(problem);
     let mut distance = distances.moved(u);
@@ -197,17 +198,7 @@ fn moved_to_gaps(rows: &ClosedRows, u: &[f64]) -> Moved {
     // Each of the shifts that would follow is at most half as long as the one before.
     let follow = 2.0 * gain.min(1.0);
     let rest = problem.parts().sums(|dof| roots[dof] * (OF_SHIFT * magnitude[dof] + follow * last[dof].abs()));
-    Moved { terms: problem.contact.mul_abs(&magnitude), shift, rest, distance }
-}
-
-/// Rows after a shift.
-struct Moved {
-    shift: Vec<f64>,
-    rest: Vec<f64>,
-    /// `B (u + d) - g`, d not rounded.
-    distance: Vec<f64>,
-    /// `|B| |d|`.
-    terms: Vec<f64>,
+    [shift, rest, distance, problem.contact.mul_abs(&magnitude)]
 }
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ pub fn energy_error_bound_by(
     let parts = problem.parts();
     let are_apart = parts.count() == 1 || parts.are_apart(&problem.stiffness);
     let blocks = match are_apart {
-        true => Blocks { of_unknown: parts.of_dofs(), count: parts.count() },
+        true => Blocks { of_unknown: &parts.of_dof, count: parts.count() },
         false => Blocks::ONE,
     };
     let dual = |held: &SymmetricMatrix| {

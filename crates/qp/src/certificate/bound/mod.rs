@@ -96,12 +96,6 @@ impl ErrorBound {
         }
         self
     }
-
-    fn widened(mut self, factor: f64) -> Self {
-        self.whole *= factor;
-        self.of_parts.iter_mut().flatten().for_each(|bound| *bound *= factor);
-        self
-    }
 }
 
 /// The square of a number below this share of another one underflows beside it.

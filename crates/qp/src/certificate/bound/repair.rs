@@ -1,18 +1,8 @@
 //! A repaired answer on the contact boundary: its shifts, forces and bound.
 
-use std::cell::OnceCell;
-
 use super::super::energy_norm::{Boundary, RowsOnBoundary};
 use super::{Answer, EnergyNorm, ErrorBound, add_sizes, shift_length};
-use crate::linear::{SparseMatrix, dot, forward_all, ldexp};
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Multipliers {
-    /// The multipliers that balance the closed rows at their gaps.
-    InEquilibrium,
-    /// The multipliers of the answer.
-    OfTheAnswer,
-}
+use crate::linear::{AT_ONCE, SparseMatrix, dot, ldexp};
 
 /// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
@@ -20,9 +10,6 @@ const CANCELLED: f64 = 4.0 * f64::EPSILON;
 /// The way of rows to their gaps counts three times: as a shift of the answer, as the residual of that shift, and for
 /// the rounding of its length.
 const COUNTS: f64 = 3.0;
-
-/// Number of rows that a sweep of the repair takes at once.
-const BLOCK: usize = 128;
 
 /// The force `alpha r + B' x`, x in the units of normalised rows.
 pub(super) struct Force {
@@ -76,8 +63,6 @@ pub(super) struct Repair<'a> {
     rows: RowsOnBoundary,
     pub violation: Vec<f64>,
     pub multiplier: Vec<f64>,
-    /// `L_tt^-1 B_i'` of each row that was used, unless the compliance of all rows is known.
-    halves: Vec<OnceCell<Vec<f64>>>,
     /// The sweep of the residual: squares of the interior, and the boundary.
     interior: f64,
     swept: Vec<f64>,
@@ -96,8 +81,7 @@ impl<'a> Repair<'a> {
         let unit = norm.equilibration.factor;
         let (violation, multiplier) = (scaled(&answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
         let (interior, swept) = norm.sweep(&answer.residual);
-        let halves = vec![OnceCell::new(); if rows.compliance.is_some() { 0 } else { rows.shift.len() }];
-        Some(Repair { norm, boundary, answer, rows, violation, multiplier, halves, interior, swept })
+        Some(Repair { norm, boundary, answer, rows, violation, multiplier, interior, swept })
     }
 
     pub fn count(&self) -> usize {
@@ -106,7 +90,7 @@ impl<'a> Repair<'a> {
 
     /// The rows on the contact boundary, each a column.
     pub fn by_row(&self) -> &SparseMatrix {
-        &self.rows.by_row
+        self.rows.compliance.by_row()
     }
 
     /// The sweep of forces along the rows, on the boundary.
@@ -114,7 +98,7 @@ impl<'a> Repair<'a> {
         if weights.iter().all(|&weight| weight == 0.0) {
             return vec![0.0; self.boundary.block.size()];
         }
-        self.boundary.block.forward(self.rows.by_row.mul(weights))
+        self.boundary.block.forward(self.by_row().mul(weights))
     }
 
     /// `L_tt'^-1 y`.
@@ -122,45 +106,20 @@ impl<'a> Repair<'a> {
         self.boundary.block.backward(y)
     }
 
-    pub fn half(&self, row: usize) -> &[f64] {
-        match &self.rows.compliance {
-            Some(compliance) => compliance.half(row),
-            None => {
-                self.find_halves(&[row]);
-                self.halves[row].get().map_or(&[], Vec::as_slice)
-            }
-        }
-    }
-
+    /// The product of the columns of W of two rows.
     pub fn product(&self, a: usize, b: usize) -> f64 {
-        match &self.rows.compliance {
-            Some(compliance) => compliance.product(a, b),
-            None => dot(self.half(a), self.half(b)),
-        }
+        self.rows.compliance.product(a, b)
     }
 
-    fn find_halves(&self, rows: &[usize]) {
-        let missing: Vec<usize> = rows.iter().copied().filter(|&row| self.halves[row].get().is_none()).collect();
-        let size = self.boundary.dofs.len();
-        let mut columns = vec![0.0; missing.len() * size];
-        for (column, &row) in columns.chunks_mut(size.max(1)).zip(&missing) {
-            self.rows.by_row.column(row).for_each(|(place, b)| column[place] = b);
-        }
-        let swept = forward_all(&self.boundary.block, columns);
-        for (column, &row) in swept.chunks(size.max(1)).zip(&missing) {
-            self.halves[row].get_or_init(|| column.to_vec());
-        }
-    }
-
-    /// The halves of these rows; `None` if there is no time.
+    /// The columns of W of these rows; `None` if there is no time.
     pub fn halves(&self, rows: &[usize]) -> Option<Vec<&[f64]>> {
-        for block in rows.chunks(BLOCK).filter(|_| self.rows.compliance.is_none()) {
+        for some in rows.chunks(AT_ONCE) {
             if self.norm.is_over() {
                 return None;
             }
-            self.find_halves(block);
+            self.rows.compliance.find(some);
         }
-        Some(rows.iter().map(|&row| self.half(row)).collect())
+        Some(rows.iter().map(|&row| self.rows.compliance.half(row)).collect())
     }
 
     pub fn sweep(&self, force: &Force) -> Vec<f64> {
@@ -296,7 +255,7 @@ mod tests {
         let open = Witness { rest: vec![0.25], ..witness };
         assert!((repair.bound(&open).whole - (1.0 + 3.0 * 0.25)).abs() < ROUNDING, "{:?}", repair.bound(&open));
         // If the force stays 3, a force of 1 is left at the gap; it moves the spring by 1/4, 1/2 in energy norm.
-        let kept = repair.settle(&[true], Multipliers::OfTheAnswer).unwrap();
+        let kept = repair.settle(&[true], false).unwrap();
         assert!((repair.bound(&kept).whole - 1.5).abs() < ROUNDING, "{:?}", repair.bound(&kept));
     }
 
@@ -313,7 +272,7 @@ mod tests {
         for (multiplier, left) in cases {
             let answer = Answer::of(&problem, &[1001.0], &multiplier);
             let repair = Repair::new(&norm, &answer).unwrap();
-            let witness = repair.settle(&[true, true], Multipliers::OfTheAnswer).unwrap();
+            let witness = repair.settle(&[true, true], false).unwrap();
             assert_eq!(repair.expanded(&witness.multiplier), left, "{multiplier:?}");
             // What is passed stands alone, so that the answer of the witness and the sum of its parts are the same.
             assert_eq!(repair.expanded(&witness.change), if witness.passes[1] { left } else { [0.0; 2] });

@@ -1,6 +1,6 @@
 //! The bound if the contact boundary is not known: the rows are repaired by their own dofs, and the body follows.
 
-use super::closed_rows::{balancing, placed, watched_rows};
+use super::closed_rows::{Placed, balancing, placed, watched_rows};
 use super::{Answer, EnergyNorm, ErrorBound, add_sizes, allowed, shift_length, squares};
 use crate::linear::{Blocks, Iterate};
 use crate::problem::ContactProblem;
@@ -10,16 +10,6 @@ const SUM_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Steps in which the rest of the body adapts to the rows that were put at their gaps; each costs a product with K.
 const RELAXATIONS: usize = 20;
-
-/// An answer moved by `repair`, and from there by a `rest` of at most these lengths in each part.
-struct Repaired<'a> {
-    repair: Vec<f64>,
-    residual: Vec<f64>,
-    multiplier: Vec<f64>,
-    rest: Vec<f64>,
-    /// The rows that are at their gaps then.
-    closed: &'a [bool],
-}
 
 /// Possible rounding error of B u - g from rounding of u, row by row.
 pub fn negligible(problem: &ContactProblem, displacement: &[f64]) -> Vec<f64> {
@@ -40,10 +30,9 @@ pub fn bound_row_by_row(norm: &EnergyNorm, answer: &Answer, closed: Option<Vec<b
     };
     let keeps_all = closed.is_none();
     let at_gap = closed.unwrap_or_else(|| (0..problem.rows()).map(touches).collect());
-    let Some(placed) = placed(&watched, answer.displacement, at_gap) else {
+    let Some(Placed { shift: mut repair, rest, closed }) = placed(&watched, answer.displacement, at_gap) else {
         return ErrorBound::none();
     };
-    let (closed, mut repair) = (&placed.closed, placed.shift);
     let is_moved = repair.iter().any(|&change| change != 0.0);
     let keeps = |row: usize| problem.gap[row].is_finite() && (keeps_all || closed[row]);
     let kept: Vec<f64> = (0..problem.rows())
@@ -69,7 +58,7 @@ pub fn bound_row_by_row(norm: &EnergyNorm, answer: &Answer, closed: Option<Vec<b
         }
     }
     let mut multiplier = kept.clone();
-    if !keeps_all && let Some(forces) = balancing(&watched, closed, &residual) {
+    if !keeps_all && let Some(forces) = balancing(&watched, &closed, &residual) {
         let change = |row: usize| allowed(problem, row, kept[row] + forces[row]) != 0.0;
         let change: Vec<f64> =
             (0..problem.rows()).map(|row| if change(row) { forces[row] } else { -kept[row] }).collect();
@@ -80,7 +69,7 @@ pub fn bound_row_by_row(norm: &EnergyNorm, answer: &Answer, closed: Option<Vec<b
             residual = left;
         }
     }
-    with_slack(norm, answer, &Repaired { repair, residual, multiplier, rest: placed.rest, closed })
+    with_slack(norm, answer, &Placed { shift: repair, rest, closed }, [&residual, &multiplier])
 }
 
 /// The forces that are out of balance at an answer moved by `repair`, with multipliers that are sums.
@@ -96,9 +85,10 @@ fn size_alone(problem: &ContactProblem, force: &[f64]) -> f64 {
     squares.map(|(force, stiffness)| force * force / stiffness).sum()
 }
 
-fn with_slack(norm: &EnergyNorm, answer: &Answer, repaired: &Repaired) -> ErrorBound {
+/// The bound of an answer moved to this place, with this residual there and these multipliers.
+fn with_slack(norm: &EnergyNorm, answer: &Answer, at: &Placed, [residual, multiplier]: [&[f64]; 2]) -> ErrorBound {
     let problem = answer.problem;
-    let Repaired { repair, residual, multiplier, rest, closed } = repaired;
+    let Placed { shift: repair, rest, closed } = at;
     let parts = problem.parts();
     let moved_by = problem.contact.mul(repair);
     let mut slack_work = vec![0.0; parts.count()];

@@ -41,11 +41,7 @@ fn of_products(count: usize, product: impl Fn(usize, usize) -> f64, is_over: &im
         if is_over() {
             return None;
         }
-        let mut entries: Vec<f64> = Vec::with_capacity(found.kept.len() + 1);
-        for (k, &place) in found.kept.iter().enumerate() {
-            let before = found.r.column(k);
-            entries.push((product(column, place) - dot(&before[..k], &entries)) / before[k]);
-        }
+        let entries = found.r.solve_lower(found.kept.iter().map(|&place| product(column, place)).collect());
         let pivot = product(column, column) - dot(&entries, &entries);
         found.take(entries, &lengths, |terms| (pivot > PARALLEL * terms * terms).then(|| pivot.sqrt()));
     }

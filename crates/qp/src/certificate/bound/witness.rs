@@ -1,7 +1,7 @@
 //! The repair itself: which rows are closed, and the forces that put them at their gaps.
 
 use super::allowed;
-use super::repair::{Force, Multipliers, Repair, Witness};
+use super::repair::{Force, Repair, Witness};
 use super::triangle::{Triangle, triangle_of};
 
 /// Number of corrections of the set of rows that look closed; after these, rows are only added.
@@ -28,28 +28,26 @@ const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 impl Repair<'_> {
     /// The equilibrium of the rows that look closed if all these rows push, otherwise the better of both repairs.
     pub fn best_witness(&self, closed: &[bool]) -> Option<Witness> {
-        let settled = self.settle(closed, Multipliers::InEquilibrium);
+        let settled = self.settle(closed, true);
         if settled.as_ref().is_some_and(|witness| witness.is_equilibrium) {
             return settled;
         }
         let size = |witness: &Witness| self.bound(witness).size();
-        [settled, self.settle(closed, Multipliers::OfTheAnswer)]
-            .into_iter()
-            .flatten()
-            .min_by(|a, b| size(a).total_cmp(&size(b)))
+        [settled, self.settle(closed, false)].into_iter().flatten().min_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
     /// The force without the change of the multipliers of closed rows; in equilibrium open rows lose their multipliers.
-    fn base(&self, closed: &[bool], multipliers: Multipliers) -> Force {
+    fn base(&self, closed: &[bool], balances: bool) -> Force {
         let dropped = |row: usize| if closed[row] { 0.0 } else { -self.multiplier[row] };
-        match multipliers {
-            Multipliers::InEquilibrium => Force::new(1.0, (0..closed.len()).map(dropped).collect()),
-            Multipliers::OfTheAnswer => Force::new(0.0, vec![0.0; closed.len()]),
+        match balances {
+            true => Force::new(1.0, (0..closed.len()).map(dropped).collect()),
+            false => Force::new(0.0, vec![0.0; closed.len()]),
         }
     }
 
-    /// A feasible point at which the closed rows are at their gaps, with these multipliers.
-    pub fn settle(&self, closed: &[bool], multipliers: Multipliers) -> Option<Witness> {
+    /// A feasible point at which the closed rows are at their gaps, with the multipliers that balance them there, or
+    /// with those of the answer.
+    pub fn settle(&self, closed: &[bool], balances: bool) -> Option<Witness> {
         let rows = self.count();
         let mut closed = closed.to_vec();
         // The exchange that put a row first; 0 if none did.
@@ -58,7 +56,7 @@ impl Repair<'_> {
             // The deepest first: of two rows that contradict each other as equalities the tighter one is kept.
             let mut set: Vec<usize> = (0..rows).filter(|&row| closed[row]).collect();
             set.sort_by(|&a, &b| first[b].cmp(&first[a]).then(self.violation[b].total_cmp(&self.violation[a])));
-            let fitted = self.fit(&set, &self.base(&closed, multipliers))?;
+            let fitted = self.fit(&set, &self.base(&closed, balances))?;
             let Fitted { change, distance, tolerance, triangle, .. } = &fitted;
             let independent = triangle.independent();
             let violated: Vec<usize> =
@@ -67,14 +65,10 @@ impl Repair<'_> {
             let follows =
                 set.iter().zip(&independent).filter(|entry| !*entry.1 && missed(*entry.0)).map(|entry| *entry.0);
             let (deeper, looser): (Vec<usize>, Vec<usize>) = follows.partition(|&row| distance[row] > 0.0);
-            let pulling: Vec<usize> = match multipliers {
-                Multipliers::InEquilibrium => {
-                    let pulls =
-                        |row: usize| self.multiplier[row] + change[row] > 0.0 && !self.answer.problem.is_two_sided(row);
-                    set.iter().copied().filter(|&row| pulls(row)).collect()
-                }
-                Multipliers::OfTheAnswer => Vec::new(),
+            let pulls = |row: &usize| {
+                balances && self.multiplier[*row] + change[*row] > 0.0 && !self.answer.problem.is_two_sided(*row)
             };
+            let pulling: Vec<usize> = set.iter().copied().filter(pulls).collect();
             let is_met = violated.is_empty() && deeper.is_empty() && looser.is_empty();
             if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
                 let has_dependent = first.iter().any(|&first| first > 0) || independent.contains(&false);
@@ -82,7 +76,7 @@ impl Repair<'_> {
                 let is_excused =
                     |row: usize| !closed[row] && tolerance[row] > 0.0 && distance[row].abs() <= tolerance[row];
                 let is_rounded = has_dependent || (0..rows).any(is_excused);
-                return Some(Witness { is_rounded, ..self.witness(&set, fitted, closed, multipliers) });
+                return Some(Witness { is_rounded, ..self.witness(&set, fitted, closed, balances) });
             }
             // Of copies that differ by rounding the tightest comes first in the end, unless they contradict each other.
             if exchange >= EXCHANGES && deeper.iter().any(|&row| first[row] > 0) {
@@ -104,20 +98,19 @@ impl Repair<'_> {
     }
 
     /// The witness of the closed rows `set` that are at their gaps after a fit.
-    fn witness(&self, set: &[usize], fitted: Fitted, closed: Vec<bool>, multipliers: Multipliers) -> Witness {
+    fn witness(&self, set: &[usize], fitted: Fitted, closed: Vec<bool>, balances: bool) -> Witness {
         let rest = self.rest(set, &fitted);
         let Fitted { change, error, distance, tolerance, triangle } = fitted;
-        let in_equilibrium = multipliers == Multipliers::InEquilibrium;
-        let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
+        let balanced = |row: usize| self.multiplier[row] + if balances { change[row] } else { 0.0 };
         // A force that pulls is no multiplier, and nothing balances one on a loose dof.
         let holds = |row: usize| closed[row] && !self.norm.is_on_loose_dof(row);
         let mut multiplier: Vec<f64> = (0..change.len())
             .map(|row| if holds(row) { allowed(self.answer.problem, row, balanced(row)) } else { 0.0 })
             .collect();
         let is_balanced = |row: usize| multiplier[row] == balanced(row) && multiplier[row].is_finite();
-        let is_equilibrium = in_equilibrium && set.iter().all(|&row| is_balanced(row));
+        let is_equilibrium = balances && set.iter().all(|&row| is_balanced(row));
         let passes = self.pass_on(set, &triangle, &mut multiplier);
-        let left = |row: usize| match in_equilibrium {
+        let left = |row: usize| match balances {
             true if closed[row] => multiplier[row] - balanced(row),
             true => 0.0,
             false => multiplier[row] - self.multiplier[row] - change[row],
@@ -125,7 +118,7 @@ impl Repair<'_> {
         let rows = (0..change.len()).map(left).collect();
         let changed = |row: usize| match passes[row] {
             true => multiplier[row],
-            false if in_equilibrium && multiplier[row] != 0.0 => change[row],
+            false if balances && multiplier[row] != 0.0 => change[row],
             false => 0.0,
         };
         let (change, left) = ((0..change.len()).map(changed).collect(), Force::new(1.0 - error.alpha, rows));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use super::{Bound, Bounds, LeftOut, Order, Preferred, Side, are_equal, length, no_bound};
+use super::{Bound, Bounds, LeftOut, Preferred, Side, are_equal, length, no_bound};
 use crate::error::Error;
 use crate::linear::multigrid::{Direction, Units};
 use crate::linear::{SparseMatrix, ldexp};
@@ -24,17 +24,13 @@ const MOST_BEYOND: usize = 24;
 /// A row of more nodes is a mean.
 const GROUPS_OF_A_PAIR: usize = 2;
 
-/// Rows by rows, with their gaps.
-struct GapRows<'a> {
-    by_row: SparseMatrix,
+/// Bounds that are being made.
+struct Making<'a> {
+    /// The rows, each a column, with their gaps.
+    by_row: &'a SparseMatrix,
     gap: &'a [f64],
     /// The node of each dof, one entry per dof.
     groups: &'a [u32],
-}
-
-/// Bounds that are being made.
-struct Making<'a> {
-    rows: &'a GapRows<'a>,
     all: Bounds,
     bound_of: Vec<Option<usize>>,
     /// The places that the shears of means contain: none of them becomes a pivot.
@@ -51,88 +47,71 @@ impl Bounds {
         units: &Units,
         travels: Vec<usize>,
     ) -> Result<Self, Error> {
-        let rows = GapRows { by_row: contact.transposed(), gap, groups: &units.groups };
-        let mut means = rows.means(&travels);
+        let by_row = &contact.transposed();
+        let mut means = means((by_row, gap), &units.groups, &travels);
+        let is_unscaled = units.exponents.iter().all(|&unit| unit == 0);
+        let given =
+            Bounds { units: units.exponents.clone(), is_unscaled, travels, rows: gap.len(), ..Bounds::default() };
         loop {
-            let (bounds, without_pivot) = Making::of(&rows, order, &means, units, travels.clone())?;
-            if without_pivot.is_empty() {
-                return Ok(bounds);
+            let (all, bound_of, carried) = (given.clone(), vec![None; given.units.len()], HashSet::new());
+            let mut making = Making { by_row, gap, groups: &units.groups, all, bound_of, carried };
+            let is_mean: HashSet<usize> = means.iter().copied().collect();
+            for (place, &row) in order.rows.iter().enumerate().filter(|entry| gap[*entry.1].is_finite()) {
+                if !is_mean.contains(&row) {
+                    making.turn(row, if place < order.needed { LEAST_BEYOND_IF_NEEDED } else { LEAST_BEYOND })?;
+                }
             }
-            // These are turned as other rows are.
-            means.retain(|row| !without_pivot.contains(row));
+            let mut with_pivot = Vec::new();
+            for &row in &means {
+                if making.pivot(row)? {
+                    with_pivot.push(row);
+                }
+            }
+            if with_pivot.len() == means.len() {
+                let mut all = making.all;
+                let is_own = |bound: &Bound| bound.shears().next().is_none();
+                all.is_plain = all.reflections.is_empty() && all.travels.is_empty() && all.bounds.iter().all(is_own);
+                return Ok(all);
+            }
+            // Means without a pivot are turned as other rows are.
+            means = with_pivot;
         }
     }
 }
 
-impl GapRows<'_> {
-    /// The entries of a row that are not zero.
-    fn entries(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.by_row.column(row).filter(|entry| entry.1 != 0.0)
-    }
+/// The entries of a row that are not zero.
+fn entries(by_row: &SparseMatrix, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    by_row.column(row).filter(|entry| entry.1 != 0.0)
+}
 
-    /// The rows of more nodes than a pair. First come those whose heaviest node most others touch: it can be a pivot
-    /// only before them.
-    fn means(&self, travels: &[usize]) -> Vec<usize> {
-        let (mut heaviest, mut touched) = (Vec::new(), HashMap::<u32, usize>::new());
-        for row in (0..self.gap.len()).filter(|&row| self.gap[row].is_finite()) {
-            let mut of_group = BTreeMap::<u32, f64>::new();
-            for (dof, b) in self.entries(row).filter(|entry| travels.binary_search(&entry.0).is_err()) {
-                let length = of_group.entry(self.groups[dof]).or_default();
-                *length = length.hypot(b);
-            }
-            let Some((&first, _)) = of_group.iter().max_by(|a, b| a.1.total_cmp(b.1)) else { continue };
-            if of_group.len() > GROUPS_OF_A_PAIR {
-                heaviest.push((row, first));
-                of_group.keys().for_each(|&group| *touched.entry(group).or_default() += 1);
-            }
+/// The rows of more nodes than a pair. First come those whose heaviest node most others touch: it can be a pivot only
+/// before them.
+fn means((by_row, gap): (&SparseMatrix, &[f64]), groups: &[u32], travels: &[usize]) -> Vec<usize> {
+    let (mut heaviest, mut touched) = (Vec::new(), HashMap::<u32, usize>::new());
+    for row in (0..gap.len()).filter(|&row| gap[row].is_finite()) {
+        let mut of_group = BTreeMap::<u32, f64>::new();
+        for (dof, b) in entries(by_row, row).filter(|entry| travels.binary_search(&entry.0).is_err()) {
+            let length = of_group.entry(groups[dof]).or_default();
+            *length = length.hypot(b);
         }
-        heaviest.sort_by_key(|(_, group)| std::cmp::Reverse(touched.get(group)));
-        heaviest.into_iter().map(|(row, _)| row).collect()
+        let Some((&first, _)) = of_group.iter().max_by(|a, b| a.1.total_cmp(b.1)) else { continue };
+        if of_group.len() > GROUPS_OF_A_PAIR {
+            heaviest.push((row, first));
+            of_group.keys().for_each(|&group| *touched.entry(group).or_default() += 1);
+        }
     }
+    heaviest.sort_by_key(|(_, group)| std::cmp::Reverse(touched.get(group)));
+    heaviest.into_iter().map(|(row, _)| row).collect()
 }
 
 impl Making<'_> {
-    /// All bounds: of other rows first, then of `means`; and the means that have no pivot.
-    fn of(
-        rows: &GapRows,
-        order: &Preferred,
-        means: &[usize],
-        units: &Units,
-        travels: Vec<usize>,
-    ) -> Result<(Bounds, HashSet<usize>), Error> {
-        let (reflections, touching, bounds, left_out) = (Vec::new(), HashMap::new(), Vec::new(), Vec::new());
-        let units = units.exponents.clone();
-        let bound_of = vec![None; units.len()];
-        let (is_plain, is_unscaled) = (false, units.iter().all(|&unit| unit == 0));
-        let rows_given = rows.gap.len();
-        let all =
-            Bounds { units, is_unscaled, reflections, touching, bounds, is_plain, travels, left_out, rows: rows_given };
-        let mut making = Making { rows, all, bound_of, carried: HashSet::new() };
-        let is_mean: HashSet<usize> = means.iter().copied().collect();
-        for (place, &row) in order.rows.iter().enumerate().filter(|entry| rows.gap[*entry.1].is_finite()) {
-            if !is_mean.contains(&row) {
-                making.turn(row, if place < order.needed { LEAST_BEYOND_IF_NEEDED } else { LEAST_BEYOND })?;
-            }
-        }
-        let mut without_pivot = HashSet::new();
-        for &row in means {
-            if !making.pivot(row)? {
-                without_pivot.insert(row);
-            }
-        }
-        let all = &mut making.all;
-        let is_own = |bound: &Bound| bound.shears().next().is_none();
-        all.is_plain = all.reflections.is_empty() && all.travels.is_empty() && all.bounds.iter().all(is_own);
-        Ok((making.all, without_pivot))
-    }
-
     /// The length of a row in the units of the dofs, its unit vector after the reflections, and its travel.
     fn turned(&self, row: usize) -> Result<(f64, Direction, Direction), Error> {
         let is_travel = |entry: &(usize, f64)| self.all.travels.binary_search(&entry.0).is_ok();
-        let entries = self.rows.entries(row).map(|(dof, b)| (dof, ldexp(b, self.all.units[dof])));
+        let entries = entries(self.by_row, row).map(|(dof, b)| (dof, ldexp(b, self.all.units[dof])));
         let (mut moving, mut entries): (Direction, Direction) = entries.partition(is_travel);
         if moving.len() > 1 {
-            return Err(no_bound(format!("contact row {row} (index from 0) has several dofs without stiffness")));
+            return Err(no_bound(row, "has several dofs without stiffness"));
         }
         if entries.is_empty() {
             // The row of a node that is held: a bound on the travel itself.
@@ -140,7 +119,7 @@ impl Making<'_> {
         }
         let length = length(&entries);
         let unit = entries.iter().map(|&(place, b)| (place, b / length)).collect();
-        Ok((length, self.all.reflected(unit, Order::Forward), moving))
+        Ok((length, self.all.reflected(unit, false), moving))
     }
 
     /// Turns a row into a bound, if at least the share `least` of it is beyond the rows before it.
@@ -149,7 +128,7 @@ impl Making<'_> {
         let (shared, mut own): (Direction, Direction) =
             turned.into_iter().partition(|entry| self.bound_of[entry.0].is_some());
         if !shared.is_empty() && own.len() > MOST_BEYOND {
-            return Err(no_bound(format!("contact row {row} (index from 0) shares dofs with too many others")));
+            return Err(no_bound(row, "shares dofs with too many others"));
         }
         let beyond = self::length(&own);
         // A row beyond others has a coordinate of its own; otherwise it may be parallel to the last of them.
@@ -176,12 +155,10 @@ impl Making<'_> {
             return Ok(());
         }
         let bound = &mut self.all.bounds[index];
-        if !bound.travels_as(travel) {
-            return Err(no_bound(format!(
-                "contact row {row} (index from 0) shares an unknown with one of another travel"
-            )));
+        if !are_equal(bound.travel.as_slice(), travel.as_slice()) {
+            return Err(no_bound(row, "shares an unknown with one of another travel"));
         }
-        bound.take(Side { row, coefficient, value: self.rows.gap[row] / coefficient });
+        bound.take(Side { row, coefficient, value: self.gap[row] / coefficient });
         Ok(())
     }
 
@@ -191,7 +168,7 @@ impl Making<'_> {
         let (length, turned, moving) = self.turned(row)?;
         let Some(group) = self.group_of_pivot(&turned) else { return Ok(false) };
         let (mut own, mut shears): (Direction, Direction) =
-            turned.into_iter().partition(|entry| self.rows.groups[entry.0] == group && self.may_be_pivot(entry.0));
+            turned.into_iter().partition(|entry| self.groups[entry.0] == group && self.may_be_pivot(entry.0));
         let beyond = self::length(&own);
         own.iter_mut().for_each(|entry| entry.1 /= beyond);
         let Some((unknown, sign)) = self.all.onto_one(own) else { return Ok(false) };
@@ -201,7 +178,7 @@ impl Making<'_> {
         let coefficient = share * length;
         let travel = moving.first().map(|&(travel, c)| (travel, c / coefficient));
         let mut bound = Bound { is_mean: true, ..Bound::new(unknown, shears, travel) };
-        bound.take(Side { row, coefficient, value: self.rows.gap[row] / coefficient });
+        bound.take(Side { row, coefficient, value: self.gap[row] / coefficient });
         self.bound_of[unknown] = Some(self.all.bounds.len());
         self.all.bounds.push(bound);
         Ok(true)
@@ -219,7 +196,7 @@ impl Making<'_> {
             let c = ldexp(c, -self.all.units[place]);
             whole = whole.hypot(c);
             if self.may_be_pivot(place) {
-                let length = of_group.entry(self.rows.groups[place]).or_default();
+                let length = of_group.entry(self.groups[place]).or_default();
                 *length = length.hypot(c);
             }
         }
@@ -250,21 +227,16 @@ impl Bounds {
         Some((first, if unit.len() == 1 { value.signum() } else { self.reflect(unit, first) }))
     }
 
-    /// A unit vector after the reflections that touch it.
-    pub(super) fn reflected(&self, vector: Direction, order: Order) -> Direction {
+    /// A unit vector after the reflections that touch it, in the order of the product H or, back, of H'.
+    pub(super) fn reflected(&self, vector: Direction, is_back: bool) -> Direction {
         if vector.len() == 1 && vector.iter().all(|entry| !self.touching.contains_key(&entry.0)) {
             return vector;
         }
         let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
         let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
         let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
-        loop {
-            let next = match order {
-                Order::Forward => waiting.pop_first(),
-                Order::Backward => waiting.pop_last(),
-            };
-            let Some(next) = next else { break };
-            let follows = |other: &usize| (*other > next) == (order == Order::Forward) && *other != next;
+        while let Some(next) = if is_back { waiting.pop_last() } else { waiting.pop_first() } {
+            let follows = |other: &usize| (*other > next) != is_back && *other != next;
             let reflection = &self.reflections[next];
             let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
             if along.abs() <= TURNING_ROUNDING {

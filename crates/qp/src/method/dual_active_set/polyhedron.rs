@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::linear::{
     Accumulator, AugmentedMatrix, Cholesky, Equilibration, SparseMatrix, exponent, if_definite, ldexp, norm,
 };
-use crate::method::ScaledProblem;
+use crate::method::{Ending, ScaledProblem};
 use crate::problem::ContactProblem;
 
 /// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4,
@@ -41,12 +41,6 @@ pub(super) struct Polyhedron {
     work: Cell<f64>,
 }
 
-/// Rows that no displacement meets together, and their weights of Farkas, `>= 0`.
-pub(super) struct Contradiction {
-    pub rows: Vec<usize>,
-    pub weights: Vec<f64>,
-}
-
 impl Polyhedron {
     /// The polyhedron of a problem; `None` if its factorisation fails or would take too many sweeps.
     pub fn of(scaled: &ScaledProblem) -> Result<Option<Self>, Error> {
@@ -56,7 +50,7 @@ impl Polyhedron {
         let no_rows = SparseMatrix::from_triplets(0, of.dofs(), &[])?;
         let body = AugmentedMatrix::new(&stiffness, &no_rows, None)?;
         let factor_with = |weight: f64| if_definite(body.factor(body.matrix(|_| 0.0, weight)));
-        let mut factor = if scaled.is_definite() { factor_with(0.0)? } else { None };
+        let mut factor = if scaled.is_definite { factor_with(0.0)? } else { None };
         if factor.is_none() {
             factor = factor_with(PROXIMAL)?;
         }
@@ -64,15 +58,13 @@ impl Polyhedron {
         if (of.rows() * factor.entries()) as f64 > MOST_WORK {
             return Ok(None);
         }
-        let dofs: Vec<f64> = equilibration.diagonal.iter().map(|&d| ldexp(1.0, d)).collect();
-        let contact = of.contact().scaled(&vec![1.0; of.rows()], &dofs);
-        let by_row = contact.transposed();
+        let of_dof = |dof: usize| equilibration.diagonal[dof];
+        let by_row = of.contact().times_powers(&vec![0; of.rows()], of_dof).transposed();
         let length = |row: usize| norm(&swept(&by_row, &factor, row));
         let lengths: Vec<f64> = (0..of.rows()).map(length).collect();
         let scales: Vec<i32> = lengths.iter().map(|&length| -exponent(length)).collect();
         let lengths = lengths.iter().zip(&scales).map(|(&length, &scale)| ldexp(length, scale)).collect();
-        let rows: Vec<f64> = scales.iter().map(|&scale| ldexp(1.0, scale)).collect();
-        let contact = contact.scaled(&rows, &vec![1.0; of.dofs()]);
+        let contact = of.contact().times_powers(&scales, of_dof);
         let by_row = contact.transposed();
         let load = of.load().iter().zip(&equilibration.diagonal);
         let load: Vec<f64> = load.map(|(&f, &d)| ldexp(f, d + equilibration.factor)).collect();
@@ -116,9 +108,9 @@ impl Polyhedron {
     }
 
     /// The contradiction of these rows under `weights`, in the units of the unscaled problem.
-    pub fn contradiction(&self, rows: Vec<usize>, weights: &[f64]) -> Contradiction {
+    pub fn contradiction(&self, rows: Vec<usize>, weights: &[f64]) -> Ending {
         let weights = rows.iter().zip(weights).map(|(&row, &weight)| ldexp(weight, self.scales[row])).collect();
-        Contradiction { rows, weights }
+        Ending::Infeasible { rows, weights }
     }
 
     /// Displacements and multipliers in the units of the unscaled problem; `pressures` are `-lambda`.

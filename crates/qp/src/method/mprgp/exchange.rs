@@ -21,8 +21,8 @@ use crate::problem::ContactProblem;
 pub struct Exchange {
     entering: Vec<usize>,
     leaving: HashMap<usize, f64>,
-    /// Rows that no displacement meets together, if some do, with their weights.
-    contradiction: Option<(Vec<usize>, Vec<f64>)>,
+    /// The ending of the loop if no displacement meets some rows together.
+    pub contradiction: Option<Ending>,
 }
 
 impl Exchange {
@@ -43,18 +43,14 @@ impl Exchange {
                 met.extend(left.shares.iter().map(|entry| entry.0));
                 entering.push(left.row);
                 leaving.extend(bounds.relieved(left, &answer.multiplier));
-                let all = bounds.contradicting(left, &answer.multiplier).map(|all| all.into_iter().unzip());
-                let is_proven = |(rows, weights): &(Vec<usize>, Vec<f64>)| problem.overlap(rows, weights).is_some();
-                contradiction = contradiction.or(all.filter(is_proven));
+                if let Some(all) = bounds.contradicting(left, &answer.multiplier).filter(|_| contradiction.is_none()) {
+                    let (rows, weights): (Vec<usize>, Vec<f64>) = all.into_iter().unzip();
+                    let is_proven = problem.overlap(&rows, &weights).is_some();
+                    contradiction = is_proven.then_some(Ending::Infeasible { rows, weights });
+                }
             }
         }
         (!entering.is_empty()).then_some(Exchange { entering, leaving, contradiction })
-    }
-
-    /// The ending of the loop if rows contradict each other.
-    pub fn ending(&self) -> Option<Ending> {
-        let (rows, weights) = self.contradiction.clone()?;
-        Some(Ending::Infeasible { rows, weights })
     }
 
     /// The start from the answer, with the rows that enter closed.

@@ -45,37 +45,20 @@ pub struct BoundedIterate<'a> {
     pub work: &'a Spare<f64>,
 }
 
-/// A direction p with its product K p.
-pub struct Conjugate {
-    pub p: Vec<f64>,
-    moved: Vec<f64>,
+/// A direction with its product by K.
+pub struct Move {
+    pub way: Vec<f64>,
+    pub force: Vec<f64>,
+    /// `way'K way`, zero if that is rounding.
     pub energy: f64,
-    /// Free gradient along it.
-    slope: f64,
-    /// `true` if it has no energy and meets no bound.
-    pub is_free: bool,
 }
 
-impl Conjugate {
-    pub fn of(step: Vec<f64>, last: Option<Conjugate>, gradient: &[f64], iterate: &BoundedIterate) -> Self {
-        let mut p = step;
-        if let Some(last) = last {
-            let share = dot(&p, &last.moved) / last.energy;
-            p.iter_mut().zip(&last.p).for_each(|(p, before)| *p -= share * before);
-            [last.p, last.moved].into_iter().for_each(|vector| iterate.work.give(vector));
-        }
-        let slope = dot(gradient, &p);
-        if slope < 0.0 {
-            // Rounding of the cycle may make a direction point uphill.
-            p.iter_mut().for_each(|p| *p = -*p);
-        }
-        let slope = slope.abs();
-        let moved = iterate.product(&p);
-        let energy = dot(&p, &moved);
-        let costs_nothing = iterate.is_rounding(&p, energy);
-        let is_free = costs_nothing && iterate.longest_step(&p).is_infinite();
-        let energy = if costs_nothing { 0.0 } else { energy };
-        Conjugate { p, moved, energy, slope, is_free }
+impl Move {
+    pub fn of(way: Vec<f64>, iterate: &BoundedIterate) -> Self {
+        let force = iterate.product(&way);
+        let (energy, own) = (dot(&way, &force), way.iter().zip(&iterate.diagonal).map(|(p, d)| d * p * p));
+        let is_rounding = energy.abs() <= NO_ENERGY * own.sum::<f64>() || !energy.is_finite();
+        Move { way, force, energy: if is_rounding { 0.0 } else { energy } }
     }
 }
 
@@ -145,10 +128,19 @@ impl<'a> BoundedIterate<'a> {
         }
     }
 
-    /// Returns `true` if `p'Kp` is rounding of zero.
-    pub fn is_rounding(&self, p: &[f64], energy: f64) -> bool {
-        let scale: f64 = p.iter().zip(&self.diagonal).map(|(p, d)| d * p * p).sum();
-        energy.abs() <= NO_ENERGY * scale || !energy.is_finite()
+    /// The direction of a step p that is conjugate to the last one, and the free gradient along it.
+    pub fn conjugate(&self, mut p: Vec<f64>, last: Option<Move>, gradient: &[f64]) -> (Move, f64) {
+        if let Some(last) = last {
+            let share = dot(&p, &last.force) / last.energy;
+            p.iter_mut().zip(&last.way).for_each(|(p, before)| *p -= share * before);
+            [last.way, last.force].into_iter().for_each(|vector| self.work.give(vector));
+        }
+        let slope = dot(gradient, &p);
+        if slope < 0.0 {
+            // Rounding of the cycle may make a direction point uphill.
+            p.iter_mut().for_each(|p| *p = -*p);
+        }
+        (Move::of(p, self), slope.abs())
     }
 
     pub fn product(&self, v: &[f64]) -> Vec<f64> {
@@ -209,26 +201,22 @@ impl<'a> BoundedIterate<'a> {
         }
     }
 
-    fn free_gradient(&self) -> Vec<f64> {
-        let mut free = self.work.copy(&self.gradient);
-        self.keep_free(&mut free);
-        free
-    }
-
     /// What `read` finds in the gradient of the unknowns that may move; it is zero at all others.
     pub fn of_free_gradient<R>(&self, read: impl FnOnce(&[f64]) -> R) -> R {
-        let free = self.free_gradient();
+        let mut free = self.work.copy(&self.gradient);
+        self.keep_free(&mut free);
         let found = read(&free);
         self.work.give(free);
         found
     }
 
     pub fn keep_free(&self, values: &mut [f64]) {
-        for (bound, at) in self.bounds.bounds.iter().zip(&self.at) {
-            if *at != At::Free {
-                values[bound.unknown] = 0.0;
-            }
-        }
+        self.closed().for_each(|bound| values[bound.unknown] = 0.0);
+    }
+
+    /// The bounds that are met.
+    fn closed(&self) -> impl Iterator<Item = &'a Bound> {
+        self.bounds.bounds.iter().zip(&self.at).filter(|entry| *entry.1 != At::Free).map(|entry| entry.0)
     }
 
     /// A travel by one while the body stays at rest.
@@ -241,8 +229,7 @@ impl<'a> BoundedIterate<'a> {
 
     /// Returns `true` if a row of the travel is at its bound.
     pub fn is_held(&self, travel: usize) -> bool {
-        let of_bounds = self.bounds.bounds.iter().zip(&self.at);
-        of_bounds.into_iter().any(|(bound, at)| *at != At::Free && bound.travel.is_some_and(|own| own.0 == travel))
+        self.closed().any(|bound| bound.travel.is_some_and(|own| own.0 == travel))
     }
 
     /// The largest force that is out of balance or wrong-signed, relative to the largest of load and multipliers.
@@ -295,14 +282,14 @@ impl<'a> BoundedIterate<'a> {
 
     /// The step of length `room`, which the first bounds end. Their unknowns are set exactly to them; otherwise
     /// rounding could leave them short of the bound in every iteration.
-    fn step_to_bounds(&mut self, direction: &Conjugate, room: f64) {
+    fn step_to_bounds(&mut self, direction: &Move, room: f64) {
         let meets = |bound: &Bound, x: &[f64]| {
-            let (value, speed) = (x[bound.unknown], direction.p[bound.unknown]);
+            let (value, speed) = (x[bound.unknown], direction.way[bound.unknown]);
             let met = if speed > 0.0 { bound.lower } else { bound.upper };
             (speed != 0.0 && (value - met) / speed <= room * (1.0 + FIRST)).then_some((bound.unknown, met))
         };
         let met: Vec<(usize, f64)> = self.bounds.bounds.iter().filter_map(|bound| meets(bound, &self.x)).collect();
-        self.step_along(&direction.p, &direction.moved, room);
+        self.step_along(&direction.way, &direction.force, room);
         met.iter().for_each(|&(unknown, value)| self.x[unknown] = value);
         self.project();
     }
@@ -310,23 +297,23 @@ impl<'a> BoundedIterate<'a> {
     /// The CG step or, if it would cross bounds, the expansion: its projection. If that raises the energy, the
     /// expansion is the least energy on the way there or the step to the first bound, whichever is lower, and a
     /// projected gradient step. Returns the direction if the next one is conjugate to it.
-    pub fn advance(&mut self, direction: Conjugate) -> Option<Conjugate> {
-        let length = direction.slope / direction.energy;
-        let room = self.longest_step(&direction.p);
+    pub fn advance(&mut self, direction: Move, slope: f64) -> Option<Move> {
+        let length = slope / direction.energy;
+        let room = self.longest_step(&direction.way);
         if length <= room {
-            self.step_along(&direction.p, &direction.moved, length);
+            self.step_along(&direction.way, &direction.force, length);
             self.project();
             return Some(direction);
         }
         let (x, gradient, at) = (self.x.clone(), self.gradient.clone(), self.at.clone());
         let mut on_the_way = None;
         if length.is_finite() {
-            self.x.iter_mut().zip(&direction.p).for_each(|(x, p)| *x -= length * p);
+            self.x.iter_mut().zip(&direction.way).for_each(|(x, p)| *x -= length * p);
             self.project();
             self.refresh_gradient();
             on_the_way = self.least_energy_from(&x, &gradient);
         }
-        let to_bounds = room * direction.slope - 0.5 * room * room * direction.energy;
+        let to_bounds = room * slope - 0.5 * room * room * direction.energy;
         match on_the_way {
             Some((share, _)) if share >= 1.0 => return None,
             Some((share, fall)) if fall >= to_bounds => {
@@ -341,7 +328,8 @@ impl<'a> BoundedIterate<'a> {
             }
         }
         let share = 1.0 / self.largest_eigenvalue.get_or_init(|| self.largest_eigenvalue());
-        let mut free = self.free_gradient();
+        let mut free = self.work.copy(&self.gradient);
+        self.keep_free(&mut free);
         self.bounds.travels.iter().for_each(|&travel| free[travel] = 0.0);
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
             *x -= share * g / d;
@@ -380,8 +368,7 @@ impl<'a> BoundedIterate<'a> {
 
     /// What the closed bounds hold, in the units of the dofs.
     pub fn held(&self) -> Vec<Hold> {
-        let closed = self.bounds.bounds.iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
-        self.bounds.holds(closed.map(|entry| entry.0))
+        self.bounds.holds(self.closed())
     }
 
     /// One cycle in a face, in which nothing travels and no bound opens.

@@ -20,19 +20,17 @@
 
 mod exchange;
 mod iterate;
-mod nested;
 mod travel;
 
 use super::bounds::Bounds;
-use super::{Ending, Outcome, Solver, Start};
+use super::{Ending, Outcome, Start};
 use crate::error::Error;
-use crate::linear::multigrid::{Face, Multigrid};
+use crate::linear::SparseMatrix;
+use crate::linear::multigrid::{Face, Interval, Multigrid};
 use crate::linear::watch::Watch;
 use crate::problem::ContactProblem;
 use exchange::{Exchange, order};
-use iterate::{BoundedIterate, Conjugate};
-use nested::nested_start;
-use travel::Travels;
+use iterate::{BoundedIterate, Move};
 pub use travel::takes_travels;
 
 /// The loop has stagnated after this many iterations without a residual half as large as the best before; those that
@@ -57,6 +55,12 @@ const NEAR: f64 = 1e-3;
 
 /// If the residual in twice the precision is above this share of the previous one, it will not decrease any more.
 const NO_GAIN: f64 = 0.5;
+
+/// Tolerance of the problem of the second level, which is only approximate because its bounds are means.
+const NESTED_TOLERANCE: f64 = 1e-3;
+
+/// Largest number of cycles on the second level.
+const MOST_NESTED_CYCLES: usize = 40;
 
 /// The accuracy and the costs at which a loop ends.
 #[derive(Clone, Copy, Debug)]
@@ -95,12 +99,12 @@ pub struct Mprgp<'a> {
     pub watch: &'a Watch,
 }
 
-impl Solver for Mprgp<'_> {
+impl Mprgp<'_> {
     /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
     ///
     /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations
     /// together do not halve the residual; those that change the face count only beyond one for each row.
-    fn solve(&self, start: Start) -> Result<Outcome, Error> {
+    pub fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let Mprgp { problem, multigrid, limits, .. } = *self;
         let (rows, units, mut start) = ((problem.contact(), problem.gap()), multigrid.units(), start);
         let mut before: Option<Outcome> = None;
@@ -114,7 +118,7 @@ impl Solver for Mprgp<'_> {
             let next = if let Some(before) = before { next.after(before) } else { next };
             let exchange = next.is_settled().then(|| Exchange::of(problem, &bounds, &next, limits.tolerance)).flatten();
             let Some(exchange) = exchange else { return Ok(next) };
-            if let Some(ending) = exchange.ending() {
+            if let Some(ending) = exchange.contradiction {
                 return Ok(Outcome { ending, ..next });
             }
             if exchanges.len() == MOST_EXCHANGES {
@@ -125,87 +129,126 @@ impl Solver for Mprgp<'_> {
             before = Some(next);
         }
     }
-}
 
-impl Mprgp<'_> {
     fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome, Error> {
-        let Mprgp { problem, multigrid, limits, watch } = *self;
-        let mut iterate = started(self, bounds, start);
-        let mut history = vec![iterate.step()];
-        let (travels, of_faces) = (Travels::default(), 0);
-        let mut steps = Steps { multigrid, watch, face: None, travels, is_old: false, last: None, cycles: 0, of_faces };
-        let mut progress = Progress::default();
+        let (limits, watch, rows) = (self.limits, self.watch, self.problem.rows());
+        let mut steps = Steps::of(self, self.started(bounds, start));
+        let mut history = vec![steps.iterate.step()];
         let mut ending = Ending::Unsettled;
         while steps.cycles < limits.most_cycles
-            && progress.since_best < progress.patience(problem.rows())
+            && steps.since_best < PATIENCE + steps.changes.min(rows)
             && !watch.is_over()
         {
-            let residual = iterate.residual();
+            let residual = steps.iterate.residual();
             if residual <= limits.tolerance {
-                if progress.is_fresh || progress.has_settled(&mut iterate) {
+                if steps.is_fresh || steps.has_settled() {
                     ending = Ending::Settled;
                     break;
                 }
                 steps.last = None;
                 continue;
             }
-            progress.note(residual);
-            if progress.is_hopeless(&steps, limits) {
+            steps.note(residual);
+            if steps.is_hopeless(limits) {
                 break;
             }
-            let before = iterate.at.clone();
-            if !steps.take_one(&mut iterate)? {
+            let before = steps.iterate.at.clone();
+            if !steps.take_one()? {
                 ending = Ending::Unheld;
                 break;
             }
-            if iterate.at != before {
+            if steps.iterate.at != before {
                 (steps.is_old, steps.last) = (true, None);
-                progress.changes += 1;
-                progress.on_face = (steps.cycles, residual);
-                history.push(iterate.step());
+                steps.changes += 1;
+                steps.on_face = (steps.cycles, residual);
+                history.push(steps.iterate.step());
             }
         }
+        let variant = match ending {
+            Ending::Settled => "",
+            _ if steps.cycles >= limits.most_cycles || watch.is_over() || steps.is_hopeless(limits) => "-unsettled",
+            _ => STAGNATED,
+        };
+        let Steps { iterate, cycles: iterations, .. } = steps;
         let (multiplier, contact_set) = bounds.multipliers(|index| iterate.held_gradient(index));
         let mut displacement = iterate.x;
         bounds.turn_back(&mut displacement);
-        let variant = match ending {
-            Ending::Settled => "",
-            _ if steps.cycles >= limits.most_cycles || watch.is_over() || progress.is_hopeless(&steps, limits) => {
-                "-unsettled"
-            }
-            _ => STAGNATED,
-        };
-        Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, ending, variant })
+        Ok(Outcome { displacement, multiplier, contact_set, iterations, history, ending, variant })
+    }
+
+    /// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and
+    /// none.
+    fn started<'b>(&'b self, bounds: &'b Bounds, start: Start) -> BoundedIterate<'b> {
+        let at = |start: Start| BoundedIterate::new(self.problem, bounds, start, self.multigrid);
+        let from_nothing = || at(self.nested(bounds).map(Start::near).unwrap_or_default());
+        if start.is_unknown() {
+            return from_nothing();
+        }
+        let is_displacement = start.displacement.is_some();
+        let given = at(start);
+        let residual = given.residual();
+        if !is_displacement || residual <= NEAR {
+            return given;
+        }
+        let other = from_nothing();
+        if other.residual() < residual { other } else { given }
+    }
+
+    /// A start from the second level of the hierarchy: the same problem is solved there, with means as bounds. `None`
+    /// if there is no second level with nodal values, if `bounds` are not those of unknowns without reflections, or if
+    /// no answer is found there.
+    ///
+    /// From zero, the first step that the bounds cut off leaves jumps with an energy that grows as the mesh is refined:
+    /// a fine mesh is then closed layer by layer. From the answer of the second level a few steps remain, on any mesh.
+    ///
+    /// # Source
+    /// R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994)
+    /// 167-184, section 5: nested iteration.
+    fn nested(&self, bounds: &Bounds) -> Option<Vec<f64>> {
+        if !bounds.is_plain || bounds.bounds.is_empty() {
+            return None;
+        }
+        let coarser = self.multigrid.coarser()?;
+        let mut intervals = vec![[f64::NEG_INFINITY, f64::INFINITY]; self.problem.dofs()];
+        bounds.bounds.iter().for_each(|bound| intervals[bound.unknown] = [bound.lower, bound.upper]);
+        let coarse = coarser.bounds(&intervals);
+        let (contact, gap) = rows_of(&coarse)?;
+        let mut load = self.problem.load().to_vec();
+        bounds.turn_forces(&mut load);
+        let problem = &ContactProblem::computed(coarser.matrix.clone(), coarser.load(&load), contact, gap).ok()?;
+        let limits = Limits { most_cycles: MOST_NESTED_CYCLES, ..Limits::to(NESTED_TOLERANCE) };
+        let below = Mprgp { problem, multigrid: &coarser.multigrid, limits, watch: self.watch };
+        let found = below.solve(Start::default()).ok()?;
+        let mut displacement = coarser.interpolated(&found.displacement, &coarse, &intervals);
+        bounds.turn_back(&mut displacement);
+        Some(displacement)
     }
 }
 
-/// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and none.
-fn started<'a>(mprgp: &Mprgp<'a>, bounds: &'a Bounds, start: Start) -> BoundedIterate<'a> {
-    let at = |start: Start| BoundedIterate::new(mprgp.problem, bounds, start, mprgp.multigrid);
-    let from_nothing = || at(nested(mprgp, bounds).unwrap_or_default());
-    if start.is_unknown() {
-        return from_nothing();
-    }
-    let is_displacement = start.displacement.is_some();
-    let given = at(start);
-    let residual = given.residual();
-    if !is_displacement || residual <= NEAR {
-        return given;
-    }
-    let other = from_nothing();
-    if other.residual() < residual { other } else { given }
+/// Rows and gaps of bounds, one row for each side.
+fn rows_of(intervals: &[Interval]) -> Option<(SparseMatrix, Vec<f64>)> {
+    let sides = |(unknown, &[lower, upper]): (usize, &Interval)| [(unknown, -1.0, -lower), (unknown, 1.0, upper)];
+    let rows: Vec<(usize, f64, f64)> =
+        intervals.iter().enumerate().flat_map(sides).filter(|side| side.2.is_finite()).collect();
+    let entries: Vec<(usize, usize, f64)> =
+        rows.iter().enumerate().map(|(row, &(unknown, sign, _))| (row, unknown, sign)).collect();
+    let contact = SparseMatrix::from_triplets(rows.len(), intervals.len(), &entries).ok()?;
+    Some((contact, rows.into_iter().map(|(_, _, gap)| gap).collect()))
 }
 
-/// The start from the second level, if there is one with nodal values.
-fn nested(mprgp: &Mprgp, bounds: &Bounds) -> Option<Start> {
-    let below = |problem: &ContactProblem, multigrid: &Multigrid, tolerance, most_cycles| {
-        let limits = Limits { most_cycles, ..Limits::to(tolerance) };
-        Mprgp { problem, multigrid, limits, watch: mprgp.watch }.solve(Start::default())
-    };
-    nested_start(mprgp.problem, bounds, mprgp.multigrid, below).map(Start::near)
-}
-
-struct Progress {
+/// The loop on some bounds: its iterate, its progress, and the data that a step keeps for the next.
+struct Steps<'a> {
+    multigrid: &'a Multigrid,
+    watch: &'a Watch,
+    iterate: BoundedIterate<'a>,
+    face: Option<Face<'a>>,
+    travels: Vec<Move>,
+    /// `true` if the set of unknowns at bounds has changed since the face was built.
+    is_old: bool,
+    last: Option<Move>,
+    cycles: usize,
+    /// Cycles that take about the seconds of the coarsest factors of all faces.
+    of_faces: usize,
     /// Cycles before the last change of the face, and the residual then.
     on_face: (usize, f64),
     best: f64,
@@ -217,16 +260,28 @@ struct Progress {
     last_checked: f64,
 }
 
-impl Default for Progress {
-    fn default() -> Self {
-        let best = f64::INFINITY;
-        Progress { on_face: (0, best), best, since_best: 0, changes: 0, is_fresh: true, last_checked: f64::INFINITY }
-    }
-}
-
-impl Progress {
-    fn patience(&self, rows: usize) -> usize {
-        PATIENCE + self.changes.min(rows)
+impl<'a> Steps<'a> {
+    /// Before the first step.
+    fn of(&Mprgp { multigrid, watch, .. }: &Mprgp<'a>, iterate: BoundedIterate<'a>) -> Self {
+        let (face, travels, last, best) = (None, Vec::new(), None, f64::INFINITY);
+        let (cycles, of_faces, on_face, since_best, changes) = (0, 0, (0, best), 0, 0);
+        Steps {
+            multigrid,
+            watch,
+            iterate,
+            face,
+            travels,
+            is_old: false,
+            last,
+            cycles,
+            of_faces,
+            on_face,
+            best,
+            since_best,
+            changes,
+            is_fresh: true,
+            last_checked: best,
+        }
     }
 
     /// Notes a residual above the tolerance.
@@ -239,49 +294,34 @@ impl Progress {
     }
 
     /// Returns `true` if the other way, which is worth `limits.worth` cycles, is the shorter one from here.
-    fn is_hopeless(&self, steps: &Steps, limits: Limits) -> bool {
+    fn is_hopeless(&self, limits: Limits) -> bool {
         let ((least, unsure), (before, first)) = (TRIAL, self.on_face);
         let gained = (first / self.best).ln();
         let needed = (self.best / limits.tolerance).ln();
-        let taken = steps.cycles - before;
+        let taken = self.cycles - before;
         let left = taken as f64 * needed / gained.max(0.0);
         let worth = limits.worth as f64;
         let is_told = taken >= least.max(limits.worth / SHARE);
         let is_near = left <= worth / SHARE as f64;
-        (is_told && left > unsure * worth) || (steps.cycles + steps.of_faces >= limits.worth && !is_near)
+        (is_told && left > unsure * worth) || (self.cycles + self.of_faces >= limits.worth && !is_near)
     }
 
     /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement
     /// is left.
-    fn has_settled(&mut self, iterate: &mut BoundedIterate) -> bool {
-        iterate.refresh_gradient_accurately();
-        let checked = iterate.residual();
+    fn has_settled(&mut self) -> bool {
+        self.iterate.refresh_gradient_accurately();
+        let checked = self.iterate.residual();
         if checked > NO_GAIN * self.last_checked {
             return true;
         }
         (self.is_fresh, self.last_checked) = (true, checked);
         false
     }
-}
 
-/// The data that the steps keep from one to the next.
-struct Steps<'a> {
-    multigrid: &'a Multigrid,
-    watch: &'a Watch,
-    face: Option<Face<'a>>,
-    travels: Travels,
-    /// `true` if the set of unknowns at bounds has changed since the face was built.
-    is_old: bool,
-    last: Option<Conjugate>,
-    cycles: usize,
-    /// Cycles that take about the seconds of the coarsest factors of all faces.
-    of_faces: usize,
-}
-
-impl Steps<'_> {
     /// Takes a proportioning, conjugate gradient or expansion step. Returns `false` at a direction along which nothing
     /// is held, or along which the energy is negative.
-    fn take_one(&mut self, iterate: &mut BoundedIterate) -> Result<bool, Error> {
+    fn take_one(&mut self) -> Result<bool, Error> {
+        let iterate = &mut self.iterate;
         if iterate.is_disproportionate() {
             iterate.proportion();
             return Ok(true);
@@ -290,7 +330,7 @@ impl Steps<'_> {
             Some(face) if !self.is_old => face,
             old => {
                 let face = self.multigrid.face(&iterate.held(), old.as_ref())?;
-                self.travels = std::mem::take(&mut self.travels).in_face(iterate, &face);
+                self.travels = travel::in_face(std::mem::take(&mut self.travels), iterate, &face);
                 self.cycles += iterate.bounds.travels.len();
                 self.of_faces += self.multigrid.cycles_of_face();
                 face
@@ -298,17 +338,18 @@ impl Steps<'_> {
         };
         self.is_old = false;
         let last = self.last.take();
-        let direction = iterate.of_free_gradient(|gradient| {
-            let step = self.travels.preconditioned(iterate, &face, gradient);
+        let (direction, slope) = iterate.of_free_gradient(|gradient| {
+            let step = travel::preconditioned(&self.travels, iterate, &face, gradient);
             self.cycles += 1;
             self.watch.step("MPRGP", self.cycles);
-            Conjugate::of(step, last, gradient, iterate)
+            iterate.conjugate(step, last, gradient)
         });
         self.face = Some(face);
-        if direction.is_free || direction.energy < 0.0 {
+        let is_free = direction.energy == 0.0 && iterate.longest_step(&direction.way).is_infinite();
+        if is_free || direction.energy < 0.0 {
             return Ok(false);
         }
-        self.last = iterate.advance(direction);
+        self.last = iterate.advance(direction, slope);
         Ok(true)
     }
 }

@@ -10,7 +10,7 @@
 //! # Source
 //! J. Mandel, *Balancing domain decomposition*, Comm. Numer. Methods Engrg. 9 (1993) 233-241.
 
-use super::iterate::BoundedIterate;
+use super::iterate::{BoundedIterate, Move};
 use crate::linear::dot;
 use crate::linear::multigrid::{Face, Units};
 use crate::method::bounds::{Bounds, Preferred};
@@ -41,74 +41,54 @@ fn units(problem: &ContactProblem) -> Units {
     }
 }
 
-/// The displacements of all travels in a face, orthogonal in energy.
-#[derive(Default)]
-pub struct Travels {
-    moves: Vec<Move>,
+/// The displacements z of all travels in another face, orthogonal in energy: they start from those of the last one, and
+/// one cycle takes them nearer to balance. Without energy, no closed row holds the travel.
+pub fn in_face(before: Vec<Move>, iterate: &BoundedIterate, face: &Face) -> Vec<Move> {
+    let (mut before, mut moves) = (before.into_iter(), Vec::<Move>::new());
+    for &travel in &iterate.bounds.travels {
+        let mut way = before.next().map_or_else(|| iterate.alone(travel), |last| last.way);
+        iterate.keep_free(&mut way);
+        if way[travel] == 0.0 {
+            // A bound of its own stops the travel.
+            way = vec![0.0; way.len()];
+        } else if iterate.is_held(travel) {
+            let mut force = iterate.product(&way);
+            iterate.keep_free(&mut force);
+            let step = iterate.preconditioned(face, &force);
+            way.iter_mut().zip(step).for_each(|(way, step)| *way -= step);
+        } else {
+            way = iterate.alone(travel);
+        }
+        for other in moves.iter().filter(|other| other.energy > 0.0) {
+            let share = dot(&other.force, &way) / other.energy;
+            way.iter_mut().zip(&other.way).for_each(|(way, other)| *way -= share * other);
+        }
+        moves.push(Move::of(way, iterate));
+    }
+    moves
 }
 
-struct Move {
-    /// z.
-    way: Vec<f64>,
-    /// K z.
-    force: Vec<f64>,
-    /// z'K z, zero if no closed row holds the travel.
-    energy: f64,
-}
-
-impl Travels {
-    /// The displacements in another face: they start from those of the last one, and one cycle takes them nearer to
-    /// balance.
-    pub fn in_face(self, iterate: &BoundedIterate, face: &Face) -> Self {
-        let (mut before, mut moves) = (self.moves.into_iter(), Vec::<Move>::new());
-        for &travel in &iterate.bounds.travels {
-            let mut way = before.next().map_or_else(|| iterate.alone(travel), |last| last.way);
-            iterate.keep_free(&mut way);
-            if way[travel] == 0.0 {
-                // A bound of its own stops the travel.
-                way = vec![0.0; way.len()];
-            } else if iterate.is_held(travel) {
-                let mut force = iterate.product(&way);
-                iterate.keep_free(&mut force);
-                let step = iterate.preconditioned(face, &force);
-                way.iter_mut().zip(step).for_each(|(way, step)| *way -= step);
-            } else {
-                way = iterate.alone(travel);
-            }
-            for other in moves.iter().filter(|other| other.energy > 0.0) {
-                let share = dot(&other.force, &way) / other.energy;
-                way.iter_mut().zip(&other.way).for_each(|(way, other)| *way -= share * other);
-            }
-            let force = iterate.product(&way);
-            let energy = dot(&way, &force);
-            let energy = if iterate.is_rounding(&way, energy) { 0.0 } else { energy };
-            moves.push(Move { way, force, energy });
-        }
-        Travels { moves }
+/// M r for the free gradient r; the way of a travel that nothing holds, if a force drives it.
+pub fn preconditioned(moves: &[Move], iterate: &BoundedIterate, face: &Face, gradient: &[f64]) -> Vec<f64> {
+    if let Some(free) = moves.iter().find(|free| free.energy == 0.0 && dot(&free.way, gradient) != 0.0) {
+        let work = dot(&free.way, gradient).signum();
+        return free.way.iter().map(|way| work * way).collect();
     }
-
-    /// M r for the free gradient r; the way of a travel that nothing holds, if a force drives it.
-    pub fn preconditioned(&self, iterate: &BoundedIterate, face: &Face, gradient: &[f64]) -> Vec<f64> {
-        if let Some(free) = self.moves.iter().find(|free| free.energy == 0.0 && dot(&free.way, gradient) != 0.0) {
-            let work = dot(&free.way, gradient).signum();
-            return free.way.iter().map(|way| work * way).collect();
-        }
-        if self.moves.is_empty() {
-            return iterate.preconditioned(face, gradient);
-        }
-        let mut rest = iterate.work.copy(gradient);
-        let held = || self.moves.iter().filter(|held| held.energy > 0.0);
-        let shares: Vec<f64> = held().map(|held| dot(&held.way, gradient) / held.energy).collect();
-        for (held, share) in held().zip(&shares) {
-            rest.iter_mut().zip(&held.force).for_each(|(rest, force)| *rest -= share * force);
-        }
-        iterate.keep_free(&mut rest);
-        let mut step = iterate.preconditioned(face, &rest);
-        iterate.work.give(rest);
-        for (held, share) in held().zip(&shares) {
-            let share = share - dot(&held.force, &step) / held.energy;
-            step.iter_mut().zip(&held.way).for_each(|(step, way)| *step += share * way);
-        }
-        step
+    if moves.is_empty() {
+        return iterate.preconditioned(face, gradient);
     }
+    let mut rest = iterate.work.copy(gradient);
+    let held = || moves.iter().filter(|held| held.energy > 0.0);
+    let shares: Vec<f64> = held().map(|held| dot(&held.way, gradient) / held.energy).collect();
+    for (held, share) in held().zip(&shares) {
+        rest.iter_mut().zip(&held.force).for_each(|(rest, force)| *rest -= share * force);
+    }
+    iterate.keep_free(&mut rest);
+    let mut step = iterate.preconditioned(face, &rest);
+    iterate.work.give(rest);
+    for (held, share) in held().zip(&shares) {
+        let share = share - dot(&held.force, &step) / held.energy;
+        step.iter_mut().zip(&held.way).for_each(|(step, way)| *step += share * way);
+    }
+    step
 }
