@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use crate::error::{Error, LinearError};
+use crate::linear::memory;
 use crate::linear::watch::Watch;
-use crate::memory;
 use crate::method::interior_point::InteriorPoint;
 use crate::method::penalty::{BEST_PENALTY, Penalty};
 use crate::solution::Goal;

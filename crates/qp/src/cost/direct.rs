@@ -27,7 +27,7 @@ const SETS: [f64; 2] = [10.0, 5.0];
 const DENSE_STEPS: f64 = 6.0;
 
 /// Returns `true` if the contact boundary is most of the body, so that a front of closed rows has a long way to go.
-fn is_everywhere(problem: &ContactProblem) -> bool {
+pub(crate) fn is_everywhere(problem: &ContactProblem) -> bool {
     problem.contact().entries() as f64 > MANY * problem.dofs() as f64
 }
 
@@ -106,12 +106,4 @@ impl Direct {
         let shared_seconds = body.ordering_seconds + factor;
         Direct { factor_entries: body.entries, seconds: shared_seconds + sets, shared_seconds, starts_near }
     }
-}
-
-/// Returns `true` if the direct path starts from a few cycles of multigrid, which cost less than the sets on the way
-/// there.
-pub(crate) fn starts_near(problem: &ContactProblem) -> bool {
-    let near =
-        |smooth: Smooth| smooth.starts_sets() && Direct::of(problem, smooth, BodyFactor::by_size(problem)).starts_near;
-    is_everywhere(problem) && near(Smooth::of(problem))
 }

@@ -10,7 +10,7 @@ use super::problem::ContactProblem;
 use crate::error::Error;
 use crate::linear::watch::Watch;
 use direct::{BodyFactor, Direct};
-pub(crate) use direct::{NEAR_CYCLES, starts_near};
+pub(crate) use direct::{NEAR_CYCLES, is_everywhere};
 pub(crate) use smooth::Smooth;
 
 /// Rows that are bounds only after reflections take more cycles by this factor.
@@ -30,6 +30,9 @@ const LOOK: f64 = 12.0;
 
 /// The hierarchy of a stiff volume takes this many times the bytes: patches, and a prolongator of several steps.
 const STIFF_BYTES: f64 = 2.5;
+
+/// Seconds of meshing and assembly for an entry of the stiffness, both triangles.
+const ASSEMBLY: f64 = 3e-8;
 
 /// Returns `true` if a row has several entries on dofs with stiffness, so that it is a bound only after reflections.
 fn is_turned(problem: &ContactProblem) -> bool {
@@ -66,6 +69,8 @@ pub struct Estimate {
     pub(super) has_bound: bool,
     /// Number of cycles in the seconds of multigrid.
     pub(super) cycles: f64,
+    /// `true` if the direct path starts from a few cycles, which cost less than the sets on the way there.
+    pub(super) starts_near: bool,
 }
 
 impl Estimate {
@@ -88,7 +93,7 @@ impl Estimate {
 
     /// Seconds to assemble a stiffness with this number of entries, both triangles, on one processor of 2024.
     pub fn assembly_seconds(entries: f64) -> f64 {
-        seconds::assembly_seconds(entries)
+        ASSEMBLY * entries
     }
 
     /// The estimate for `problem`; its near-null space shows whether it is a bar or a body in space.
@@ -101,6 +106,7 @@ impl Estimate {
         let cycles = turned * smooth.cycles();
         let multigrid_seconds = hierarchy_seconds + cycles * seconds::cycle(dofs, entries);
         let mut direct = Direct::of(problem, smooth, BodyFactor::by_size(problem));
+        let starts_near = direct.starts_near;
         // The slow estimate is made only if it may change the choice.
         if (1.0..LOOK).contains(&(direct.seconds / multigrid_seconds)) {
             direct = Direct::of(problem, smooth, BodyFactor::by_degree(problem));
@@ -115,21 +121,21 @@ impl Estimate {
                 + bytes::of_factor(direct.factor_entries),
             factor_entries: direct.factor_entries,
             direct_seconds: times * direct.seconds,
-            multigrid_bytes: if takes_travels(problem) { multigrid_bytes(problem) } else { f64::INFINITY },
+            multigrid_bytes: if takes_travels(problem) { multigrid_bytes(problem, smooth) } else { f64::INFINITY },
             multigrid_seconds,
             hierarchy_seconds,
             shared_seconds: times * direct.shared_seconds,
             smooth,
             has_bound: motions <= MOST_MOTIONS,
             cycles,
+            starts_near,
         }
     }
 }
 
 /// Bytes of the iterative path at its peak, the problem itself included.
-fn multigrid_bytes(problem: &ContactProblem) -> f64 {
-    let is_stiff = problem.near_null().is_some() && Smooth::of(problem) == Smooth::GivenStiff;
-    let times = if is_stiff { STIFF_BYTES } else { 1.0 };
+fn multigrid_bytes(problem: &ContactProblem, smooth: Smooth) -> f64 {
+    let times = if smooth == Smooth::GivenStiff { STIFF_BYTES } else { 1.0 };
     bytes::START + times * bytes::of_hierarchy(problem.dofs() as f64, problem.stiffness().entries() as f64)
 }
 
@@ -186,7 +192,7 @@ pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f6
     };
     let is_factor = !matches!(kept, Kept::Nothing | Kept::Multigrid);
     let bytes = match kept {
-        Kept::Multigrid => multigrid_bytes(problem),
+        Kept::Multigrid => multigrid_bytes(problem, Smooth::of(problem)),
         _ => bytes::START + bytes::of_problem(dofs, stiffness_entries) + beside,
     };
     // The bound of a singular stiffness needs further factors, with springs; whether it is singular takes a while.

@@ -16,9 +16,6 @@ const VALUE: f64 = 1.46e-8;
 /// About as many values stay in the cache of a processor, and take little.
 const IN_CACHE: f64 = 5e5;
 
-/// Seconds of meshing and assembly for an entry of the stiffness, both triangles.
-const ASSEMBLY: f64 = 3e-8;
-
 /// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
 const ORDERING: f64 = 1.3e-7;
 
@@ -49,11 +46,6 @@ const LATTICE: usize = 64;
 
 pub(crate) fn factor_seconds(multiplications: f64, values: f64) -> f64 {
     MULTIPLICATION * multiplications + VALUE * values * (values / (values + IN_CACHE))
-}
-
-/// Seconds of meshing a scene and assembling this number of entries of its stiffness, both triangles.
-pub(crate) fn assembly_seconds(entries: f64) -> f64 {
-    ASSEMBLY * entries
 }
 
 /// Seconds of ordering and analysing the stiffness of `problem`.

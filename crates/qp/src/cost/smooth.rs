@@ -43,19 +43,23 @@ pub(crate) enum Smooth {
 
 impl Smooth {
     pub(super) fn of(problem: &ContactProblem) -> Self {
-        let stiffness = problem.stiffness();
-        match problem.near_null() {
-            Some(_) if !takes_travels(problem) => Smooth::Unknown,
-            // One vector: of a diffusion it can only be the constants.
-            Some(modes) if modes.count() == 1 && Self::of_stiffness(stiffness) != Smooth::Unknown => {
-                Self::of_stiffness(stiffness)
+        let (stiffness, given) = (problem.stiffness(), problem.near_null().map(|modes| modes.count()));
+        if given.is_some() && !takes_travels(problem) {
+            return Smooth::Unknown;
+        }
+        // One vector: of a diffusion it can only be the constants.
+        let of_diffusion =
+            if given.is_some_and(|count| count > 1) { None } else { Some(Self::of_stiffness(stiffness)) };
+        match of_diffusion.filter(|&found| given.is_none() || found != Smooth::Unknown) {
+            Some(found) => found,
+            None => {
+                let share = outweighed(stiffness);
+                match share(STIFF) > 0.5 {
+                    true => Smooth::GivenStiff,
+                    false if share(HEAVY) > HEAVY_SHARE => Smooth::GivenHeavy,
+                    false => Smooth::Given,
+                }
             }
-            Some(_) => match RowSums::of(stiffness) {
-                sums if sums.are_stiff() => Smooth::GivenStiff,
-                sums if sums.are_heavy() => Smooth::GivenHeavy,
-                _ => Smooth::Given,
-            },
-            None => Self::of_stiffness(stiffness),
         }
     }
 
@@ -97,34 +101,17 @@ impl Smooth {
     }
 }
 
-/// The sum of the entries off the diagonal of each row, in absolute value, over its diagonal entry.
-struct RowSums(Vec<f64>);
-
-impl RowSums {
-    fn of(stiffness: &SymmetricMatrix) -> Self {
-        let sums = stiffness.mul_abs(&vec![1.0; stiffness.dim()]);
-        let of_row = |(sum, own): (&f64, f64)| if *sum > own { (sum - own) / own } else { 0.0 };
-        RowSums(sums.iter().zip(stiffness.diagonal()).map(of_row).collect())
-    }
-
-    fn share_above(&self, limit: f64) -> f64 {
-        self.0.iter().filter(|&&sum| sum > limit).count() as f64 / self.0.len() as f64
-    }
-
-    /// Returns `true` if more than [`HEAVY_SHARE`] of the rows outweigh their diagonal [`HEAVY`] times.
-    fn are_heavy(&self) -> bool {
-        self.share_above(HEAVY) > HEAVY_SHARE
-    }
-
-    /// Returns `true` if most rows outweigh their diagonal [`STIFF`] times.
-    fn are_stiff(&self) -> bool {
-        self.share_above(STIFF) > 0.5
-    }
+/// The share of the rows whose entries off the diagonal, in absolute value, outweigh it more than this many times.
+fn outweighed(stiffness: &SymmetricMatrix) -> impl Fn(f64) -> f64 {
+    let sums = stiffness.mul_abs(&vec![1.0; stiffness.dim()]);
+    let of_row = |(sum, own): (&f64, f64)| if *sum > own { (sum - own) / own } else { 0.0 };
+    let sums: Vec<f64> = sums.iter().zip(stiffness.diagonal()).map(of_row).collect();
+    move |times| sums.iter().filter(|&&sum| sum > times).count() as f64 / sums.len() as f64
 }
 
 #[cfg(test)]
 mod tests {
-    use super::RowSums;
+    use super::{HEAVY, HEAVY_SHARE, STIFF, outweighed};
     use crate::linear::{SparseMatrix, SymmetricMatrix};
 
     /// A ring in which the off-diagonal entries of each of the first `heavy` rows add up to about `sum` times the
@@ -142,7 +129,7 @@ mod tests {
     /// Of quadratic elements in space: 5.5 times.
     #[test]
     fn quadratic_elements_are_heavy_and_linear_ones_are_not() {
-        let is_heavy = |heavy: usize| RowSums::of(&ring(100, heavy, 5.5)).are_heavy();
+        let is_heavy = |heavy: usize| outweighed(&ring(100, heavy, 5.5))(HEAVY) > HEAVY_SHARE;
         assert!(is_heavy(100));
         assert!(!is_heavy(0));
         assert!(is_heavy(15), "a part with quadratic elements");
@@ -152,7 +139,7 @@ mod tests {
     /// Quadratic elements at nu = 0.499: 7 times in half of the rows.
     #[test]
     fn quadratic_elements_near_the_ratio_one_half_are_stiff() {
-        let is_stiff = |heavy: usize, sum: f64| RowSums::of(&ring(100, heavy, sum)).are_stiff();
+        let is_stiff = |heavy: usize, sum: f64| outweighed(&ring(100, heavy, sum))(STIFF) > 0.5;
         assert!(is_stiff(60, 7.0));
         assert!(!is_stiff(100, 5.5), "quadratic elements at nu = 0.3");
         assert!(!is_stiff(40, 7.0), "few rows");

@@ -68,7 +68,7 @@ impl Hierarchical {
     }
 
     pub(super) fn tried(&self) -> Tried {
-        Tried { is_singular: self.multigrid.is_shifted(), ..Tried::on_all_dofs(Method::Mprgp) }
+        Tried { method: Method::Mprgp, is_singular: self.multigrid.is_shifted(), ..Tried::default() }
     }
 
     pub(super) fn solve(&self, task: &Task) -> Result<Outcome, Error> {

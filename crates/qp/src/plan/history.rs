@@ -55,7 +55,7 @@ pub(crate) enum From {
 }
 
 /// The method of an attempt, once its data are prepared, with its number of unknowns if they are fewer than all.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tried {
     pub method: Method,
     pub condensed_dofs: Option<usize>,
@@ -71,29 +71,16 @@ pub(crate) struct Tried {
 }
 
 impl Tried {
-    /// A method on all dofs that is no shortcut, without a factor.
-    pub fn on_all_dofs(method: Method) -> Self {
-        let (condensed_dofs, lost_pivot, [multiplications, set_seconds]) = (None, None, [0.0; 2]);
-        let [is_shortcut, is_singular] = [false; 2];
-        Tried { method, condensed_dofs, is_shortcut, lost_pivot, is_singular, multiplications, set_seconds }
-    }
-
     /// The method and its unknowns in words, if the rules chose it.
     pub(super) fn in_words(&self) -> String {
-        let on = match self.condensed_dofs {
-            Some(dofs) => format!("condensed to {dofs} dofs"),
-            None => "on all dofs".to_string(),
-        };
-        let (method, multiplications) = (self.method.name(), self.multiplications);
+        let (method, on, multiplications) = (self.method.name(), unknowns(self.condensed_dofs), self.multiplications);
         format!("of such methods {method}, {on}, for {multiplications:.1e} multiplications of a factor")
     }
 }
 
-/// The place of a step in a ladder: its attempt, and its number there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
-    pub attempt: usize,
-    pub rung: usize,
+/// The unknowns of a method in words; with this number of dofs, if they are fewer than all.
+pub(super) fn unknowns(condensed_dofs: Option<usize>) -> String {
+    condensed_dofs.map_or_else(|| "on all dofs".to_string(), |dofs| format!("condensed to {dofs} dofs"))
 }
 
 /// What came of a step.
@@ -147,7 +134,9 @@ impl Answered {
 /// A step: the next one, or one that was made.
 #[derive(Debug)]
 pub struct Record {
-    pub place: Place,
+    /// The place of the step in the ladder: its attempt, and its number there.
+    pub attempt: usize,
+    pub rung: usize,
     pub means: Means,
     pub step: Step,
     pub start: From,
@@ -291,8 +280,8 @@ impl History {
 
     /// The steps of the last attempt.
     pub fn in_attempt(&self) -> impl DoubleEndedIterator<Item = &Record> {
-        let last = self.records.last().map(|record| record.place.attempt);
-        self.records.iter().filter(move |record| Some(record.place.attempt) == last)
+        let last = self.records.last().map(|record| record.attempt);
+        self.records.iter().filter(move |record| Some(record.attempt) == last)
     }
 
     /// Returns `true` if a last resort may replace the best answer, by the value by which it misses the goal.

@@ -8,9 +8,9 @@ use super::attempt::{
     SHORT_ON_CONDENSED, WITH_FACTOR, WITH_MULTIGRID,
 };
 use super::choice::Choice;
-use super::history::{Answered, Ended, From, History, Means, Place, Record, Step};
+use super::history::{Answered, Ended, From, History, Means, Record, Step};
 use super::nearly_linear;
-use crate::cost::{Estimate, starts_near};
+use crate::cost::{Estimate, is_everywhere};
 use crate::error::Error;
 use crate::linear::Analysis;
 use crate::method::interior_point::InteriorPoint;
@@ -90,17 +90,20 @@ impl Ladder {
             ladder.add(Attempt { steps: &[], ..ladder.attempt(Means::Problem, because) });
             ladder.door = Some(Door::Pieces(Arc::new(pieces)));
         }
-        let near = !is_whole && starts_by_multigrid(problem, settings);
-        let start = if near { From::Cycles } else { From::Given };
+        let from = |near: bool| if near && !is_whole { From::Cycles } else { From::Given };
         match settings.method {
             Method::Auto => {
                 let estimate = Estimate::of(problem).for_accuracy(settings.accuracy).of_many(gaps);
                 let choice = estimate.choose(settings.memory.unwrap_or(f64::INFINITY))?;
-                ladder.by_choice(&choice, start);
+                ladder.by_choice(&choice, from(estimate.starts_near));
                 ladder.choice = Some((estimate, choice));
             }
             Method::Mprgp => ladder.add(ladder.attempt(Means::Multigrid, REQUESTED)),
-            method => ladder.with_factor(Attempt { start, ..ladder.by_factor(method, REQUESTED) }),
+            method => {
+                let is_everywhere = !is_whole && method == Method::ActiveSet && is_everywhere(problem);
+                let start = from(is_everywhere && Estimate::of(problem).starts_near);
+                ladder.with_factor(Attempt { start, ..ladder.by_factor(method, REQUESTED) });
+            }
         }
         // Its steps have their own conditions, also for an answer that meets the goal.
         ladder.attempts.push(Attempt { steps: OF_EXISTENCE, ..ladder.attempt(Means::Problem, "") });
@@ -219,20 +222,20 @@ impl Ladder {
             return None;
         }
         if let Some(limits) = self.again(last, history) {
-            return Some(Record { start: From::Best, limits, ..self.step_at(last.place.attempt, last.place.rung) });
+            return Some(Record { start: From::Best, limits, ..self.step_at(last.attempt, last.rung) });
         }
         let has_ended = matches!((&last.ended, last.step), (Ended::Refused(_) | Ended::Failed(_), Step::Method));
         // A method that fails leaves its data to the next steps.
         let is_prepared = (!has_ended || last.tried.is_some()) && !history.is_outrun();
-        let rest = if is_prepared { self.attempts[last.place.attempt].steps.len() } else { 0 };
-        let here = (last.place.rung + 1..rest).map(|rung| Place { attempt: last.place.attempt, rung });
-        let later = (last.place.attempt + 1..self.attempts.len())
+        let rest = if is_prepared { self.attempts[last.attempt].steps.len() } else { 0 };
+        let here = (last.rung + 1..rest).map(|rung| (last.attempt, rung));
+        let later = (last.attempt + 1..self.attempts.len())
             .filter(|&attempt| (self.attempts[attempt].when.holds)(history))
-            .flat_map(|attempt| (0..self.attempts[attempt].steps.len()).map(move |rung| Place { attempt, rung }));
-        let is_due = |place: &Place| (self.attempts[place.attempt].steps[place.rung].when.holds)(history);
-        let place = here.chain(later).find(is_due)?;
-        let mut next = self.step_at(place.attempt, place.rung);
-        if place.rung > 0 {
+            .flat_map(|attempt| (0..self.attempts[attempt].steps.len()).map(move |rung| (attempt, rung)));
+        let is_due = |&(attempt, rung): &(usize, usize)| (self.attempts[attempt].steps[rung].when.holds)(history);
+        let (attempt, rung) = here.chain(later).find(is_due)?;
+        let mut next = self.step_at(attempt, rung);
+        if rung > 0 {
             next.start = From::Best;
             next.limits.most_seconds -= history.spent();
         }
@@ -247,19 +250,16 @@ impl Ladder {
     /// A step of an attempt that begins.
     fn step_at(&self, attempt: usize, rung: usize) -> Record {
         let Attempt { means, start, limits, steps, .. } = self.attempts[attempt];
-        let (place, step, ended, stages) = (
-            Place { attempt, rung },
-            steps.get(rung).map_or(Step::Method, |rung| rung.step),
-            Ended::Empty,
-            Seconds::default(),
-        );
-        Record { place, means, step, start, limits, tried: None, ended, seconds: 0.0, stages, answer: None }
+        let step = steps.get(rung).map_or(Step::Method, |rung| rung.step);
+        let (tried, ended, stages, answer) = (None, Ended::Empty, Seconds::default(), None);
+        Record { attempt, rung, means, step, start, limits, tried, ended, seconds: 0.0, stages, answer }
     }
 
     /// The limits of the last step if it is made again.
     fn again(&self, last: &Record, history: &History) -> Option<Limits> {
         let Ended::Answered(answered) = &last.ended else { return None };
-        let in_a_row = history.records.iter().rev().take_while(|record| record.place == last.place).count();
+        let is_same = |record: &&Record| (record.attempt, record.rung) == (last.attempt, last.rung);
+        let in_a_row = history.records.iter().rev().take_while(is_same).count();
         let asks = history.certificate()?.asks_for_more(history.settings.goal());
         match last.step {
             Step::Refinement => (answered.gains && asks && in_a_row < MOST_REFINEMENTS).then_some(last.limits),
@@ -289,11 +289,6 @@ fn tighter(last: &Record, answered: &Answered, history: &History) -> Option<Limi
 fn limits(settings: &Settings) -> Limits {
     let tolerance = settings.accuracy.map_or(MARGIN * settings.goal().tolerance, |accuracy| FIRST * accuracy);
     Limits { most_cycles: settings.max_iterations, ..Limits::to(tolerance) }
-}
-
-/// Returns `true` if the direct path starts from a few cycles of multigrid.
-fn starts_by_multigrid(problem: &ContactProblem, settings: &Settings) -> bool {
-    matches!(settings.method, Method::Auto | Method::ActiveSet) && starts_near(problem)
 }
 
 /// The pieces to solve separately; `None` if the problem is solved as one.

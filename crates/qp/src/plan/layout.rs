@@ -1,6 +1,7 @@
 //! The layout of a factor: its arrangement, the method on it, and the parts that are kept, within memory and time.
 
 use super::attempt::Arrangement;
+use super::history::unknowns;
 use crate::certificate::EnergyNorm;
 use crate::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
 use crate::error::Error;
@@ -124,10 +125,7 @@ impl Layout {
     pub fn in_words(&self) -> String {
         let method = self.method.name();
         let (multiplications, entries) = (self.analysis.multiplications(), self.analysis.factor_entries());
-        let on = match self.is_condensed {
-            true => format!("condensed to {} dofs", self.last.len()),
-            false => "on all dofs".to_string(),
-        };
+        let on = unknowns(self.is_condensed.then_some(self.last.len()));
         format!("{method}, {on}; about {multiplications:.1e} multiplications and {entries:.1e} values")
     }
 

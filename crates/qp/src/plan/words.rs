@@ -110,10 +110,18 @@ impl Arrangement {
 
 impl Attempt {
     /// Method and means in words, without its condition.
-    fn in_words(&self) -> String {
+    fn in_words(&self, door: Option<&Door>) -> String {
         let method = self.method.name();
         match self.means {
-            Means::Problem => return "existence and uniqueness of the answer".to_string(),
+            Means::Problem => {
+                return match door.filter(|_| self.steps.is_empty()) {
+                    Some(Door::Equalities) => {
+                        "the equalities eliminated, and the rest by a plan of its own".to_string()
+                    }
+                    Some(Door::Pieces(_)) => "each piece by a plan of its own".to_string(),
+                    None => "existence and uniqueness of the answer".to_string(),
+                };
+            }
             Means::Multigrid => return format!("{method} with a multigrid hierarchy"),
             Means::Factor => {}
         }
@@ -153,14 +161,7 @@ impl fmt::Display for Ladder {
         for (place, attempt) in self.attempts.iter().enumerate() {
             let (number, condition) = (place + 1, attempt.when.words);
             let comma = if condition.is_empty() { "" } else { ", " };
-            let words = match &self.door {
-                Some(Door::Equalities) if place == 0 => {
-                    "the equalities eliminated, and the rest by a plan of its own".to_string()
-                }
-                Some(Door::Pieces(_)) if place == 0 => "each piece by a plan of its own".to_string(),
-                _ => attempt.in_words(),
-            };
-            writeln!(f, "{number}. {words}{comma}{condition}")?;
+            writeln!(f, "{number}. {}{comma}{condition}", attempt.in_words(self.door.as_ref()))?;
             if !attempt.because.is_empty() {
                 writeln!(f, "   because {}", attempt.because)?;
             }

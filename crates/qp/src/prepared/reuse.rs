@@ -170,8 +170,8 @@ impl Prepared {
     /// Solves with these gaps, one per contact row, in m; negative if the obstacle starts inside the body.
     ///
     /// # Errors
-    /// As [`solve`](crate::solve()); [`LinearError::Length`] and [`LinearError::NotFinite`] for gaps or a start that do not fit or,
-    /// with a factor, gaps that are infinite in other rows than those of the problem that was prepared.
+    /// As [`solve`](crate::solve()); [`LinearError::Length`] and [`LinearError::NotFinite`] for gaps or a start that do
+    /// not fit or, with a factor, gaps that are infinite in other rows than those of the problem that was prepared.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let (problem, settings) = (self.problem_at(gap)?, self.settings.started()?);
         if !problem.equalities().is_empty() {

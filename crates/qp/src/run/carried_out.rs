@@ -148,7 +148,7 @@ impl<'a> Run<'a> {
         if step.means == Means::Problem || step.step == Step::Existence {
             return Ok(None);
         }
-        let attempt = step.place.attempt;
+        let attempt = step.attempt;
         let is_of = |bench: &&Workbench| bench.attempt == attempt;
         if let Some(bench) = self.kept.filter(is_of).or(self.made.as_ref().filter(is_of)) {
             return Ok(Some(bench.clone()));
@@ -166,7 +166,7 @@ impl<'a> Run<'a> {
 
     /// What a step finds by the prepared data: they scale, start the method, and expand.
     fn found(&self, bench: &Workbench, record: &mut Record) -> Result<Option<Outcome>, Error> {
-        let attempt = &self.ladder.attempts[record.place.attempt];
+        let attempt = &self.ladder.attempts[record.attempt];
         let settings = &attempt.settings(self.settings);
         let tried = bench.engine.tried(attempt.method);
         record.tried = Some(tried);
@@ -206,7 +206,7 @@ impl<'a> Run<'a> {
 
     /// What was found as an answer, not judged yet.
     fn answer(&mut self, mut outcome: Outcome, step: &Record) -> Best {
-        let (attempt, ending) = (step.place.attempt, outcome.ending.clone());
+        let (attempt, ending) = (step.attempt, outcome.ending.clone());
         let solution = match (step.improves(), &self.history.best) {
             (true, Some(best)) => Solution {
                 displacement: outcome.displacement,
@@ -380,15 +380,15 @@ mod tests {
             let mut run = Run::new(&problem, &ladder, &start, &settings);
             let is_answered = answered(&mut run).is_ok();
             let steps: Vec<(usize, usize)> =
-                run.history.records.iter().map(|record| (record.place.attempt, record.place.rung)).collect();
+                run.history.records.iter().map(|record| (record.attempt, record.rung)).collect();
             assert!(steps.is_sorted(), "{name}: {steps:?}");
-            for (before, record) in run.history.records.iter().zip(run.history.records.iter().skip(1)) {
-                let is_by_cycles = ladder.attempts[record.place.attempt].means == Means::Multigrid;
-                assert!(before.place != record.place || record.improves() || is_by_cycles, "{name}: {steps:?}");
+            for (pair, record) in steps.windows(2).zip(run.history.records.iter().skip(1)) {
+                let is_again = record.improves() || record.means == Means::Multigrid;
+                assert!(pair[0] != pair[1] || is_again, "{name}: {steps:?}");
             }
             for record in &run.history.records {
-                let attempt = &ladder.attempts[record.place.attempt];
-                assert_eq!(attempt.steps[record.place.rung].step, record.step, "{name}");
+                let attempt = &ladder.attempts[record.attempt];
+                assert_eq!(attempt.steps[record.rung].step, record.step, "{name}");
                 assert!(record.tried.is_none() || attempt.means != Means::Problem, "{name}");
             }
             assert_eq!(is_answered, is_solved, "{name}: {steps:?}");

@@ -55,7 +55,7 @@ impl Run<'_> {
             let of_rest = self.is_cut.then(|| [with_rounding(problem, of_rest, &answer.displacement)]);
             let norm = || kept.and_then(|kept| kept.norm.clone()).map_or(Bounding::OwnFactor, Bounding::Factor);
             let by = of_rest.as_ref().map_or_else(norm, |of_rest| Bounding::Pieces(of_rest));
-            let answered = self.judged(Best::of(answer, record.place.attempt), &by, record)?;
+            let answered = self.judged(Best::of(answer, record.attempt), &by, record)?;
             all = Some(all.map_or(answered, |all| all.or(answered)));
             if self.history.is_certified() || !given.method.wants_best() {
                 break;
@@ -90,7 +90,7 @@ impl Run<'_> {
         let joined = joined(pieces, answers);
         let Seconds { factor, certificate, proof, .. } = joined.seconds;
         record.stages = Seconds { factor, certificate, proof, solve: 0.0 };
-        let answer = Best::of(joined, record.place.attempt);
+        let answer = Best::of(joined, record.attempt);
         self.judged(answer, &Bounding::Pieces(&certificates), record).map(Ended::Answered)
     }
 }

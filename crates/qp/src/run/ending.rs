@@ -181,7 +181,7 @@ impl Run<'_> {
     /// The attempts that did not give the best answer, each with the ending of its own best.
     fn other_attempts(&self, best: &Best) -> Vec<Attempt> {
         let mut others: Vec<(usize, Attempt)> = Vec::new();
-        for record in self.history.records.iter().filter(|record| record.place.attempt != best.attempt) {
+        for record in self.history.records.iter().filter(|record| record.attempt != best.attempt) {
             if !matches!(record.ended, Ended::Answered(_) | Ended::Refused(_) | Ended::Failed(_)) {
                 continue;
             }
@@ -190,15 +190,15 @@ impl Run<'_> {
                 Some(dofs) => format!("on {dofs} condensed dofs {reason}"),
                 None => reason,
             };
-            let method = match (record.place.attempt, &self.ladder.door, &record.answer) {
+            let method = match (record.attempt, &self.ladder.door, &record.answer) {
                 (0, Some(Door::Pieces(pieces)), _) => format!("{} pieces", pieces.count()),
                 (_, _, Some((method, _))) => method.clone(),
                 _ => {
-                    let named = self.ladder.attempts[record.place.attempt].method;
+                    let named = self.ladder.attempts[record.attempt].method;
                     record.tried.map_or(named, |tried| tried.method).name().to_string()
                 }
             };
-            match others.last_mut().filter(|other| other.0 == record.place.attempt) {
+            match others.last_mut().filter(|other| other.0 == record.attempt) {
                 Some((_, other)) => {
                     other.seconds += record.seconds;
                     // An attempt is named by its best answer.
@@ -206,7 +206,7 @@ impl Run<'_> {
                         (other.method, other.reason) = (method, reason);
                     }
                 }
-                None => others.push((record.place.attempt, Attempt { method, seconds: record.seconds, reason })),
+                None => others.push((record.attempt, Attempt { method, seconds: record.seconds, reason })),
             }
         }
         others.into_iter().map(|other| other.1).collect()

@@ -45,7 +45,7 @@ impl Run<'_> {
             }
             let reason = format!("{}: {because}", solution.reason);
             let solution = Solution { reason, lost_pivot, ..solution };
-            let answer = Best::of(solution, record.place.attempt);
+            let answer = Best::of(solution, record.attempt);
             let answered = self.judged(answer, &Bounding::OwnFactor, record)?;
             all = Some(all.map_or(answered, |all| all.or(answered)));
         }
