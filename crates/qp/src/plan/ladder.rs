@@ -242,13 +242,8 @@ impl Ladder {
         Some(next)
     }
 
-    /// The step that comes before all attempts.
-    pub fn at_the_door(&self) -> Record {
-        self.step_at(0, 0)
-    }
-
-    /// A step of an attempt that begins.
-    fn step_at(&self, attempt: usize, rung: usize) -> Record {
+    /// A step of an attempt that begins; at the door it is that of the first.
+    pub fn step_at(&self, attempt: usize, rung: usize) -> Record {
         let Attempt { means, start, limits, steps, .. } = self.attempts[attempt];
         let step = steps.get(rung).map_or(Step::Method, |rung| rung.step);
         let (tried, ended, stages, answer) = (None, Ended::Empty, Seconds::default(), None);

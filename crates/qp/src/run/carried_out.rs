@@ -125,9 +125,9 @@ impl<'a> Run<'a> {
         let ladder = self.ladder;
         match &ladder.door {
             Some(Door::Equalities) if !self.problem.equalities().is_empty() => {
-                self.record(ladder.at_the_door(), Self::by_elimination);
+                self.record(ladder.step_at(0, 0), Self::by_elimination);
             }
-            Some(Door::Pieces(pieces)) => self.record(ladder.at_the_door(), |run, step| run.in_pieces(pieces, step)),
+            Some(Door::Pieces(pieces)) => self.record(ladder.step_at(0, 0), |run, step| run.in_pieces(pieces, step)),
             _ => {}
         }
     }

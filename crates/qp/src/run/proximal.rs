@@ -112,7 +112,8 @@ fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: 
     }
     let counts = |(&force, least): (&f64, &f64)| if force.abs() > *least { force } else { 0.0 };
     let pressing: Vec<f64> = lambda.iter().zip(&rounding).map(counts).collect();
-    let forces = problem.contact().mul_abs_transposed(&absolute(&pressing));
+    let sizes: Vec<f64> = pressing.iter().map(|force| force.abs()).collect();
+    let forces = problem.contact().mul_abs_transposed(&sizes);
     let left = problem.contact().mul_abs_transposed(&rounding);
     let alone = problem.stiffness().diagonal();
     let moved = |dof: usize| {
@@ -120,10 +121,6 @@ fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: 
         if (alone[dof] + added[dof]) * u[dof].abs() > least { u[dof] } else { 0.0 }
     };
     [(u.to_vec(), lambda.to_vec()), (u.to_vec(), pressing.clone()), ((0..u.len()).map(moved).collect(), pressing)]
-}
-
-fn absolute(values: &[f64]) -> Vec<f64> {
-    values.iter().map(|value| value.abs()).collect()
 }
 
 #[cfg(test)]
