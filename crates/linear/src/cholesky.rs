@@ -278,7 +278,8 @@ impl Cholesky {
     /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
     /// were put last.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
-        let entry = |&column: &usize| if b.len() == self.dim() { b[column] } else { f64::NAN };
+        let fits = b.len() == self.dim();
+        let entry = |&column: &usize| if fits { b[column] } else { f64::NAN };
         self.forward_all(self.order().iter().map(entry).collect())
     }
 

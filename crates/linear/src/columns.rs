@@ -64,26 +64,29 @@ impl Taken {
             Taken::Lower => ["column", "row"],
             Taken::Upper => ["row", "column"],
         };
-        let mut before = None;
-        for (&index, &value) in indices.iter().zip(values) {
-            let Ok(index) = index.try_into() else {
-                let message = format!("a {entry} of {line} {number} is negative (indices from 0)");
-                return Err(Error::Pattern { message });
-            };
-            let place = self.place(index, number);
-            if index >= rows {
-                return Err(Error::IndexOutOfRange { row: place.0, column: place.1, rows, columns });
-            }
-            if let Some(before) = before.replace(index).filter(|&before| before >= index) {
-                let where_to = format!("{entry} {index} of {line} {number} does not lie beyond {entry} {before}");
-                return Err(Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") });
-            }
-            if !value.is_finite() {
-                let at = format!("{place:?}");
-                return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
-            }
+        let mut least = 0;
+        let mut fits = |(&index, value): (&I, &f64)| {
+            let index: usize = index.try_into().unwrap_or(usize::MAX);
+            let fits = (least..rows).contains(&index) && value.is_finite();
+            least = index.saturating_add(1);
+            fits
+        };
+        let Some(at) = indices.iter().zip(values).position(|entry| !fits(entry)) else { return Ok(()) };
+        let Ok(index) = indices[at].try_into() else {
+            let message = format!("a {entry} of {line} {number} is negative (indices from 0)");
+            return Err(Error::Pattern { message });
+        };
+        let place = self.place(index, number);
+        if index >= rows {
+            return Err(Error::IndexOutOfRange { row: place.0, column: place.1, rows, columns });
         }
-        Ok(())
+        let before = at.checked_sub(1).and_then(|before| indices[before].try_into().ok());
+        if let Some(before) = before.filter(|&before| before >= index) {
+            let where_to = format!("{entry} {index} of {line} {number} does not lie beyond {entry} {before}");
+            return Err(Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") });
+        }
+        let (at, value) = (format!("{place:?}"), values[at]);
+        Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" })
     }
 
     /// Row and column of an entry, or of a pair of mirrored entries, in a line that is walked as a column.

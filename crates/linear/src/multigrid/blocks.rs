@@ -122,28 +122,16 @@ impl<T: Real> BlockMatrix<T> {
 
     /// `y += sign A x`.
     pub fn add_product(&self, sign: f64, x: &[T], y: &mut [T], threads: usize) {
-        let sign = T::of(sign);
         self.shared(threads).with_vectors(self.height, [y], |rows, [y]| {
-            let put = |row: usize, sums: &[T]| {
-                let own = &mut y[row * sums.len()..(row + 1) * sums.len()];
-                own.iter_mut().zip(sums).for_each(|(y, &sum)| *y += sign * sum);
-            };
-            with_block_size!(each_product, (self.height, self.width), (self, x, rows, put));
+            with_block_size!(add_rows, (self.height, self.width), (self, x, rows, (T::of(sign), y)));
         });
     }
 
     /// `step = keep step + gain A r`, then `x += step`.
     pub fn step(&self, r: &[T], (keep, gain): (f64, f64), [step, x]: [&mut [T]; 2], threads: usize) {
-        let (keep, gain) = (T::of(keep), T::of(gain));
-        self.shared(threads).with_vectors(self.height, [step, x], |rows, [step, x]| {
-            let put = |row: usize, sums: &[T]| {
-                let own = row * sums.len()..(row + 1) * sums.len();
-                for ((step, x), &sum) in step[own.clone()].iter_mut().zip(&mut x[own]).zip(sums) {
-                    *step = keep * *step + gain * sum;
-                    *x += *step;
-                }
-            };
-            with_block_size!(each_product, (self.height, self.width), (self, r, rows, put));
+        let weights = [T::of(keep), T::of(gain)];
+        self.shared(threads).with_vectors(self.height, [step, x], |rows, vectors| {
+            with_block_size!(step_rows, (self.height, self.width), (self, r, rows, (weights, vectors)));
         });
     }
 
@@ -364,22 +352,50 @@ impl<T: Real> BlockMatrix<T> {
     }
 }
 
-/// Calls `put(place, row)` with some rows of `A x`, numbered from 0.
-fn each_product<T: Real, const H: usize, const W: usize>(
+fn add_rows<T: Real, const H: usize, const W: usize>(
     matrix: &BlockMatrix<T>,
     x: &[T],
     rows: Range<usize>,
-    mut put: impl FnMut(usize, &[T]),
+    (sign, y): (T, &mut [T]),
 ) {
-    let mut sums = vec![T::default(); if H == 0 { matrix.height } else { 0 }];
-    for (place, row) in rows.enumerate() {
-        if H > 0 {
-            put(place, &matrix.row_product::<H, W>(row, x));
-        } else {
+    if H == 0 {
+        let mut sums = vec![T::default(); matrix.height];
+        for (row, y) in rows.zip(y.chunks_exact_mut(matrix.height)) {
             sums.fill(T::default());
             matrix.add_row_product(row, x, &mut sums);
-            put(place, &sums);
+            y.iter_mut().zip(&sums).for_each(|(y, &sum)| *y += sign * sum);
         }
+        return;
+    }
+    for (row, y) in rows.zip(y.as_chunks_mut::<H>().0) {
+        let sums = matrix.row_product::<H, W>(row, x);
+        (0..H).for_each(|i| y[i] += sign * sums[i]);
+    }
+}
+
+fn step_rows<T: Real, const H: usize, const W: usize>(
+    matrix: &BlockMatrix<T>,
+    r: &[T],
+    rows: Range<usize>,
+    ([keep, gain], [step, x]): ([T; 2], [&mut [T]; 2]),
+) {
+    let put = |step: &mut T, x: &mut T, sum: T| {
+        *step = keep * *step + gain * sum;
+        *x += *step;
+    };
+    if H == 0 {
+        let mut sums = vec![T::default(); matrix.height];
+        let nodes = step.chunks_exact_mut(matrix.height).zip(x.chunks_exact_mut(matrix.height));
+        for (row, (step, x)) in rows.zip(nodes) {
+            sums.fill(T::default());
+            matrix.add_row_product(row, r, &mut sums);
+            step.iter_mut().zip(x).zip(&sums).for_each(|((step, x), &sum)| put(step, x, sum));
+        }
+        return;
+    }
+    for (row, (step, x)) in rows.zip(step.as_chunks_mut::<H>().0.iter_mut().zip(x.as_chunks_mut::<H>().0)) {
+        let sums = matrix.row_product::<H, W>(row, r);
+        (0..H).for_each(|i| put(&mut step[i], &mut x[i], sums[i]));
     }
 }
 

@@ -206,9 +206,10 @@ for_processor! {
                     }
                 }
             }
+            of_tile.as_flattened_mut().iter_mut().for_each(|sum| *sum = sign * *sum);
             let of_nodes: [[T; H]; TILE] = std::array::from_fn(|node| std::array::from_fn(|i| of_tile[i][node]));
             for (y, of_node) in sums[start - rows.start..][..TILE].iter_mut().zip(&of_nodes).skip(done - start) {
-                (0..H).for_each(|i| y[i] += sign * of_node[i]);
+                (0..H).for_each(|i| y[i] += of_node[i]);
             }
             if start + TILE == rows.end {
                 return;
