@@ -84,7 +84,7 @@ pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
     vector(file, FINITE)
 }
 
-/// Reads a vector with `values`, in the unit of its file.
+/// Reads a vector with `values`, in the order and the unit of its file.
 ///
 /// # Errors
 /// As [`read_vector`].

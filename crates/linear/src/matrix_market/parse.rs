@@ -91,7 +91,7 @@ impl Content {
         Err(Error::FileSyntax { file: file.to_path_buf(), line: self.line, message })
     }
 
-    /// The columns of an array.
+    /// The columns of an array, length `rows` each, in the unit of its file.
     pub fn columns(&self) -> Vec<Vec<f64>> {
         let mut columns = vec![vec![0.0; self.rows]; self.columns];
         self.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);

@@ -1,9 +1,7 @@
 //! The QP by Clarabel's interior-point method. The only module that uses clarabel, and the sign z = -lambda.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT,
-};
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT};
 
 use super::{Ending, Outcome, ScaledProblem};
 use crate::error::{Error, LinearError};
@@ -128,11 +126,6 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
     });
     let failed = |reason: String| LinearError::Numerical { step: "Clarabel", reason };
     let answer = solved.map_err(failed)?.map_err(|error: SolverError| failed(error.to_string()))?;
-    Ok(read_off(problem, &answer, &rows, unit))
-}
-
-/// The answer of Clarabel on `rows`, in the units of the problem.
-fn read_off(problem: &ContactProblem, answer: &DefaultSolution<f64>, rows: &[usize], unit: Unit) -> Outcome {
     let iterations = answer.iterations as usize;
     let displacement: Vec<f64> = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect();
     let mut multiplier = vec![0.0; problem.rows()];
@@ -155,10 +148,10 @@ fn read_off(problem: &ContactProblem, answer: &DefaultSolution<f64>, rows: &[usi
             | SolverStatus::AlmostDualInfeasible
     );
     let at_rest = Outcome { iterations, ..Outcome::at_rest(problem, Ending::Unsettled) };
-    unpolished(match is_finite && !is_claim {
+    Ok(unpolished(match is_finite && !is_claim {
         true => Outcome { displacement, multiplier, contact_set, ending, ..at_rest },
         false => at_rest,
-    })
+    }))
 }
 
 fn csc(matrix: &SparseMatrix) -> CscMatrix<f64> {

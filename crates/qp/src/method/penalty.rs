@@ -86,9 +86,13 @@ pub fn solve(
             }
             last_bound = bound;
         }
-        let is_small = is_settled && climb.penetrates_at_most(problem, ladder.penetration_threshold);
+        // The largest penetration of a closed row, as a share of the largest displacement of a row.
+        let is_small = || {
+            let penetration = climb.closed.iter().map(|row| climb.violation[row]).fold(0.0, f64::max);
+            penetration <= ladder.penetration_threshold * largest(&problem.contact().mul(&climb.displacement))
+        };
         let is_last = penalty * RUNG > ladder.last || climb.history.len() >= most_iterations;
-        if is_small || scaled.watch.is_over() || is_last || climb.ending == Ending::Unheld {
+        if is_settled && is_small() || scaled.watch.is_over() || is_last || climb.ending == Ending::Unheld {
             break multiplier;
         }
         penalty *= RUNG;
@@ -145,12 +149,6 @@ impl Climb {
             if self.closed.contains(row) { -penalty * violation.max(0.0) } else { 0.0 }
         };
         self.violation.iter().enumerate().map(force).collect()
-    }
-
-    /// Returns `true` if no closed row penetrates by more than this share of the largest displacement of a row.
-    fn penetrates_at_most(&self, problem: &ContactProblem, share: f64) -> bool {
-        let penetration = self.closed.iter().map(|row| self.violation[row]).fold(0.0, f64::max);
-        penetration <= share * largest(&problem.contact().mul(&self.displacement))
     }
 
     /// Solves (K + eps B_C'B_C) v = (f - K u) + eps B_C'(g - B u), by the factor of its matrix, and moves u to u + v.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use super::{Bound, Bounds, LeftOut, Preferred, Side, are_equal, length, no_bound};
+use super::{Bound, Bounds, LeftOut, Side, are_equal, length, no_bound};
 use crate::error::Error;
 use crate::linear::multigrid::{Direction, Units};
 use crate::linear::{SparseMatrix, ldexp};
@@ -39,11 +39,11 @@ struct Making<'a> {
 
 impl Bounds {
     /// The bounds that rows B (m x n) and gaps g give if the dofs have these `units` and `travels` have no stiffness.
-    /// The rows are taken in the order that is preferred, means last. Those without entries or with an infinite gap
-    /// give no bounds.
+    /// The rows are taken in the order that is preferred, of which the first are `needed`, means last. Those without
+    /// entries or with an infinite gap give no bounds.
     pub fn of(
         (contact, gap): (&SparseMatrix, &[f64]),
-        order: &Preferred,
+        (order, needed): (&[usize], usize),
         units: &Units,
         travels: Vec<usize>,
     ) -> Result<Self, Error> {
@@ -56,9 +56,9 @@ impl Bounds {
             let (all, bound_of, carried) = (given.clone(), vec![None; given.units.len()], HashSet::new());
             let mut making = Making { by_row, gap, groups: &units.groups, all, bound_of, carried };
             let is_mean: HashSet<usize> = means.iter().copied().collect();
-            for (place, &row) in order.rows.iter().enumerate().filter(|entry| gap[*entry.1].is_finite()) {
+            for (place, &row) in order.iter().enumerate().filter(|entry| gap[*entry.1].is_finite()) {
                 if !is_mean.contains(&row) {
-                    making.turn(row, if place < order.needed { LEAST_BEYOND_IF_NEEDED } else { LEAST_BEYOND })?;
+                    making.turn(row, if place < needed { LEAST_BEYOND_IF_NEEDED } else { LEAST_BEYOND })?;
                 }
             }
             let mut with_pivot = Vec::new();

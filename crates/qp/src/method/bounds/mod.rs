@@ -46,14 +46,6 @@ pub struct Bound {
     sides: [Option<Side>; 2],
 }
 
-/// All rows in the order in which they become bounds.
-#[derive(Clone, Debug)]
-pub struct Preferred {
-    pub rows: Vec<usize>,
-    /// Number of rows that are needed; they come first.
-    pub needed: usize,
-}
-
 /// A row that is no bound, because it depends on bounds, at least nearly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
@@ -302,7 +294,7 @@ mod tests {
     /// The bounds in other units, because every test is independent of them.
     fn of(entries: Entries, gap: [f64; 3], travels: &[usize]) -> Result<Bounds, Error> {
         let units = Units { groups: vec![0, 0, 1, 2, 3], exponents: vec![1, 1, 3, 0, 0] };
-        Bounds::of((&rows(entries), &gap), &Preferred { rows: vec![0, 1, 2], needed: 0 }, &units, travels.to_vec())
+        Bounds::of((&rows(entries), &gap), (&[0, 1, 2], 0), &units, travels.to_vec())
     }
 
     /// Two oblique rows that share the travel 4, and a row of the travel alone.

@@ -13,7 +13,7 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::linear::largest;
-use crate::method::bounds::{Bounds, LeftOut, Preferred};
+use crate::method::bounds::{Bounds, LeftOut};
 use crate::method::{Ending, Outcome, Start};
 use crate::problem::ContactProblem;
 
@@ -61,8 +61,9 @@ impl Exchange {
     }
 }
 
-/// The order of all rows: those that enter, those that the start closes, then the nearest of the others.
-pub fn order(problem: &ContactProblem, start: &Start, exchange: Option<&Exchange>) -> Preferred {
+/// The order of all rows: those that enter, those that the start closes, then the nearest of the others; and the number
+/// of the first two, which are needed.
+pub fn order(problem: &ContactProblem, start: &Start, exchange: Option<&Exchange>) -> (Vec<usize>, usize) {
     let mut preference: Vec<(u8, f64)> =
         room(problem, start.displacement.as_deref()).into_iter().map(|room| (2, room)).collect();
     for row in start.contact_set.iter().flat_map(|closed| closed.iter()) {
@@ -75,7 +76,7 @@ pub fn order(problem: &ContactProblem, start: &Start, exchange: Option<&Exchange
     let needed = preference.iter().filter(|of_row| of_row.0 < 2).count();
     let mut rows: Vec<usize> = (0..problem.rows()).collect();
     rows.sort_by(|&a, &b| preference[a].0.cmp(&preference[b].0).then(preference[a].1.total_cmp(&preference[b].1)));
-    Preferred { rows, needed }
+    (rows, needed)
 }
 
 /// The distance to the bound of each row at a displacement or at rest, divided by the length of the row.

@@ -110,8 +110,8 @@ impl Mprgp<'_> {
         let mut before: Option<Outcome> = None;
         let mut exchanges = Vec::new();
         loop {
-            let order = order(problem, &start, exchanges.last());
-            let bounds = Bounds::of(rows, &order, &units, problem.without_stiffness())?;
+            let (order, needed) = order(problem, &start, exchanges.last());
+            let bounds = Bounds::of(rows, (&order, needed), &units, problem.without_stiffness())?;
             let used = before.as_ref().map_or(0, |before| before.iterations);
             let limits = Limits { most_cycles: limits.most_cycles.saturating_sub(used), ..limits };
             let next = Mprgp { limits, ..*self }.within(&bounds, start)?;

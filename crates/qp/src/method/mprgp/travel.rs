@@ -13,7 +13,7 @@
 use super::iterate::{BoundedIterate, Move};
 use crate::linear::dot;
 use crate::linear::multigrid::{Face, Units};
-use crate::method::bounds::{Bounds, Preferred};
+use crate::method::bounds::Bounds;
 use crate::problem::ContactProblem;
 
 /// Rows of at most this number of dofs, a travel among them, become bounds whatever their nodes are.
@@ -23,13 +23,13 @@ const FEW_DOFS: usize = 7;
 /// bound with at most one travel.
 pub fn takes_travels(problem: &ContactProblem) -> bool {
     let travels = problem.without_stiffness();
-    let all = Preferred { rows: (0..problem.rows()).collect(), needed: 0 };
+    let all: Vec<usize> = (0..problem.rows()).collect();
     let has_row = |&travel: &usize| problem.contact().column(travel).any(|(_, share)| share != 0.0);
     travels.is_empty()
         || (problem.near_null().is_some()
             && travels.iter().all(has_row)
             && !problem.has_free_mode()
-            && Bounds::of((problem.contact(), problem.gap()), &all, &units(problem), travels).is_ok())
+            && Bounds::of((problem.contact(), problem.gap()), (&all, 0), &units(problem), travels).is_ok())
 }
 
 /// The nodes, if a row has more than [`FEW_DOFS`] dofs; otherwise each dof alone.
