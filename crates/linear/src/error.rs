@@ -1,5 +1,5 @@
-//! The errors of faulty data, of files and of steps of libraries: each states what is wrong, where, which value, and what
-//! is allowed.
+//! The errors of faulty data, of files and of steps of libraries: each states what is wrong, where, which value, and
+//! what is allowed.
 
 use std::path::PathBuf;
 

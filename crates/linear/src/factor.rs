@@ -52,8 +52,8 @@ pub(super) fn memory(request: StackReq) -> Result<MemBuffer, FactorError> {
     MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
 }
 
-/// Zeros, which come untouched from the system. Memory is requested first, because a vector of zeros ends the program if
-/// memory is short.
+/// Zeros, which come untouched from the system. Memory is requested first, because a vector of zeros ends the program
+/// if memory is short.
 pub(super) fn zeros(count: usize) -> Result<Vec<f64>, FactorError> {
     let request = Vec::<f64>::new().try_reserve_exact(count);
     request.map_err(|_| FactorError::Failed("out of memory".into()))?;

@@ -1,5 +1,6 @@
-//! The linear algebra below the quadratic program: sparse matrices in compressed columns, their Cholesky factors, multigrid
-//! with faces, eigenvectors, exact sums; and what every crate above takes from the machine: files, memory, a watch.
+//! The linear algebra below the quadratic program: sparse matrices in compressed columns, their Cholesky factors,
+//! multigrid with faces, eigenvectors, exact sums; and what every crate above takes from the machine: files, memory, a
+//! watch.
 //!
 //! ```
 //! use signorini_linear::{Analysis, SparseMatrix, SymmetricMatrix};

@@ -1,5 +1,5 @@
-//! Numbers with twice the working precision, and sums that keep the rounding errors of their terms: about as precise, or
-//! exact.
+//! Numbers with twice the working precision, and sums that keep the rounding errors of their terms: about as precise,
+//! or exact.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -18,7 +18,8 @@ const PIECE: usize = 1 << 20;
 /// The contents go to a new file in the same folder, which is synced and then replaces `path` in one step.
 ///
 /// # Errors
-/// [`qp::LinearError::File`] if the system refuses; an older file at `path` is then untouched, and nothing is left beside it.
+/// [`qp::LinearError::File`] if the system refuses; an older file at `path` is then untouched, and nothing is left
+/// beside it.
 pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), Error> {
     streamed_atomically(path, |out| out.write_all(contents))
 }
@@ -69,8 +70,8 @@ impl Drawing {
     /// both paths.
     ///
     /// # Errors
-    /// [`qp::LinearError::File`] if the system refuses, [`qp::LinearError::Numerical`] if the rasteriser fails (then neither file
-    /// is written).
+    /// [`qp::LinearError::File`] if the system refuses, [`qp::LinearError::Numerical`] if the rasteriser fails (then
+    /// neither file is written).
     pub fn write(&self, folder: &Path, stem: &str) -> Result<[PathBuf; 2], Error> {
         let (other, bytes) = match self.is_for_paper() {
             true => ("pdf", self.pdf()),

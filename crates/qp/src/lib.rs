@@ -175,8 +175,8 @@ impl ContactProblem {
     /// or the load stay unchanged.
     ///
     /// # Errors
-    /// As [`read_problem`]; [`LinearError::FileSyntax`] if there is neither file, for a vector of another length, and for
-    /// gaps that are infinite in other rows.
+    /// As [`read_problem`]; [`LinearError::FileSyntax`] if there is neither file, for a vector of another length, and
+    /// for gaps that are infinite in other rows.
     pub fn read_other_end(&self, directory: &std::path::Path) -> Result<ContactProblem, Error> {
         matrix_market::read_other_end(directory, self)
     }
@@ -221,8 +221,8 @@ impl ContactProblem {
     /// The attempts of a solve from a start, in order, each with its condition and its reason: text, a line each.
     ///
     /// # Errors
-    /// [`LinearError::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and those
-    /// of an analysis of the stiffness.
+    /// [`LinearError::Setting`] for a setting outside its range, [`Error::NoRoom`] if nothing fits into the memory, and
+    /// those of an analysis of the stiffness.
     pub fn plan(&self, start: &Start, settings: &Settings) -> Result<String, Error> {
         let settings = &settings.started()?;
         plan::Ladder::of(self, 1, !start.is_unknown(), settings)?.in_words(self, settings)
@@ -331,8 +331,9 @@ impl ContactProblem {
     /// interruption count.
     ///
     /// # Errors
-    /// [`LinearError::NotConvex`] for a stiffness that is not positive definite, [`Error::TooLarge`] if the factor does not
-    /// fit into the memory, [`Error::Interrupted`], [`LinearError::Numerical`] if memory is not enough all the same.
+    /// [`LinearError::NotConvex`] for a stiffness that is not positive definite, [`Error::TooLarge`] if the factor does
+    /// not fit into the memory, [`Error::Interrupted`], [`LinearError::Numerical`] if memory is not enough all the
+    /// same.
     pub fn linear_displacement(&self, settings: &Settings) -> Result<Vec<f64>, Error> {
         let (stiffness, load) = (self.stiffness(), self.load());
         let analysis = Analysis::of(stiffness)?;

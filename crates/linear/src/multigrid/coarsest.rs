@@ -25,8 +25,8 @@ pub(super) struct Coarsest {
 }
 
 impl Coarsest {
-    /// Factorises a coarsest matrix, with its zeros if a face will change them. One that is singular to the precision of
-    /// its entries is held by a shift.
+    /// Factorises a coarsest matrix, with its zeros if a face will change them. One that is singular to the precision
+    /// of its entries is held by a shift.
     pub fn of<T: Real>(blocks: &BlockMatrix<T>, with_zeros: bool) -> Result<Self, FactorError> {
         let matrix = lower_part(blocks, with_zeros);
         let analysis = Analysis::of(&matrix)?;

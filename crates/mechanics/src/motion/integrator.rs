@@ -37,9 +37,10 @@ impl Integrator {
     /// step.
     ///
     /// # Errors
-    /// [`qp::LinearError::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of
-    /// its range, an initial penetration, a form of the mass that the scheme cannot use; [`qp::LinearError::Numerical`] for a
-    /// step beyond the stable one of an explicit scheme; the errors of [`Prepared::new`](signorini_qp::Prepared::new).
+    /// [`qp::LinearError::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting
+    /// out of its range, an initial penetration, a form of the mass that the scheme cannot use;
+    /// [`qp::LinearError::Numerical`] for a step beyond the stable one of an explicit scheme; the errors of
+    /// [`Prepared::new`](signorini_qp::Prepared::new).
     pub fn new(problem: DynamicProblem, scheme: Scheme, step: f64, settings: &Settings) -> Result<Self, Error> {
         if !(step.is_finite() && step > 0.0) {
             return Err(qp::LinearError::Setting { name: "step", value: step, allowed: "positive and finite" }.into());
@@ -104,8 +105,8 @@ impl Integrator {
     /// Advances by one step, and returns the state at its end.
     ///
     /// # Errors
-    /// Those of a contact solve; [`qp::LinearError::Numerical`] if the motion grows without bound; [`qp::Error::Interrupted`]
-    /// if the watch of the settings ends the run, in the state after the last whole step.
+    /// Those of a contact solve; [`qp::LinearError::Numerical`] if the motion grows without bound;
+    /// [`qp::Error::Interrupted`] if the watch of the settings ends the run, in the state after the last whole step.
     pub fn advance(&mut self) -> Result<&State, Error> {
         if self.watch.time_left().is_some_and(|left| left <= self.longest) {
             return Err(qp::Error::Interrupted.into());

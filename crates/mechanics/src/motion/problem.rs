@@ -36,7 +36,8 @@ impl DynamicProblem {
     /// The motion from rest of the body of `statics`, under its constant load, with the mass M (n x n).
     ///
     /// # Errors
-    /// [`qp::LinearError::Shape`] for a mass of another size, [`qp::LinearError::Setting`] for a negative diagonal entry.
+    /// [`qp::LinearError::Shape`] for a mass of another size, [`qp::LinearError::Setting`] for a negative diagonal
+    /// entry.
     pub fn new(statics: ContactProblem, mass: SymmetricMatrix) -> Result<Self, Error> {
         let dofs = statics.dofs();
         if mass.dim() != dofs {
@@ -84,8 +85,8 @@ impl DynamicProblem {
     /// with time.
     ///
     /// # Errors
-    /// As [`TimeFunction::check`]; [`qp::LinearError::Length`] and [`qp::LinearError::NotFinite`] for a load of another length or
-    /// not finite.
+    /// As [`TimeFunction::check`]; [`qp::LinearError::Length`] and [`qp::LinearError::NotFinite`] for a load of another
+    /// length or not finite.
     pub fn with_load(mut self, factor: TimeFunction, load: Vec<f64>) -> Result<Self, Error> {
         factor.check()?;
         let load = self.statics.with_load(load)?.load().to_vec();
@@ -98,8 +99,8 @@ impl DynamicProblem {
     /// obstacles.
     ///
     /// # Errors
-    /// As [`TimeFunction::check`]; [`qp::LinearError::Length`] and [`qp::LinearError::NotFinite`] for shifts of another length or
-    /// not finite.
+    /// As [`TimeFunction::check`]; [`qp::LinearError::Length`] and [`qp::LinearError::NotFinite`] for shifts of another
+    /// length or not finite.
     pub fn with_moving_gaps(mut self, factor: TimeFunction, shift: Vec<f64>) -> Result<Self, Error> {
         factor.check()?;
         check_finite("shift", &shift, (self.statics.rows(), "contact rows"))?;

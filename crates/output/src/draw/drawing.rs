@@ -141,8 +141,9 @@ impl Drawing {
     /// The same picture as PNG, with `scale` pixels of the image for one pixel of the drawing.
     ///
     /// # Errors
-    /// [`qp::LinearError::Setting`](signorini_qp::LinearError::Setting) if the scale is not positive or makes an image of more than
-    /// 1e8 pixels, [`qp::LinearError::Numerical`](signorini_qp::LinearError::Numerical) if the rasteriser fails.
+    /// [`qp::LinearError::Setting`](signorini_qp::LinearError::Setting) if the scale is not positive or makes an image
+    /// of more than 1e8 pixels, [`qp::LinearError::Numerical`](signorini_qp::LinearError::Numerical) if the rasteriser
+    /// fails.
     pub fn png(&self, scale: f64) -> Result<Vec<u8>, Error> {
         raster::png(&self.pixels(scale)?)
     }

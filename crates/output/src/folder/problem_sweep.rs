@@ -50,7 +50,8 @@ impl Wanted {
     /// Draws the sum of the multipliers and the number of closed rows along the sweep (`force`).
     ///
     /// # Errors
-    /// [`qp::LinearError::File`](signorini_qp::LinearError::File), [`qp::LinearError::Numerical`](signorini_qp::LinearError::Numerical).
+    /// [`qp::LinearError::File`](signorini_qp::LinearError::File),
+    /// [`qp::LinearError::Numerical`](signorini_qp::LinearError::Numerical).
     pub fn draw_problem_sweep(self, folder: &Path, title: &str, sweep: &ProblemSweep) -> Result<(), Error> {
         if self.pictures == Pictures::None {
             return Ok(());

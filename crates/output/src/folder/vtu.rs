@@ -39,9 +39,9 @@ impl Unstructured<'_> {
     /// The text of the `.vtu` file; every number reads back as the same number.
     ///
     /// # Errors
-    /// [`qp::LinearError::Length`] if an array does not fit the nodes or the elements, [`qp::LinearError::NotFinite`] for a
-    /// coordinate or value that ASCII readers would stop at, [`qp::LinearError::Setting`] for an element with a number of
-    /// nodes that is not that of its type, or that names a node that does not exist.
+    /// [`qp::LinearError::Length`] if an array does not fit the nodes or the elements, [`qp::LinearError::NotFinite`]
+    /// for a coordinate or value that ASCII readers would stop at, [`qp::LinearError::Setting`] for an element with a
+    /// number of nodes that is not that of its type, or that names a node that does not exist.
     pub fn to_vtu(&self) -> Result<String, Error> {
         let mut text = String::from(
             "<?xml version=\"1.0\"?>\n\

@@ -205,8 +205,8 @@ impl Derivatives {
     /// [`tangent`](Self::tangent) tells them apart.
     ///
     /// # Errors
-    /// [`LinearError::Length`] and [`LinearError::NotFinite`] for vectors that do not fit; [`LinearError::Numerical`] and
-    /// [`Error::Interrupted`] of the solve.
+    /// [`LinearError::Length`] and [`LinearError::NotFinite`] for vectors that do not fit; [`LinearError::Numerical`]
+    /// and [`Error::Interrupted`] of the solve.
     pub fn adjoint(&self, by_displacement: &[f64], by_multiplier: &[f64]) -> Result<Derivative<Adjoint>, Error> {
         let (problem, rows) = (&self.problem, self.given_rows());
         check_finite("derivative by displacement", by_displacement, (problem.dofs(), "dofs"))?;

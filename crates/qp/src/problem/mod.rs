@@ -95,8 +95,9 @@ impl ContactProblem {
     /// [`warnings`](Self::warnings).
     ///
     /// # Errors
-    /// [`LinearError::Length`] and [`LinearError::Shape`] for sizes that do not fit, [`LinearError::NotFinite`] for a load that is not
-    /// finite or a gap that is NaN or minus infinity, [`LinearError::NotConvex`] for a negative diagonal entry of K.
+    /// [`LinearError::Length`] and [`LinearError::Shape`] for sizes that do not fit, [`LinearError::NotFinite`] for a
+    /// load that is not finite or a gap that is NaN or minus infinity, [`LinearError::NotConvex`] for a negative
+    /// diagonal entry of K.
     pub fn new(
         stiffness: SymmetricMatrix,
         load: Vec<f64>,

@@ -59,8 +59,9 @@ impl MassForm {
 ///
 /// # Errors
 /// [`linear::Error::Setting`](signorini_linear::Error::Setting) for a material without density,
-/// [`linear::Error::Length`](signorini_linear::Error::Length) if `dofs` does not belong to the mesh, [`Error::Mesh`] for a mesh
-/// too coarse to redistribute its mass, [`linear::Error::NotFinite`](signorini_linear::Error::NotFinite) if the mass overflows.
+/// [`linear::Error::Length`](signorini_linear::Error::Length) if `dofs` does not belong to the mesh, [`Error::Mesh`]
+/// for a mesh too coarse to redistribute its mass, [`linear::Error::NotFinite`](signorini_linear::Error::NotFinite) if
+/// the mass overflows.
 ///
 /// # Source
 /// H. B. Khenous, P. Laborde, Y. Renard, *Mass redistribution method for finite element contact problems in

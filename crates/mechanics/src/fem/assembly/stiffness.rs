@@ -43,7 +43,8 @@ impl<'a> FreeAxes<'a> {
 /// The stiffness K of the free dofs (n x n), in force per length; only its lower triangle is ever built.
 ///
 /// # Errors
-/// [`linear::Error::Length`] if `dofs` does not belong to the mesh, [`linear::Error::NotFinite`] if the stiffness overflows.
+/// [`linear::Error::Length`] if `dofs` does not belong to the mesh, [`linear::Error::NotFinite`] if the stiffness
+/// overflows.
 pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let (starts, rows) = lower_pattern(body.mesh(), dofs);

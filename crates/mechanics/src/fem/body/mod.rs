@@ -77,9 +77,9 @@ impl ElasticBody {
     /// The body of `mesh` and `material` in `formulation`, with [`Integration::Standard`].
     ///
     /// # Errors
-    /// [`linear::Error::Setting`] for an area or thickness that is not positive and finite, or a Poisson's ratio that the
-    /// formulation does not allow; [`Error::Mesh`] for a mesh of another dimension, an element whose Jacobian is not
-    /// positive, a node of a body of revolution at a negative radius.
+    /// [`linear::Error::Setting`] for an area or thickness that is not positive and finite, or a Poisson's ratio that
+    /// the formulation does not allow; [`Error::Mesh`] for a mesh of another dimension, an element whose Jacobian is
+    /// not positive, a node of a body of revolution at a negative radius.
     pub fn new(mesh: Mesh, material: Material, formulation: Formulation) -> Result<Self, Error> {
         formulation.check()?;
         let phase = Phase::new(material, &formulation)?;

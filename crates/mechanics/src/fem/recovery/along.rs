@@ -66,7 +66,8 @@ impl ElasticBody {
     /// elements of one region, the piece of one of them alone.
     ///
     /// # Errors
-    /// [`linear::Error::Length`](signorini_linear::Error::Length) if the displacement does not have `dim` entries per node.
+    /// [`linear::Error::Length`](signorini_linear::Error::Length) if the displacement does not have `dim` entries per
+    /// node.
     pub fn along(&self, displacement: &[f64], ends: [[f64; 3]; 2]) -> Result<Vec<PathPiece>, Error> {
         self.check_nodal("nodal displacement", displacement.len())?;
         let Some(line) = Line::within(ends, self.mesh().extent(), self.mesh().size()) else { return Ok(Vec::new()) };

@@ -33,10 +33,10 @@ impl ClosedSurface {
     /// coordinates are multiplied by `scale` and moved by `origin` (`[x, y, z]`, in length).
     ///
     /// # Errors
-    /// [`linear::Error::File`] for a file that cannot be read, [`linear::Error::Setting`] for a scale that is not positive and
-    /// finite; [`linear::Error::FileSyntax`] with a line, or [`linear::Error::FileBytes`] with an offset, for a file of another
-    /// form, coordinates that are not finite or too large, and triangles that do not close to the surface of a solid.
-    /// No error quotes the file.
+    /// [`linear::Error::File`] for a file that cannot be read, [`linear::Error::Setting`] for a scale that is not
+    /// positive and finite; [`linear::Error::FileSyntax`] with a line, or [`linear::Error::FileBytes`] with an offset,
+    /// for a file of another form, coordinates that are not finite or too large, and triangles that do not close to the
+    /// surface of a solid. No error quotes the file.
     pub fn read(file: &Path, scale: f64, origin: [f64; 3]) -> Result<Self, Error> {
         positive("scale", scale)?;
         let ending = file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);

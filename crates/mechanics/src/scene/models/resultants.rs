@@ -155,7 +155,8 @@ impl Model {
     /// contact row, in force, `<= 0`).
     ///
     /// # Errors
-    /// [`qp::LinearError::Length`](signorini_qp::LinearError::Length) if `multiplier` does not have one entry per contact row.
+    /// [`qp::LinearError::Length`](signorini_qp::LinearError::Length) if `multiplier` does not have one entry per
+    /// contact row.
     pub fn contact_resultants(&self, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
         self.check_multiplier(multiplier)?;
         let mut sums = vec![Sum::default(); self.obstacles().len()];

@@ -45,8 +45,8 @@ use found::Search;
 /// ```
 ///
 /// # Errors
-/// [`signorini_qp::LinearError::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in the
-/// continuum; those of [`Scene::build`] and of [`signorini_qp::solve`] on the first mesh.
+/// [`signorini_qp::LinearError::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer
+/// in the continuum; those of [`Scene::build`] and of [`signorini_qp::solve`] on the first mesh.
 pub fn total_error(scene: &Scene, goal: impl Into<TotalErrorGoal>) -> Result<TotalError, Error> {
     let model = Arc::new(scene.build()?);
     TotalError::search(scene, &model, goal.into(), &Settings::default(), &|_| {}).map_err(|error| model.explain(error))
@@ -57,9 +57,9 @@ impl TotalError {
     /// `keep` is called with what was found after each mesh but the last.
     ///
     /// # Errors
-    /// [`signorini_qp::LinearError::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an answer in
-    /// the continuum and for an error of the force without a guarantee; those of [`signorini_qp::solve`] on the first
-    /// mesh.
+    /// [`signorini_qp::LinearError::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an
+    /// answer in the continuum and for an error of the force without a guarantee; those of [`signorini_qp::solve`] on
+    /// the first mesh.
     pub fn search(
         scene: &Scene,
         model: &Arc<Model>,

@@ -56,8 +56,8 @@ impl<'a> CalculixFiles<'a> {
     ///
     /// # Errors
     /// [`qp::LinearError::File`](signorini_qp::LinearError::File) if the system refuses,
-    /// [`qp::LinearError::NotFinite`](signorini_qp::LinearError::NotFinite) for a value that the form cannot hold, and those of the
-    /// recovery of stresses.
+    /// [`qp::LinearError::NotFinite`](signorini_qp::LinearError::NotFinite) for a value that the form cannot hold, and
+    /// those of the recovery of stresses.
     pub fn write(&self, stem: &Path) -> Result<(), Error> {
         let mut tables = Vec::with_capacity(self.0.len());
         let mut fields = Vec::with_capacity(self.0.len());

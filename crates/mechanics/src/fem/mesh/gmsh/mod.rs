@@ -65,7 +65,8 @@ impl GmshFile {
     /// Reads a mesh file of Gmsh of format 4.1 or 2.2, as text or binary.
     ///
     /// # Errors
-    /// [`linear::Error::File`](signorini_linear::Error::File) for a file that cannot be read, and as [`GmshFile::parse`].
+    /// [`linear::Error::File`](signorini_linear::Error::File) for a file that cannot be read, and as
+    /// [`GmshFile::parse`].
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
         let path = file.as_ref();
         Self::parse(read_capped(path, MOST_OF_MESH)?, path)
@@ -74,8 +75,8 @@ impl GmshFile {
     /// Reads the content of a file, a text or bytes; `file` is named in errors.
     ///
     /// # Errors
-    /// [`linear::Error::FileSyntax`](signorini_linear::Error::FileSyntax) with the line; in a binary file with the line in
-    /// which the section begins, and with the byte, from 0, at which the node, element or other record begins: for a
+    /// [`linear::Error::FileSyntax`](signorini_linear::Error::FileSyntax) with the line; in a binary file with the line
+    /// in which the section begins, and with the byte, from 0, at which the node, element or other record begins: for a
     /// version other than 4.1 and 2.2, an unknown byte order or data size, a section that is missing or ends early or
     /// announces another number of lines than it has, a number of the wrong kind, coordinates that are not finite, an
     /// unknown element type, an element whose node does not exist, a group without elements.
@@ -104,11 +105,11 @@ impl GmshFile {
     /// outside. With names, facets of boundaries that are not on the body are left out.
     ///
     /// # Errors
-    /// [`linear::Error::FileSyntax`](signorini_linear::Error::FileSyntax) with the line: for elements of more than one kind, or
-    /// of a kind without contact, a node outside the plane, an element that is inverted or has no volume, a group with
-    /// facets that are not faces of the body. [`Error::Mesh`] for a group that does not exist, and for groups of
-    /// different dimensions, [`linear::Error::Setting`](signorini_linear::Error::Setting) for a scale that is not positive and
-    /// finite.
+    /// [`linear::Error::FileSyntax`](signorini_linear::Error::FileSyntax) with the line: for elements of more than one
+    /// kind, or of a kind without contact, a node outside the plane, an element that is inverted or has no volume, a
+    /// group with facets that are not faces of the body. [`Error::Mesh`] for a group that does not exist, and for
+    /// groups of different dimensions, [`linear::Error::Setting`](signorini_linear::Error::Setting) for a scale that is
+    /// not positive and finite.
     pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;
         let body = body::Body::select(self, groups)?;

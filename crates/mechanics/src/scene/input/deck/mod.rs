@@ -153,8 +153,8 @@ impl Scene {
     ///
     /// # Errors
     /// [`File`](signorini_qp::LinearError::File) for a file that cannot be read;
-    /// [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for what is wrong, and for what changes the answer
-    /// and is not modelled.
+    /// [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for what is wrong, and for what changes the
+    /// answer and is not modelled.
     pub fn read_deck(path: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Scene, Error> {
         let path = path.as_ref();
         let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -173,8 +173,8 @@ impl Scene {
     /// ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
     ///
     /// # Errors
-    /// As [`Scene::read_deck`]; [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for results of a set that
-    /// does not exist.
+    /// As [`Scene::read_deck`]; [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for results of a
+    /// set that does not exist.
     pub fn read_step(
         path: impl AsRef<Path>,
         permits: &[&str],
