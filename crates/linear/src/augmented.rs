@@ -98,7 +98,7 @@ impl AugmentedMatrix {
         })
     }
 
-    /// The same with the columns of `last` eliminated last.
+    /// The same with the columns of `last` (in any order) eliminated last.
     pub fn with_last(stiffness: &SymmetricMatrix, rows: &SparseMatrix, last: &[usize]) -> Result<Self, FactorError> {
         Self::analysed(stiffness, rows, |joined| Analysis::with_last(joined, last))
     }

@@ -97,7 +97,7 @@ impl Compliance {
         self.cholesky.forward(force)
     }
 
-    /// The columns of W of some rows, which are not kept.
+    /// The columns of W of some rows, in their order, which are not kept.
     pub fn columns(&self, rows: &[usize]) -> Vec<f64> {
         let size = self.by_row.rows();
         let mut columns = vec![0.0; size * rows.len()];
@@ -127,7 +127,7 @@ impl Compliance {
         columns.for_each(|(column, row)| _ = halves[row].set(column.to_vec()));
     }
 
-    /// The column of W of a row.
+    /// The column of W of a row, with an entry for each contact dof in its order.
     pub fn half(&self, row: usize) -> &[f64] {
         let size = self.by_row.rows();
         let Some(halves) = &self.halves else { return &self.all()[0][row * size..(row + 1) * size] };
@@ -142,7 +142,7 @@ impl Compliance {
         }
     }
 
-    /// The lower triangle of W'W of these rows, column by column; `None` if it `is_over` before.
+    /// The lower triangle of W'W of these rows in their order; `None` if it `is_over` before.
     pub fn products(&self, rows: &[usize], is_over: impl Fn() -> bool) -> Option<Vec<f64>> {
         if self.is_kept() {
             let mut products = vec![0.0; rows.len() * rows.len()];
@@ -156,7 +156,7 @@ impl Compliance {
         Some(dense_factor::products(self.by_row.rows(), &columns.concat()))
     }
 
-    /// W'W, column by column.
+    /// W'W (m x m), column by column, in the order of the rows.
     pub fn matrix(&self) -> Vec<f64> {
         let all = 0..self.by_row.columns();
         all.clone().flat_map(|j| all.clone().map(move |i| self.product(i, j))).collect()

@@ -49,7 +49,7 @@ pub struct Iterate<'a> {
     pub solution: Vec<f64>,
     /// b - A x.
     pub rest: Vec<f64>,
-    /// The direction p of the last step.
+    /// The direction p of the last step, length n.
     pub direction: Vec<f64>,
     /// A p.
     moved: Vec<f64>,

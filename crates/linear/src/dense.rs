@@ -56,7 +56,7 @@ pub fn take_out(vector: &mut [f64], direction: &[f64]) -> f64 {
     share
 }
 
-/// The part of a vector that is orthogonal to some unit vectors; the second turn removes the rounding of the first.
+/// The part of a vector that is orthogonal to unit vectors of its length; the second turn removes the rounding of the first.
 pub fn across(basis: &[Vec<f64>], mut vector: Vec<f64>) -> Vec<f64> {
     basis.iter().chain(basis).for_each(|direction| _ = take_out(&mut vector, direction));
     vector
@@ -92,7 +92,7 @@ pub fn check_vector(
     }
 }
 
-/// The same for a vector of any finite values.
+/// The same for a vector of this length of any finite values.
 pub fn check_finite(name: &'static str, values: &[f64], of: (usize, &'static str)) -> Result<(), Error> {
     check_vector(name, values, of, f64::is_finite, "finite")
 }
@@ -142,7 +142,7 @@ impl LowerTriangle {
         &self.values[column * self.size + column..(column + 1) * self.size]
     }
 
-    /// `L^-1 b`.
+    /// `L^-1 b`, length n.
     pub fn forward(&self, mut b: Vec<f64>) -> Vec<f64> {
         self.sweep(&mut b, false);
         b
@@ -153,7 +153,7 @@ impl LowerTriangle {
         swept(self, b, is_backward);
     }
 
-    /// `L'^-1 y`.
+    /// `L'^-1 y`, length n.
     pub fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
         self.sweep(&mut y, true);
         y
@@ -255,7 +255,7 @@ impl UpperTriangle {
         self.independent.push(true);
     }
 
-    /// The same for a column that follows from those before it.
+    /// The same for a column that follows from those before it, of the same length.
     pub fn push_dependent(&mut self, above: Vec<f64>, diagonal: f64) {
         self.push(above, diagonal);
         self.independent[self.columns.len() - 1] = false;
@@ -297,7 +297,7 @@ impl UpperTriangle {
         (0..self.size()).map(length).collect()
     }
 
-    /// `(R'R)^-1 b`; zero on columns that follow from others.
+    /// `(R'R)^-1 b`, length n; zero on columns that follow from others.
     pub fn solve_normal(&self, b: Vec<f64>) -> Vec<f64> {
         self.solve_upper(self.solve_lower(b))
     }
@@ -316,7 +316,7 @@ impl UpperTriangle {
         b
     }
 
-    /// `R'^-1 b`; zero on columns that follow from others.
+    /// `R'^-1 b`, length n; zero on columns that follow from others.
     pub fn solve_lower(&self, mut b: Vec<f64>) -> Vec<f64> {
         for (place, column) in self.columns.iter().enumerate() {
             b[place] = match self.independent[place] {

@@ -26,7 +26,7 @@ pub struct Dependence {
 type Residues = Vec<(usize, u64)>;
 
 impl Dependence {
-    /// The dependence of some `rows` of a matrix; `None` if it `is_over` before it is found.
+    /// The dependence of some `rows` of a matrix, in this order; `None` if it `is_over` before it is found.
     pub fn of(matrix: &SparseMatrix, rows: &[usize], is_over: impl Fn() -> bool) -> Option<Self> {
         let by_row = matrix.transposed();
         let mut found = Dependence { independent: vec![false; rows.len()], takes_part: vec![false; rows.len()] };

@@ -297,7 +297,7 @@ impl Solved {
         self.place[dof].err().map_or(Twice::ZERO, |pivot| self.pivots[pivot].constant)
     }
 
-    /// `Z y`, and `u_0` this many times.
+    /// `Z y`, length n, and `u_0` this many times.
     pub fn of_all(&self, y: &[f64], times: f64) -> impl Iterator<Item = Twice> {
         self.place.iter().map(move |place| match *place {
             Ok(place) => y[place].into(),
@@ -337,7 +337,7 @@ impl Solved {
         SymmetricMatrix::from_lower(SparseMatrix::from_csc(self.stays.len(), starts, rows, values)?)
     }
 
-    /// The multipliers of the first `count` equations that balance these forces on the first unknowns: no force acts on
+    /// The multipliers, in order, of the first `count` equations that balance these forces on the first unknowns: no force acts on
     /// the others.
     pub fn balancing(&self, force: &[f64], count: usize) -> Vec<f64> {
         let mut multipliers = vec![Twice::ZERO; count];

@@ -124,7 +124,7 @@ impl SymmetricMatrix {
         SymmetricMatrix { lower }
     }
 
-    /// The matrix with these numbers on its diagonal, and no others.
+    /// The matrix with these numbers on its diagonal, in their order, and no others.
     pub fn of_diagonal(values: Vec<f64>) -> Self {
         let rows = (0..values.len() as u32).collect();
         Self::from_sorted_lower(SparseMatrix::from_parts(values.len(), (0..=values.len()).collect(), rows, values))
@@ -288,7 +288,7 @@ impl SymmetricMatrix {
         self.mul_with(threads, x, &Spare::default())
     }
 
-    /// The same; the product is one of these work vectors.
+    /// The same; the product, length n, is one of these work vectors.
     pub fn mul_with(&self, threads: usize, x: &[f64], spare: &Spare<f64>) -> Vec<f64> {
         let columns = SharedRows { starts: self.lower.column_starts(), threads: MOST_PARTS }.runs_of(PART);
         if columns.len() == 1 {

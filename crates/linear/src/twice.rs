@@ -218,7 +218,7 @@ for_processor! {
 }
 
 impl Accumulator {
-    /// Sums that start from `values`.
+    /// Sums that start from `values`, in their order.
     pub fn new(values: &[f64]) -> Self {
         Accumulator { sums: values.iter().map(|&value| value.into()).collect() }
     }

@@ -56,7 +56,7 @@ pub struct Krylov<A> {
 
 /// Eigenpairs of the operator in the space, eigenvalues decreasing.
 pub struct Pairs {
-    /// The eigenvalues.
+    /// The eigenvalues, in decreasing order.
     pub values: Vec<f64>,
     /// The norm of `A y - value y` for the unit vector y of each pair.
     pub residuals: Vec<f64>,
@@ -223,7 +223,7 @@ impl<A: Fn(&[f64]) -> Vec<f64>> Krylov<A> {
         Ok(Pairs { values, residuals, coordinates })
     }
 
-    /// The first `count` vectors of pairs of this space, one after the other.
+    /// The first `count` vectors of pairs of this space, each of length n, one after the other.
     pub fn vectors(&self, pairs: &Pairs, count: usize) -> Vec<f64> {
         let basis = MatRef::from_column_major_slice(&self.basis, self.dim, self.columns());
         let mut vectors = vec![0.0; self.dim * count];

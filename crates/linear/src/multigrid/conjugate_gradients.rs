@@ -58,7 +58,7 @@ impl Preconditioned<'_> {
         Ok(ConjugateGradients { solution: iterate.solution, cycles, residual })
     }
 
-    /// A direction without positive energy. Conjugate gradients from a generic force meet it if the matrix has a
+    /// A direction (length n) without positive energy. Conjugate gradients from a generic force meet it if the matrix has a
     /// negative eigenvalue that its hierarchy does not hide; rounding may give one for a semidefinite matrix. `None` if
     /// no direction is met, or if `watch` is over.
     pub fn negative_direction(&self, watch: &Watch) -> Option<Vec<f64>> {
