@@ -56,7 +56,8 @@ pub fn take_out(vector: &mut [f64], direction: &[f64]) -> f64 {
     share
 }
 
-/// The part of a vector that is orthogonal to unit vectors of its length; the second turn removes the rounding of the first.
+/// The part of a vector that is orthogonal to unit vectors of its length; the second turn removes the rounding of the
+/// first.
 pub fn across(basis: &[Vec<f64>], mut vector: Vec<f64>) -> Vec<f64> {
     basis.iter().chain(basis).for_each(|direction| _ = take_out(&mut vector, direction));
     vector

@@ -337,8 +337,8 @@ impl Solved {
         SymmetricMatrix::from_lower(SparseMatrix::from_csc(self.stays.len(), starts, rows, values)?)
     }
 
-    /// The multipliers, in order, of the first `count` equations that balance these forces on the first unknowns: no force acts on
-    /// the others.
+    /// The multipliers, in order, of the first `count` equations that balance these forces on the first unknowns: no
+    /// force acts on the others.
     pub fn balancing(&self, force: &[f64], count: usize) -> Vec<f64> {
         let mut multipliers = vec![Twice::ZERO; count];
         for pivot in self.pivots.iter().filter(|pivot| pivot.dof < force.len()) {

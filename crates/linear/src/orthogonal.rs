@@ -7,8 +7,8 @@ use super::{UpperTriangle, dense_factor, dot, norm, take_out};
 /// The component of a vector orthogonal to the others is rounding if it is below this share of the terms that cancel.
 const CANCELLED_VECTOR: f64 = 64.0 * f64::EPSILON;
 
-/// `sqrt((Z'Z)^-1_ii)` of each column i of Z: one over its distance from the span of the others, if it is independent. It
-/// is infinite for columns that take part in a dependence to rounding. `None` if it `is_over` before.
+/// `sqrt((Z'Z)^-1_ii)` of each column i of Z: one over its distance from the span of the others, if it is independent.
+/// It is infinite for columns that take part in a dependence to rounding. `None` if it `is_over` before.
 ///
 /// # Source
 /// Å. Björck, *Numerics of Gram-Schmidt orthogonalization*, Linear Algebra Appl. 197/198 (1994) 297-316.

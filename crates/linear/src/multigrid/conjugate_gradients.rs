@@ -58,9 +58,9 @@ impl Preconditioned<'_> {
         Ok(ConjugateGradients { solution: iterate.solution, cycles, residual })
     }
 
-    /// A direction (length n) without positive energy. Conjugate gradients from a generic force meet it if the matrix has a
-    /// negative eigenvalue that its hierarchy does not hide; rounding may give one for a semidefinite matrix. `None` if
-    /// no direction is met, or if `watch` is over.
+    /// A direction (length n) without positive energy. Conjugate gradients from a generic force meet it if the matrix
+    /// has a negative eigenvalue that its hierarchy does not hide; rounding may give one for a semidefinite matrix.
+    /// `None` if no direction is met, or if `watch` is over.
     pub fn negative_direction(&self, watch: &Watch) -> Option<Vec<f64>> {
         let force = generic(self.matrix.dim(), 0);
         let mut iterate = Iterate::new(vec![0.0; force.len()], force, Blocks::ONE);

@@ -53,8 +53,8 @@ pub struct DualNorm {
 }
 
 impl Preconditioned<'_> {
-    /// Bounds `sqrt(r' A^-1 r)` of a force r (length n) for a definite A, by conjugate gradients; `None` if the cycles do not
-    /// settle, or if `watch` is over before they do.
+    /// Bounds `sqrt(r' A^-1 r)` of a force r (length n) for a definite A, by conjugate gradients; `None` if the cycles
+    /// do not settle, or if `watch` is over before they do.
     pub fn dual_norm(&self, force: &[f64], watch: &Watch) -> Option<DualNorm> {
         self.dual_norms(force, &[], 1, watch)?.pop()
     }
