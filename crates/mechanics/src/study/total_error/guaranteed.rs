@@ -105,13 +105,11 @@ impl Search<'_> {
             let settings = self.settings.clone().watched(&self.settings.watch.keeping(last_seconds));
             let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &settings) {
                 Ok(bracket) => bracket,
-                Err(Error::Qp(qp::Error::UnderHeld { .. }))
-                    if found.is_none() && coarse < COARSE && !self.problem.has_circles() =>
-                {
+                Err(Error::Qp(qp::Error::UnderHeld { .. })) if coarse < COARSE && !self.problem.has_circles() => {
                     coarse += 1;
                     let mut at_obstacles = vec![false; mesh.count()];
                     self.problem.facing(&mesh).for_each(|(outer, _)| at_obstacles[outer.cell] = true);
-                    next = self.problem.refined(&mesh, &at_obstacles);
+                    (next, touching) = (self.problem.refined(&mesh, &at_obstacles), None);
                     continue;
                 }
                 Err(error) => {
