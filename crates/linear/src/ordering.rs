@@ -26,7 +26,7 @@ pub struct Fill {
     pub multiplications: f64,
     /// Values of the factor, approximately.
     pub entries: f64,
-    /// `true` if the factorisation costs so much that [`order`] tries nested dissection as well.
+    /// `true` if the factorisation costs so much that `order` tries nested dissection as well.
     pub is_dissected: bool,
 }
 

@@ -21,7 +21,7 @@ pub struct Activity {
     pub step: &'static str,
     /// The iteration of the step, from 1; 0 if the step has no iterations.
     pub iteration: usize,
-    /// Start and expected duration of the current work, if it is [timed](crate::Watch::timed).
+    /// Start and expected duration of the current work, if it is [timed](Watch::timed).
     pub timed: Option<(Instant, Duration)>,
 }
 

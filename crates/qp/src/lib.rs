@@ -233,7 +233,7 @@ impl ContactProblem {
     /// definite or the rows that press hold the body.
     ///
     /// # Errors
-    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of
+    /// `LinearError::Length` for vectors that do not fit, `LinearError::Numerical` if the factorisation of K fails for lack of
     /// memory.
     pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
         let examination = Examination::of(self, [displacement, multiplier], &Bounding::OwnFactor)?;
@@ -305,7 +305,7 @@ impl ContactProblem {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Shape`] if the sizes differ, [`Error::IndexOutOfRange`] for a row beyond the last; [`Error::NotConvex`]
+    /// `LinearError::Shape` if the sizes differ, `LinearError::IndexOutOfRange` for a row beyond the last; `LinearError::NotConvex`
     /// if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
     pub fn modes(
         &self,

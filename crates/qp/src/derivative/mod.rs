@@ -205,7 +205,7 @@ impl Derivatives {
     /// [`tangent`](Self::tangent) tells them apart.
     ///
     /// # Errors
-    /// [`LinearError::Length`] and [`LinearError::NotFinite`] for vectors that do not fit; [`LinearError::Numerical`]
+    /// `LinearError::Length` and `LinearError::NotFinite` for vectors that do not fit; `LinearError::Numerical`
     /// and [`Error::Interrupted`] of the solve.
     pub fn adjoint(&self, by_displacement: &[f64], by_multiplier: &[f64]) -> Result<Derivative<Adjoint>, Error> {
         let (problem, rows) = (&self.problem, self.given_rows());
@@ -368,7 +368,7 @@ impl Prepared {
     /// prepared or of [`with_gap`](Self::with_gap). If the answer brings no proof of its rows, they are proven here.
     ///
     /// # Errors
-    /// [`LinearError::Length`] for an answer that does not fit, and those of the proof.
+    /// `LinearError::Length` for an answer that does not fit, and those of the proof.
     pub fn derivatives(&self, solution: &Solution) -> Result<Derivatives, Error> {
         let (problem, settings) = (&self.problem, self.settings.started()?);
         let engine = match &self.bench {

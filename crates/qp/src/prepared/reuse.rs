@@ -67,7 +67,7 @@ impl Prepared {
     /// as [`Prepared::for_gaps`].
     ///
     /// # Errors
-    /// * [`LinearError::Setting`] for a setting outside its range,
+    /// * `LinearError::Setting` for a setting outside its range,
     /// * [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`,
     /// * [`Error::OutOfTime`], [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::NoRoom`] if there is not enough
     ///   time or memory left.
@@ -145,7 +145,7 @@ impl Prepared {
     /// The same problem under another load, length n, in N, along the positive axes; a factor is swept once for it.
     ///
     /// # Errors
-    /// [`LinearError::Length`] and [`LinearError::NotFinite`] for a load that does not fit.
+    /// `LinearError::Length` and `LinearError::NotFinite` for a load that does not fit.
     pub fn with_load(&self, load: Vec<f64>) -> Result<Self, Error> {
         let problem = self.problem.with_load(load.clone())?;
         let load = Arc::new(Load::new(load));
@@ -157,7 +157,7 @@ impl Prepared {
     /// solve is given its gaps: these are for [`derivatives`](Self::derivatives).
     ///
     /// # Errors
-    /// [`LinearError::Length`] and [`LinearError::NotFinite`] for gaps that do not fit.
+    /// `LinearError::Length` and `LinearError::NotFinite` for gaps that do not fit.
     pub fn with_gap(&self, gap: Vec<f64>) -> Result<Self, Error> {
         Ok(Prepared { problem: self.problem.with_gap(gap)?, ..self.clone() })
     }
@@ -170,7 +170,7 @@ impl Prepared {
     /// Solves with these gaps, one per contact row, in m; negative if the obstacle starts inside the body.
     ///
     /// # Errors
-    /// As [`solve`](crate::solve()); [`LinearError::Length`] and [`LinearError::NotFinite`] for gaps or a start that do
+    /// As [`solve`](crate::solve()); `LinearError::Length` and `LinearError::NotFinite` for gaps or a start that do
     /// not fit or, with a factor, gaps that are infinite in other rows than those of the problem that was prepared.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let (problem, settings) = (self.problem_at(gap)?, self.settings.started()?);
