@@ -233,8 +233,8 @@ impl ContactProblem {
     /// definite or the rows that press hold the body.
     ///
     /// # Errors
-    /// `LinearError::Length` for vectors that do not fit, `LinearError::Numerical` if the factorisation of K fails for lack of
-    /// memory.
+    /// `LinearError::Length` for vectors that do not fit, `LinearError::Numerical` if the factorisation of K fails for
+    /// lack of memory.
     pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
         let examination = Examination::of(self, [displacement, multiplier], &Bounding::OwnFactor)?;
         Ok(examination.certificate()?.certificate)
@@ -305,8 +305,9 @@ impl ContactProblem {
     /// ```
     ///
     /// # Errors
-    /// `LinearError::Shape` if the sizes differ, `LinearError::IndexOutOfRange` for a row beyond the last; `LinearError::NotConvex`
-    /// if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the factorisation.
+    /// `LinearError::Shape` if the sizes differ, `LinearError::IndexOutOfRange` for a row beyond the last;
+    /// `LinearError::NotConvex` if both matrices vanish on a common vector; [`Error::Interrupted`]; those of the
+    /// factorisation.
     pub fn modes(
         &self,
         mass: &SymmetricMatrix,
