@@ -87,6 +87,11 @@ pub(super) struct Direct {
     pub starts_near: bool,
 }
 
+/// Returns `true` if the direct path starts from a few cycles, by the estimates that take no order of the stiffness.
+pub(crate) fn starts_near(problem: &ContactProblem) -> bool {
+    Direct::of(problem, Smooth::of(problem), BodyFactor::by_size(problem)).starts_near
+}
+
 impl Direct {
     pub fn of(problem: &ContactProblem, smooth: Smooth, body: BodyFactor) -> Self {
         let dofs = problem.dofs() as f64;

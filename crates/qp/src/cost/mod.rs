@@ -10,7 +10,7 @@ use super::problem::ContactProblem;
 use crate::error::Error;
 use crate::linear::watch::Watch;
 use direct::{BodyFactor, Direct};
-pub(crate) use direct::{NEAR_CYCLES, is_everywhere};
+pub(crate) use direct::{NEAR_CYCLES, is_everywhere, starts_near};
 pub(crate) use smooth::Smooth;
 
 /// Rows that are bounds only after reflections take more cycles by this factor.

@@ -10,7 +10,7 @@ use super::attempt::{
 use super::choice::Choice;
 use super::history::{Answered, Ended, From, History, Means, Record, Step};
 use super::nearly_linear;
-use crate::cost::{Estimate, is_everywhere};
+use crate::cost::{Estimate, is_everywhere, starts_near};
 use crate::error::Error;
 use crate::linear::Analysis;
 use crate::method::interior_point::InteriorPoint;
@@ -101,7 +101,7 @@ impl Ladder {
             Method::Mprgp => ladder.add(ladder.attempt(Means::Multigrid, REQUESTED)),
             method => {
                 let is_everywhere = !is_whole && method == Method::ActiveSet && is_everywhere(problem);
-                let start = from(is_everywhere && Estimate::of(problem).starts_near);
+                let start = from(is_everywhere && starts_near(problem));
                 ladder.with_factor(Attempt { start, ..ladder.by_factor(method, REQUESTED) });
             }
         }
