@@ -60,19 +60,12 @@ impl fmt::Display for Activity {
 /// between factorisations, iterations and steps, and ends with the best answer so far.
 ///
 /// ```
-/// use signorini_linear::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, Watch, solve};
+/// use signorini_linear::watch::Watch;
 ///
-/// // A spring of stiffness 1, pushed with force 3 against a wall at distance 1.
-/// let one = || SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]);
-/// let problem = ContactProblem::new(SymmetricMatrix::from_lower(one()?)?, vec![3.0], one()?, vec![1.0])?;
-///
-/// let settings = Settings::default();
-/// let watch = settings.watch.clone();
+/// let watch = Watch::default();
+/// let of_work = watch.clone();
 /// std::thread::spawn(move || watch.stop()).join().unwrap();
-/// assert!(matches!(solve(&problem, &settings), Err(Error::Interrupted)));
-/// // Under a new watch the same settings solve it: the wall takes 3 - 1 x 1.
-/// assert_eq!(solve(&problem, &settings.watched(&Watch::default()))?.multiplier, [-2.0]);
-/// # Ok::<(), Error>(())
+/// assert!(of_work.is_over() && of_work.is_noticed());
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
@@ -112,20 +105,15 @@ impl Watch {
     /// and before the work is done. [`Watch::activity`] is then the one that begins.
     ///
     /// ```
-    /// use signorini_linear::{Error, Settings, Watch, solve};
-    /// # use signorini_linear::{ContactProblem, SparseMatrix, SymmetricMatrix};
-    /// # let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)])?)?;
-    /// # let contact = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)])?;
-    /// # let problem = ContactProblem::new(stiffness, vec![3.0], contact, vec![1.0])?;
+    /// use signorini_linear::watch::Watch;
     ///
-    /// let mut settings = Settings::default();
-    /// settings.watch = Watch::observed(|watch| {
+    /// let watch = Watch::observed(|watch| {
     ///     if watch.activity().step == "ordering" {
     ///         watch.stop();
     ///     }
     /// });
-    /// assert!(matches!(solve(&problem, &settings), Err(Error::Interrupted)));
-    /// # Ok::<(), Error>(())
+    /// watch.step("ordering", 0);
+    /// assert!(watch.is_stopped());
     /// ```
     pub fn observed(observer: impl Fn(&Watch) + Send + Sync + 'static) -> Watch {
         let observer = Observer(Some(Box::new(observer)));
