@@ -112,17 +112,16 @@ const FOREIGN: [(&str, &[&str]); 6] = [
         "faer",
         &[
             "crates/linear/src/cholesky.rs",
-            "crates/linear/src/dense_factor.rs",
-            "crates/linear/src/eigen",
+            "crates/linear/src/eigen.rs",
             "crates/linear/src/factor.rs",
-            "crates/linear/src/of_faer.rs",
+            "crates/linear/src/foreign.rs",
             "crates/linear/src/ordering.rs",
             "crates/linear/src/selected_inverse.rs",
         ],
     ),
     ("feral_metis", &["crates/linear/src/ordering.rs"]),
     ("nalgebra", &[]),
-    ("nalgebra_sparse", &["crates/linear/src/of_nalgebra.rs"]),
+    ("nalgebra_sparse", &["crates/linear/src/foreign.rs"]),
     ("rayon", &["crates/linear/src/threads.rs", "crates/mechanics/src/fem/threads.rs"]),
 ];
 

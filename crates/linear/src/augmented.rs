@@ -45,32 +45,22 @@ impl Squares {
 
     /// Adds B' diag(weight(i)) B to the `values` of the entries of `matrix`.
     fn add_to(&self, values: &mut [f64], matrix: &SparseMatrix, weight: impl Fn(usize) -> f64) {
+        let weighted = |rows: usize| (0..rows).map(|row| (row, weight(row))).filter(|entry| entry.1 != 0.0);
         match self {
             Squares::Products { row_starts, products } => {
-                for (row, places) in row_starts.windows(2).enumerate() {
-                    let factor = weight(row);
-                    if factor != 0.0 {
-                        for &(entry, product) in &products[places[0]..places[1]] {
-                            values[entry] += factor * product;
-                        }
-                    }
+                for (row, factor) in weighted(row_starts.len() - 1) {
+                    let of_row = &products[row_starts[row]..row_starts[row + 1]];
+                    of_row.iter().for_each(|&(entry, product)| values[entry] += factor * product);
                 }
             }
             Squares::Rows(by_row) => {
                 let mut row_values = vec![0.0; by_row.rows()];
-                for row in 0..by_row.columns() {
-                    let factor = weight(row);
-                    if factor == 0.0 {
-                        continue;
-                    }
+                for (row, factor) in weighted(by_row.columns()) {
                     by_row.column(row).for_each(|(dof, b)| row_values[dof] = b);
                     for (dof, b) in by_row.column(row) {
                         let below = matrix.column_rows(dof);
-                        let column = &mut values[matrix.column_starts()[dof]..][..below.len()];
-                        column
-                            .iter_mut()
-                            .zip(below)
-                            .for_each(|(value, &i)| *value += factor * b * row_values[i as usize]);
+                        let column = values[matrix.column_starts()[dof]..].iter_mut().zip(below);
+                        column.for_each(|(value, &i)| *value += factor * b * row_values[i as usize]);
                     }
                     by_row.column(row).for_each(|(dof, _)| row_values[dof] = 0.0);
                 }

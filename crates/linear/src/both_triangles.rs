@@ -27,20 +27,9 @@ pub struct SymmetricLines {
 }
 
 impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
-    /// The lower triangle.
-    pub fn lower(self) -> Result<SparseMatrix, Error> {
-        Ok(self.walked(Taken::Lower)?.0)
-    }
-
-    /// The transposed upper triangle; `None` if a negligible entry is on one side of the diagonal only.
-    pub fn upper(self) -> Result<Option<SparseMatrix>, Error> {
-        let (upper, is_one_sided) = self.walked(Taken::Upper)?;
-        Ok((!is_one_sided).then_some(upper))
-    }
-
-    /// The entries on and below the diagonal, of the values of the triangle `taken`, and `true` if an entry has no
-    /// mirror image.
-    fn walked(self, taken: Taken) -> Result<(SparseMatrix, bool), Error> {
+    /// The entries on and below the diagonal, of the values of the triangle `taken`, and `true` if a negligible entry
+    /// has no mirror image.
+    pub fn walked(self, taken: Taken) -> Result<(SparseMatrix, bool), Error> {
         let mut lines = SymmetricLines::new(self.starts.len().saturating_sub(1), self.values.len(), taken)?;
         self.each(|_, rows, values| lines.take(rows, values))?;
         lines.matched()

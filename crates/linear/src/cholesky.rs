@@ -8,9 +8,9 @@ use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
 
+use super::columns::{group_starts, places};
 use super::factor::{self, Factor, FactorError, Permuted, call};
-use super::grouped::group_starts;
-use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dense_factor, dot, ldexp, ordering};
+use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
 use crate::error::Error;
 
 /// From this share of all entries on, a lower triangle is dense: no order saves anything.
@@ -33,16 +33,6 @@ enum Structure {
     Sparse(Arc<fc::SymbolicCholesky<usize>>),
     /// A whole triangle, with the columns in the order of elimination.
     Dense(Arc<Vec<usize>>),
-}
-
-impl Structure {
-    /// The columns in the order of elimination.
-    fn order(&self) -> &[usize] {
-        match self {
-            Structure::Sparse(symbolic) => symbolic.perm().map_or(&[], |perm| perm.arrays().0),
-            Structure::Dense(order) => order,
-        }
-    }
 }
 
 /// The factor L of a symmetric positive definite matrix K = L L', sparse, its unknowns in an order with little fill-in.
@@ -83,8 +73,7 @@ impl Analysis {
     pub fn sparse_with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
         let lower = matrix.lower();
         let order = call(|| ordering::order(lower, last))?;
-        let mut place = vec![0; order.len()];
-        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let place = places(&order);
         let params = fc::CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
@@ -165,9 +154,7 @@ impl Analysis {
 
     /// The dense factor of the matrix with this lower triangle.
     fn factorised_densely(&self, order: &[usize], lower: &SparseMatrix) -> Result<Cholesky, FactorError> {
-        let dim = order.len();
-        let mut place = vec![0; dim];
-        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let (dim, place) = (order.len(), places(order));
         let is_in_order = place.is_sorted();
         let mut values = factor::zeros(dim * dim)?;
         for (column, &to) in place.iter().enumerate() {
@@ -181,14 +168,14 @@ impl Analysis {
                 values[to.min(row) * dim + to.max(row)] = value;
             }
         }
-        let triangle = dense_factor::factorise(dim, values, self.threads)?;
+        let triangle = factor::factorised_densely(dim, values, self.threads)?;
         let smallest_pivot = factor::smallest_pivot((0..dim).map(|column| triangle.diagonal(column)))?;
         Ok(Cholesky { analysis: self.clone(), values: triangle.values().clone(), smallest_pivot })
     }
 
     fn factorised(&self, permuted: Permuted) -> Result<Cholesky, FactorError> {
         let (values, smallest_pivot) = match self.supernodes() {
-            Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, dense_factor::par(self.threads)))?,
+            Some(supernodes) => call(|| factor::factorise(supernodes, &permuted, factor::par(self.threads)))?,
             // Only a matrix without columns has no supernodes.
             None => (Vec::new(), f64::INFINITY),
         };
@@ -198,9 +185,7 @@ impl Analysis {
     /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
     /// makes them.
     pub(crate) fn permuted(&self, lower: &SparseMatrix, entry: impl Fn(usize, usize, f64) -> f64) -> Permuted {
-        let order = self.structure.order();
-        let mut place = vec![0; order.len()];
-        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let place = places(self.order());
         let first = |(row, column, _): (usize, usize, f64)| place[column].min(place[row]);
         let starts = group_starts(lower.columns(), lower.triplets().map(first));
         let mut next = starts.clone();
@@ -218,7 +203,10 @@ impl Analysis {
 
     /// The columns of the matrix in the order in which the analysis eliminates them.
     pub fn order(&self) -> &[usize] {
-        self.structure.order()
+        match &self.structure {
+            Structure::Sparse(symbolic) => symbolic.perm().map_or(&[], |perm| perm.arrays().0),
+            Structure::Dense(order) => order,
+        }
     }
 
     /// The block columns; `None` for a whole triangle, and for a matrix without columns.
@@ -297,15 +285,15 @@ impl Cholesky {
     /// L^-1 X of columns X, one after the other, both in the order of elimination.
     pub fn forward_all(&self, columns: Vec<f64>) -> Vec<f64> {
         match self.triangle() {
-            Some(triangle) => dense_factor::forward_all(&triangle, columns),
-            None => self.in_columns().map_or_else(Vec::new, |own| factor::forward(own, columns)),
+            Some(triangle) => factor::forward_all(&triangle, columns),
+            None => self.in_columns().map_or_else(Vec::new, |own| factor::swept(own, columns, false)),
         }
     }
 
     /// L'^-1 X of columns X, one after the other, both in the order of elimination.
     pub fn backward_all(&self, mut columns: Vec<f64>) -> Vec<f64> {
         let Some(triangle) = self.triangle() else {
-            return self.in_columns().map_or_else(Vec::new, |own| factor::backward(own, columns));
+            return self.in_columns().map_or_else(Vec::new, |own| factor::swept(own, columns, true));
         };
         columns.chunks_mut(self.dim()).for_each(|column| triangle.sweep(column, true));
         columns
@@ -329,14 +317,13 @@ impl Cholesky {
         Some(Factor::new(self.supernodes()?, &self.values))
     }
 
-    /// The structure of the factor, in block columns.
     pub(crate) fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
         self.analysis.supernodes()
     }
 
     /// The values of block column `node`: the rows of its own columns, then those below.
     pub(super) fn block_column(&self, node: usize) -> faer::Mat<f64> {
-        self.in_columns().map_or_else(faer::Mat::new, |own| factor::block_column(own, node))
+        self.in_columns().map_or_else(faer::Mat::new, |own| own.supernode(node).val().to_owned())
     }
 
     /// Number of multiplications of its factorisation, counted as if each column were eliminated by itself.

@@ -13,8 +13,7 @@
 use std::sync::OnceLock;
 
 use super::dense::{subtract, wide_dot};
-use super::dense_factor;
-use super::{Cholesky, LowerTriangle, SparseMatrix, dot};
+use super::{Cholesky, LowerTriangle, SparseMatrix, dot, factor};
 
 /// A held row that keeps less than this share of its compliance once the rows before it are held leaves too few digits.
 const DEPENDENT: f64 = 1e-8;
@@ -105,7 +104,7 @@ impl Compliance {
             self.by_row.with_rows(row, column, |entry, value| *entry = value);
         }
         match &self.block {
-            Some(block) => dense_factor::forward_all(block, columns),
+            Some(block) => factor::forward_all(block, columns),
             None => columns.chunks(size.max(1)).flat_map(|column| self.cholesky.forward(column)).collect(),
         }
     }
@@ -113,7 +112,7 @@ impl Compliance {
     fn all(&self) -> &[Vec<f64>; 2] {
         self.all.get_or_init(|| {
             let columns = self.columns(&(0..self.by_row.columns()).collect::<Vec<_>>());
-            let products = dense_factor::products(self.by_row.rows(), &columns);
+            let products = factor::products(self.by_row.rows(), &columns);
             [columns, products]
         })
     }
@@ -153,7 +152,7 @@ impl Compliance {
         }
         let in_time = |some| if is_over() { None } else { Some(self.columns(some)) };
         let columns: Vec<Vec<f64>> = rows.chunks(AT_ONCE).map(in_time).collect::<Option<_>>()?;
-        Some(dense_factor::products(self.by_row.rows(), &columns.concat()))
+        Some(factor::products(self.by_row.rows(), &columns.concat()))
     }
 
     /// W'W (m x m), column by column, in the order of the rows.
@@ -165,7 +164,7 @@ impl Compliance {
     /// These rows, increasing, held; `None` if some follow from others to a good part of the digits.
     pub fn held(&self, rows: Vec<usize>) -> Option<HeldRows<'_>> {
         let products = self.products(&rows, || false)?;
-        let triangle = dense_factor::factorise(rows.len(), products, 1).ok()?;
+        let triangle = factor::factorised_densely(rows.len(), products, 1).ok()?;
         let is_kept =
             |(place, &row): (usize, &usize)| triangle.diagonal(place).powi(2) > DEPENDENT * self.product(row, row);
         rows.iter().enumerate().all(is_kept).then_some(HeldRows { compliance: self, rows, triangle })

@@ -84,9 +84,7 @@ pub fn check_vector(
     is_allowed: fn(f64) -> bool,
     allowed: &'static str,
 ) -> Result<(), Error> {
-    if values.len() != expected {
-        return Err(Error::Length { name, found: values.len(), expected, of });
-    }
+    Error::check_length(name, values.len(), expected, of)?;
     match values.iter().enumerate().find(|entry| !is_allowed(*entry.1)) {
         Some((index, &value)) => Err(Error::NotFinite { name, at: format!("entry {index}"), value, allowed }),
         None => Ok(()),

@@ -1,6 +1,11 @@
 //! The errors of faulty data, of files and of steps of libraries: each states what is wrong, where, which value, and
-//! what is allowed.
+//! what is allowed. And the one place that catches panics of libraries: only calls that solve and factorise are wrapped
+//! in it.
+//!
+//! The code of this crate does not panic on any input. For a library nobody can promise that, and a panic that crosses
+//! it ends the caller's program too.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 /// Faulty data, files and failed steps. Each has a [`class`](Self::class), and one sentence for a reader.
@@ -132,9 +137,6 @@ pub enum Error {
 
 impl Error {
     /// Refuses a vector, named in words, that has not as many entries as there are `of`.
-    ///
-    /// # Errors
-    /// [`Error::Length`].
     pub fn check_length(name: &'static str, found: usize, expected: usize, of: &'static str) -> Result<(), Error> {
         if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
     }
@@ -155,5 +157,32 @@ impl Error {
             Error::FileSyntax { .. } | Error::FileBytes { .. } => bad_input("file-syntax"),
             Error::File { .. } => bad_input("file"),
         }
+    }
+}
+
+/// Runs `work`, a call of a library that changes nothing which outlives it; a panic is returned as its message.
+#[expect(clippy::disallowed_methods, reason = "the one place")]
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    // Data that `work` has left half done are dropped with it.
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        let literal = panic.downcast_ref::<&str>().copied();
+        let message = literal.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+        format!("it panicked: {}", message.unwrap_or("without a message"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::guarded;
+
+    #[test]
+    fn a_panic_of_a_library_is_an_error_with_its_message() {
+        assert_eq!(guarded(|| 1), Ok(1));
+        let formatted: Result<(), String> = guarded(|| panic!("{} of {}", 1, 2));
+        assert_eq!(formatted, Err("it panicked: 1 of 2".into()));
+        let odd: Result<(), String> = guarded(|| std::panic::panic_any(7));
+        assert_eq!(odd, Err("it panicked: without a message".into()));
+        let beyond: Result<usize, String> = guarded(|| [1, 2, 3].get(7).copied().unwrap());
+        assert!(beyond.unwrap_err().contains("None"));
     }
 }

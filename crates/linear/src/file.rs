@@ -37,14 +37,6 @@ pub(crate) struct Capped {
 }
 
 impl Capped {
-    fn open(path: &Path, most: u64) -> io::Result<Self> {
-        let file = open(path)?;
-        let about = file.metadata()?;
-        let (length, most) = if about.is_file() { (about.len(), most) } else { (0, most.min(MOST_OF_STREAM)) };
-        let file = Capped { file, length, most, left: most };
-        if length > most { Err(file.too_long()) } else { Ok(file) }
-    }
-
     fn too_long(&self) -> io::Error {
         io::Error::new(io::ErrorKind::FileTooLarge, format!("it is longer than {} MB", self.most >> 20))
     }
@@ -60,7 +52,13 @@ impl Read for Capped {
 
 /// A file to be read piece by piece, at most `most` bytes.
 pub(crate) fn open_capped(path: &Path, most: u64) -> Result<Capped, Error> {
-    Capped::open(path, most).map_err(unread(path))
+    let opened = open(path).and_then(|file| {
+        let about = file.metadata()?;
+        let (length, most) = if about.is_file() { (about.len(), most) } else { (0, most.min(MOST_OF_STREAM)) };
+        let file = Capped { file, length, most, left: most };
+        if length > most { Err(file.too_long()) } else { Ok(file) }
+    });
+    opened.map_err(unread(path))
 }
 
 fn open(path: &Path) -> io::Result<File> {

@@ -25,27 +25,20 @@ mod columns;
 mod compliance;
 mod conjugate_gradients;
 mod dense;
-mod dense_factor;
 mod dependence;
 pub mod eigen;
 pub mod equations;
 mod error;
 mod factor;
 pub mod file;
-mod forest;
-mod grouped;
+#[cfg(any(feature = "faer", feature = "nalgebra"))]
+mod foreign;
 pub mod matrix_market;
 pub mod memory;
 pub mod multigrid;
 mod null_space;
-#[cfg(feature = "faer")]
-mod of_faer;
-#[cfg(feature = "nalgebra")]
-mod of_nalgebra;
 mod ordering;
 mod orthogonal;
-pub mod panics;
-mod power_iteration;
 mod power_of_two;
 mod quotient;
 mod real;
@@ -66,17 +59,16 @@ pub use dense::{
     LowerTriangle, UpperTriangle, across, check_finite, check_vector, dot, extend, largest, norm, subtract, take_out,
     turned,
 };
-pub use dense_factor::par;
 pub use dependence::Dependence;
-pub use error::Error;
-pub use factor::{FactorError, call, if_definite};
-pub use forest::Forest;
+pub use error::{Error, guarded};
+pub use factor::{FactorError, call, if_definite, par};
 pub use multigrid::Width;
 pub use null_space::NullSpace;
 pub use ordering::Fill;
 pub use orthogonal::{inverse_lengths, inverse_lengths_by_products};
-pub use power_iteration::generic;
 pub use power_of_two::{Equilibration, exponent, ldexp};
+pub use quotient::Forest;
+pub use real::generic;
 pub use spare::Spare;
 pub use symmetric::SymmetricMatrix;
 pub use threads::{in_order, threads_of_machine};
@@ -84,8 +76,7 @@ pub use twice::{Accumulator, ExactSum, Twice};
 
 use std::sync::Arc;
 
-use columns::{Columns, Taken};
-use grouped::group_starts;
+use columns::{Columns, Taken, group_starts};
 use real::for_processor;
 
 /// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.

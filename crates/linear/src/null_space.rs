@@ -1,11 +1,11 @@
 //! The null vectors of a positive semidefinite matrix, and what distinguishes a positive definite matrix from a
 //! singular one that passed its Cholesky factorisation by rounding.
 
-use super::power_iteration::{generic, power_iteration};
+use super::real::{generic, power_iteration};
 use super::twice::Sum;
 use super::{
     Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot,
-    largest, norm, take_out,
+    if_definite, largest, norm, take_out,
 };
 use crate::watch::Watch;
 
@@ -292,10 +292,7 @@ impl SymmetricMatrix {
 impl AugmentedMatrix {
     /// The factor of `K + shift I`; `None` if that is not positive definite.
     fn shifted(&self, shift: f64) -> Result<Option<Cholesky>, FactorError> {
-        match self.factor(self.matrix(|_| 0.0, shift)) {
-            Err(FactorError::NotPositiveDefinite) => Ok(None),
-            factor => factor.map(Some),
-        }
+        if_definite(self.factor(self.matrix(|_| 0.0, shift)))
     }
 }
 

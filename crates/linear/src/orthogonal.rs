@@ -2,7 +2,7 @@
 //! the digits.
 
 use super::dense::wide_dot;
-use super::{UpperTriangle, dense_factor, dot, norm, take_out};
+use super::{UpperTriangle, dot, factor, norm, take_out};
 
 /// The component of a vector orthogonal to the others is rounding if it is below this share of the terms that cancel.
 const CANCELLED_VECTOR: f64 = 64.0 * f64::EPSILON;
@@ -42,10 +42,10 @@ pub fn inverse_lengths_by_products(count: usize, mut products: Vec<f64>) -> Opti
     for (column, size) in products.chunks_mut(count.max(1)).zip(&sizes) {
         column.iter_mut().zip(&sizes).for_each(|(product, other)| *product /= size * other);
     }
-    let triangle = dense_factor::factorise(count, products, 1).ok()?;
+    let triangle = factor::factorised_densely(count, products, 1).ok()?;
     let mut units = vec![0.0; count * count];
     (0..count).for_each(|place| units[place * count + place] = 1.0);
-    let inverse = dense_factor::forward_all(&triangle, units);
+    let inverse = factor::forward_all(&triangle, units);
     let lengths: Vec<f64> = inverse.chunks(count.max(1)).map(|column| wide_dot(column, column).sqrt()).collect();
     let is_clear = lengths.iter().all(|&length| length <= CLEAR);
     is_clear.then(|| lengths.iter().zip(&sizes).map(|(length, size)| length / size).collect())
@@ -147,7 +147,7 @@ mod tests {
     fn products_give_the_lengths_of_clearly_independent_columns_and_of_no_others() {
         let columns =
             |off: f64| vec![vec![2.0, 1.0, 0.0, 0.5], vec![2.0, 1.0 + off, 0.0, 0.5], vec![0.0, 1.0, 4.0, 0.0]];
-        let by_products = |off: f64| inverse_lengths_by_products(3, dense_factor::products(4, &columns(off).concat()));
+        let by_products = |off: f64| inverse_lengths_by_products(3, factor::products(4, &columns(off).concat()));
         for off in [1.0, 0.1] {
             let exact = inverse_lengths(columns(off), || false).unwrap();
             for (found, exact) in by_products(off).unwrap().iter().zip(exact) {

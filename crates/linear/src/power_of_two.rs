@@ -72,7 +72,11 @@ impl Equilibration {
     /// The equilibration of a matrix with non-negative diagonal; a row with a zero diagonal gets the scale of the
     /// largest.
     pub fn of(matrix: &SymmetricMatrix) -> Self {
-        let diagonal = matrix.diagonal();
+        Self::of_diagonal(&matrix.diagonal())
+    }
+
+    /// The same from its diagonal entries, in order.
+    pub fn of_diagonal(diagonal: &[f64]) -> Self {
         let largest = exponent(diagonal.iter().copied().fold(0.0, f64::max));
         let level = |&value: &f64| if value > 0.0 { -(exponent(value) - largest).div_euclid(2) } else { 0 };
         Equilibration { diagonal: diagonal.iter().map(level).collect(), factor: -largest }

@@ -1,8 +1,11 @@
-//! The graph of a symmetric matrix with alike columns merged into one: for a stiffness, the graph of its nodes.
+//! What belongs together: alike columns of a symmetric matrix, with the graph of these groups, which for a stiffness is
+//! that of its nodes; the first of things that are alike; connected components.
+
+use std::collections::HashMap;
 
 use super::SparseMatrix;
-use super::grouped::grouped;
-use super::power_iteration::scramble;
+use super::columns::grouped;
+use super::real::scramble;
 
 /// No group has this number.
 const NONE: u32 = u32::MAX;
@@ -23,22 +26,13 @@ impl Quotient {
     pub fn of(lower: &SparseMatrix) -> Self {
         let (of_column, count) = groups(lower);
         let (member_starts, columns) = grouped(count, &of_column);
-        let mut quotient =
-            Quotient { of_column, member_starts, columns, starts: Vec::new(), all_neighbours: Vec::new() };
-        quotient.connect(lower);
-        quotient
-    }
-
-    /// Finds the neighbours: one member represents its group; neighbours above the diagonal come from their own
-    /// columns.
-    fn connect(&mut self, lower: &SparseMatrix) {
-        let count = self.count();
+        // One member represents its group; neighbours above the diagonal come from their own columns.
         let (mut below_starts, mut below) = (vec![0], Vec::new());
         let mut seen = vec![NONE; count];
         let mut starts = vec![0_u32; count + 1];
         for group in 0..count as u32 {
-            for (row, _) in lower.column(self.members(group)[0]) {
-                let neighbour = self.of_column[row];
+            for (row, _) in lower.column(columns[member_starts[group as usize]]) {
+                let neighbour = of_column[row];
                 if neighbour != group && seen[neighbour as usize] != group {
                     seen[neighbour as usize] = group;
                     below.push(neighbour);
@@ -50,9 +44,9 @@ impl Quotient {
         }
         (0..count).for_each(|group| starts[group + 1] += starts[group]);
         let mut place = starts.clone();
-        let mut neighbours = vec![0; 2 * below.len()];
+        let mut all_neighbours = vec![0; 2 * below.len()];
         let mut put = |at: u32, neighbour: u32| {
-            neighbours[place[at as usize] as usize] = neighbour;
+            all_neighbours[place[at as usize] as usize] = neighbour;
             place[at as usize] += 1;
         };
         for group in 0..count {
@@ -61,7 +55,7 @@ impl Quotient {
                 put(neighbour, group as u32);
             }
         }
-        (self.starts, self.all_neighbours) = (starts, neighbours);
+        Quotient { of_column, member_starts, columns, starts, all_neighbours }
     }
 
     pub fn count(&self) -> usize {
@@ -145,4 +139,84 @@ fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
         };
     }
     (of_column, count as usize)
+}
+
+/// Keys of what was met, each with the number of its first owner.
+#[derive(Default)]
+pub struct Firsts {
+    last: (Vec<u32>, u32),
+    known: HashMap<Vec<u32>, u32>,
+    /// Length of all keys.
+    pub size: usize,
+}
+
+impl Firsts {
+    /// The first number that came with this key; `number` if the key is new.
+    pub fn of(&mut self, key: &[u32], number: usize) -> u32 {
+        // Along a line of a lattice most have the key of the one before.
+        if self.last.0 != key || self.known.is_empty() {
+            let first = match self.known.get(key) {
+                Some(&first) => first,
+                None => {
+                    self.size += key.len();
+                    self.known.insert(key.to_vec(), number as u32);
+                    number as u32
+                }
+            };
+            self.last.0.clear();
+            self.last.0.extend_from_slice(key);
+            self.last.1 = first;
+        }
+        self.last.1
+    }
+}
+
+/// Connected components by union and find: each unknown points towards the first of its tree. For the crates of this
+/// workspace.
+#[derive(Clone)]
+pub struct Forest {
+    parent: Vec<usize>,
+    trees: usize,
+}
+
+impl Forest {
+    /// A tree for each unknown.
+    pub fn new(unknowns: usize) -> Self {
+        Forest { parent: (0..unknowns).collect(), trees: unknowns }
+    }
+
+    /// Returns `true` if nothing is left to join.
+    pub fn is_one_tree(&self) -> bool {
+        self.trees <= 1
+    }
+
+    fn root(&mut self, mut unknown: usize) -> usize {
+        while self.parent[unknown] != unknown {
+            self.parent[unknown] = self.parent[self.parent[unknown]];
+            unknown = self.parent[unknown];
+        }
+        unknown
+    }
+
+    /// Joins the trees of two unknowns into one.
+    pub fn join(&mut self, a: usize, b: usize) {
+        if self.parent[a] == self.parent[b] {
+            return;
+        }
+        let (a, b) = (self.root(a), self.root(b));
+        self.trees -= usize::from(a != b);
+        self.parent[a.max(b)] = a.min(b);
+    }
+
+    /// The number of the tree of each unknown, in the order of their first unknowns, and the number of trees.
+    pub fn into_trees(mut self) -> (Vec<usize>, usize) {
+        let (mut tree, mut count) = (Vec::with_capacity(self.parent.len()), 0);
+        for unknown in 0..self.parent.len() {
+            // A root comes before the rest of its tree.
+            let root = self.root(unknown);
+            tree.push(if root == unknown { count } else { tree[root] });
+            count += usize::from(root == unknown);
+        }
+        (tree, count)
+    }
 }

@@ -19,6 +19,7 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::{Accum, Mat, MatMut, Par};
 
 use super::Cholesky;
+use super::columns::places;
 use super::factor::{FactorError, call, zeros};
 
 /// Number of factorisations that take as many multiplications.
@@ -41,13 +42,11 @@ impl Cholesky {
     pub fn selected_inverse(&self) -> Option<SelectedInverse<'_>> {
         let nodes = self.supernodes()?;
         let values = zeros(self.entries()).ok()?;
-        let mut place = vec![0; self.dim()];
-        self.order().iter().enumerate().for_each(|(to, &column)| place[column] = to);
         let mut node_of = vec![0; self.dim()];
         for node in 0..nodes.n_supernodes() {
             node_of[nodes.supernode_begin()[node]..nodes.supernode_end()[node]].fill(node);
         }
-        let mut inverse = SelectedInverse { nodes, values, place, node_of };
+        let mut inverse = SelectedInverse { nodes, values, place: places(self.order()), node_of };
         call(|| {
             (0..nodes.n_supernodes()).rev().for_each(|node| inverse.find(node, self.block_column(node)));
             Ok::<(), FactorError>(())

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::columns::Columns;
+use super::columns::{Columns, Taken, places};
 use super::dense::wide_product;
 use super::dependence::merged;
 use super::threads::{SharedRows, in_order};
@@ -44,7 +44,7 @@ impl SymmetricMatrix {
     pub fn from_full(full: &SparseMatrix) -> Result<Self, Error> {
         square(full)?;
         let (starts, values, rows) = (full.column_starts(), full.values(), full.row_indices().collect::<Vec<_>>());
-        Ok(SymmetricMatrix { lower: Columns { starts, rows: &rows, values }.lower()? })
+        Ok(SymmetricMatrix { lower: Columns { starts, rows: &rows, values }.walked(Taken::Lower)?.0 })
     }
 
     /// From the values of both triangles, row by row, which must be alike as in [`SymmetricMatrix::from_full`]. Zeros
@@ -84,8 +84,8 @@ impl SymmetricMatrix {
     where
         I: Copy + TryInto<usize>,
     {
-        let lower = Columns { starts: column_starts, rows: row_indices, values }.lower()?;
-        Ok(SymmetricMatrix { lower })
+        let given = Columns { starts: column_starts, rows: row_indices, values };
+        Ok(SymmetricMatrix { lower: given.walked(Taken::Lower)?.0 })
     }
 
     /// The same from compressed rows: `row_starts` of length `dim + 1`, and for each entry its column and its value.
@@ -97,7 +97,8 @@ impl SymmetricMatrix {
         I: Copy + TryInto<usize>,
     {
         // Read as columns they are the transposed matrix; its upper triangle is the lower triangle of this matrix.
-        if let Some(lower) = (Columns { starts: row_starts, rows: column_indices, values }).upper()? {
+        let given = Columns { starts: row_starts, rows: column_indices, values };
+        if let (lower, false) = given.walked(Taken::Upper)? {
             return Ok(SymmetricMatrix { lower });
         }
         let indices = |given: &[I]| given.iter().filter_map(|&index| index.try_into().ok()).collect();
@@ -113,10 +114,8 @@ impl SymmetricMatrix {
     pub fn from_lower(lower: SparseMatrix) -> Result<Self, Error> {
         square(&lower)?;
         let above = lower.triplets().find(|&(row, column, _)| row < column);
-        match above {
-            Some((row, column, value)) => Err(Error::NotSymmetric { row, column, value, mirrored: 0.0 }),
-            None => Ok(SymmetricMatrix { lower }),
-        }
+        let Some((row, column, value)) = above else { return Ok(SymmetricMatrix { lower }) };
+        Err(Error::NotSymmetric { row, column, value, mirrored: 0.0 })
     }
 
     /// From a lower triangle that is known to be valid.
@@ -215,8 +214,7 @@ impl SymmetricMatrix {
 
     /// The matrix P A P' with its columns in another order: column `order[k]` of A becomes column k.
     pub fn ordered(&self, order: &[usize]) -> Result<Self, Error> {
-        let mut place = vec![0; order.len()];
-        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let place = places(order);
         let entries: Vec<_> = (self.lower.triplets())
             .map(|(i, j, value)| (place[i].max(place[j]), place[i].min(place[j]), value))
             .collect();
@@ -267,9 +265,8 @@ impl SymmetricMatrix {
 
     /// The diagonal, length `dim`, zero at places without an entry.
     pub fn diagonal(&self) -> Vec<f64> {
-        (0..self.dim())
-            .map(|column| self.lower.column(column).next().filter(|entry| entry.0 == column).map_or(0.0, |e| e.1))
-            .collect()
+        let first = |column: usize| self.lower.column(column).next().filter(|entry| entry.0 == column);
+        (0..self.dim()).map(|column| first(column).map_or(0.0, |entry| entry.1)).collect()
     }
 
     /// The product A x, length `dim`; `x` has length `dim`.
@@ -334,12 +331,12 @@ impl SymmetricMatrix {
                 sum += wide_product(values, &x[column + 1..], &entry);
                 let below = &mut y[column + 1 - first..];
                 below.iter_mut().zip(values).for_each(|(y, &value)| *y += entry(value) * at_column);
-            } else {
-                for (&row, &value) in rows.iter().zip(values) {
-                    let (row, value) = (row as usize, entry(value));
-                    sum += value * x[row];
-                    y[row - first] += value * at_column;
-                }
+                (rows, values) = (&[], &[]);
+            }
+            for (&row, &value) in rows.iter().zip(values) {
+                let (row, value) = (row as usize, entry(value));
+                sum += value * x[row];
+                y[row - first] += value * at_column;
             }
             y[column - first] += sum;
         }
@@ -349,8 +346,6 @@ impl SymmetricMatrix {
 
 fn square(matrix: &SparseMatrix) -> Result<(), Error> {
     let (rows, columns) = (matrix.rows(), matrix.columns());
-    if rows != columns {
-        return Err(Error::Shape { name: "stiffness", found: (rows, columns), expected: (rows, rows) });
-    }
-    Ok(())
+    let (name, found, expected) = ("stiffness", (rows, columns), (rows, rows));
+    if rows == columns { Ok(()) } else { Err(Error::Shape { name, found, expected }) }
 }

@@ -108,7 +108,7 @@ impl SharedRows<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panics::guarded;
+    use crate::error::guarded;
 
     /// A hundred rows of as many blocks as two threads need.
     const ROWS: usize = 100;

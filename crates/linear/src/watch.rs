@@ -199,14 +199,14 @@ impl Watch {
         let Some(deadline) = &self.deadline else { return true };
         let (left, needed) = (deadline.left(), self.needed(estimate));
         if needed >= left {
-            deadline.note(self.activity(), Some(Refused { needed, left }));
+            deadline.note(self.activity(), Some([needed, left]));
         }
         needed < left
     }
 
     /// The first work that the deadline cut short or left out, in words; `None` if nothing.
     pub fn cut(&self) -> Option<String> {
-        self.deadline.as_ref().and_then(Deadline::cut)
+        self.deadline.as_ref()?.cut.get().map(Cut::to_string)
     }
 
     /// Seconds that work needs on this machine: `estimate` times the pace of the work that was [timed](Self::timed)
@@ -271,16 +271,8 @@ struct Deadline {
 #[derive(Clone, Debug)]
 struct Cut {
     activity: Activity,
-    refused: Option<Refused>,
-}
-
-/// Seconds of work that did not begin.
-#[derive(Clone, Copy, Debug)]
-struct Refused {
-    /// Seconds that the work needed.
-    needed: f64,
-    /// Seconds that were left.
-    left: f64,
+    /// Seconds that work needed which did not begin, and seconds that were left.
+    refused: Option<[f64; 2]>,
 }
 
 impl Deadline {
@@ -298,9 +290,8 @@ impl Deadline {
     /// This deadline, sooner by `seconds`; what it cuts short, this deadline cut short.
     fn sooner(&self, seconds: f64) -> Self {
         let left = self.left();
-        let sooner =
-            Self::within(left - seconds.min(left)).map_or_else(|| self.clone(), |sooner| self.or_sooner(sooner));
-        Deadline { cut: self.cut.clone(), ..sooner }
+        let sooner = Self::within(left - seconds.min(left)).map(|sooner| self.or_sooner(sooner));
+        Deadline { cut: self.cut.clone(), ..sooner.unwrap_or_else(|| self.clone()) }
     }
 
     /// The deadline for finishing an answer: later by a share of the time.
@@ -314,13 +305,8 @@ impl Deadline {
     }
 
     /// Takes down that the deadline ended this activity, or `refused` to begin the next; only the first is kept.
-    fn note(&self, activity: Activity, refused: Option<Refused>) {
+    fn note(&self, activity: Activity, refused: Option<[f64; 2]>) {
         self.cut.get_or_init(|| Cut { activity, refused });
-    }
-
-    /// What the deadline cut short or left out first, in words; `None` if nothing.
-    fn cut(&self) -> Option<String> {
-        self.cut.get().map(Cut::to_string)
     }
 }
 
@@ -329,7 +315,7 @@ impl fmt::Display for Cut {
         let activity = self.activity.to_string();
         let step = if activity.is_empty() { String::new() } else { format!(" the step `{activity}`") };
         match self.refused {
-            Some(Refused { needed, left }) => {
+            Some([needed, left]) => {
                 let after = if step.is_empty() { "" } else { " after" };
                 let words = "the next step takes about";
                 write!(f, "the time does not suffice{after}{step}: {words} {needed:.1e} s, and {left:.1e} s are left")

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::firsts::Firsts;
 use crate::Spare;
-use crate::grouped::group_starts;
+use crate::columns::group_starts;
+use crate::quotient::Firsts;
 use crate::real::Real;
 use crate::threads::{SharedRows, add_parts};
 
@@ -16,9 +16,7 @@ const MOST_PARTS: usize = 8;
 /// Rows may be shared, where those of a lattice repeat: see [`BlockMatrix::shared_rows`].
 #[derive(Clone, Debug)]
 pub struct BlockMatrix<T> {
-    /// Rows of a block.
     pub height: usize,
-    /// Columns of a block.
     pub width: usize,
     pub columns: usize,
     /// Start of each block row in `indices`, length block rows + 1; if rows are shared, only the differences count.
@@ -108,11 +106,8 @@ impl<T: Real> BlockMatrix<T> {
     }
 
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.starts[..])
-            + size_of_val(&self.indices[..])
-            + size_of_val(&self.values[..])
-            + size_of_val(&self.shared_rows[..])
-            + size_of_val(&self.shifts[..])
+        let words = self.indices.len() + self.shared_rows.len() + self.shifts.len();
+        size_of_val(&self.starts[..]) + size_of_val(&self.values[..]) + words * size_of::<u32>()
     }
 
     /// The rows, to be shared out among threads.
@@ -122,16 +117,25 @@ impl<T: Real> BlockMatrix<T> {
 
     /// `y += sign A x`.
     pub fn add_product(&self, sign: f64, x: &[T], y: &mut [T], threads: usize) {
-        self.shared(threads).with_vectors(self.height, [y], |rows, [y]| {
-            with_block_size!(add_rows, (self.height, self.width), (self, x, rows, (T::of(sign), y)));
+        let sign = T::of(sign);
+        self.shared(threads).with_vectors(self.height, [y], |rows, [mut y]| {
+            let add = |sums: &[T]| taken(&mut y, sums).iter_mut().zip(sums).for_each(|(y, &sum)| *y += sign * sum);
+            with_block_size!(each_row_product, (self.height, self.width), (self, x, rows, add));
         });
     }
 
     /// `step = keep step + gain A r`, then `x += step`.
     pub fn step(&self, r: &[T], (keep, gain): (f64, f64), [step, x]: [&mut [T]; 2], threads: usize) {
-        let weights = [T::of(keep), T::of(gain)];
-        self.shared(threads).with_vectors(self.height, [step, x], |rows, vectors| {
-            with_block_size!(step_rows, (self.height, self.width), (self, r, rows, (weights, vectors)));
+        let (keep, gain) = (T::of(keep), T::of(gain));
+        self.shared(threads).with_vectors(self.height, [step, x], |rows, [mut step, mut x]| {
+            let put = |sums: &[T]| {
+                let nodes = taken(&mut step, sums).iter_mut().zip(taken(&mut x, sums));
+                nodes.zip(sums).for_each(|((step, x), &sum)| {
+                    *step = keep * *step + gain * sum;
+                    *x += *step;
+                });
+            };
+            with_block_size!(each_row_product, (self.height, self.width), (self, r, rows, put));
         });
     }
 
@@ -174,9 +178,8 @@ impl<T: Real> BlockMatrix<T> {
 
     /// The same matrix with each row stored by itself.
     pub fn unshared(&self) -> Self {
-        let mut whole = Self::empty(0, self.columns, (self.height, self.width));
+        let (mut whole, size) = (Self::empty(0, self.columns, (self.height, self.width)), self.block_size());
         whole.indices.reserve_exact(self.starts[self.rows()]);
-        let size = self.block_size();
         whole.values.reserve_exact(self.starts[self.rows()] * size);
         for row in 0..self.rows() {
             whole.indices.extend(self.columns_of(row));
@@ -265,17 +268,8 @@ impl<T: Real> BlockMatrix<T> {
         sum
     }
 
-    pub fn without_zeros(&self) -> Self {
-        self.filtered(|_, _, block| block.iter().any(|&value| value != T::default()))
-    }
-
-    /// The entries between rows in which `other` has entries.
-    pub fn within(&self, other: &Self) -> Self {
-        let is_filled = |row: usize| other.starts[row] < other.starts[row + 1];
-        self.filtered(|row, column, _| is_filled(row) && is_filled(column))
-    }
-
-    fn filtered(&self, is_kept: impl Fn(usize, usize, &[T]) -> bool) -> Self {
+    /// The blocks that `is_kept(row, column, values)` returns `true` for.
+    pub fn filtered(&self, is_kept: impl Fn(usize, usize, &[T]) -> bool) -> Self {
         let is_kept = &is_kept;
         let rows = (0..self.rows()).map(|row| {
             let blocks = self.row(row).filter(move |&(column, block)| is_kept(row, column, block));
@@ -339,63 +333,36 @@ impl<T: Real> BlockMatrix<T> {
     pub fn transposed_mul(&self, x: &[T], threads: usize, spare: &Spare<T>) -> Vec<T> {
         let (parts, mut y) = (self.shared(MOST_PARTS).runs(), spare.zeros(self.columns * self.width));
         let length = y.len();
-        add_parts(
-            &parts,
-            &mut y,
-            (threads, spare),
-            |_| length,
-            |rows, y| {
-                with_block_size!(add_transposed_product, (self.height, self.width), (self, x, rows, y));
-            },
-        );
+        let add = |rows: Range<usize>, y: &mut [T]| {
+            with_block_size!(add_transposed_product, (self.height, self.width), (self, x, rows, y));
+        };
+        add_parts(&parts, &mut y, (threads, spare), |_| length, add);
         y
     }
 }
 
-fn add_rows<T: Real, const H: usize, const W: usize>(
+/// The next entries of a vector, as many as there are `sums`.
+#[inline(always)]
+fn taken<'a, T>(rest: &mut &'a mut [T], sums: &[T]) -> &'a mut [T] {
+    rest.split_off_mut(..sums.len()).unwrap_or_default()
+}
+
+/// Calls `take` with some rows of `A x`, one after the other.
+#[inline(always)]
+fn each_row_product<T: Real, const H: usize, const W: usize>(
     matrix: &BlockMatrix<T>,
     x: &[T],
     rows: Range<usize>,
-    (sign, y): (T, &mut [T]),
+    mut take: impl FnMut(&[T]),
 ) {
-    if H == 0 {
-        let mut sums = vec![T::default(); matrix.height];
-        for (row, y) in rows.zip(y.chunks_exact_mut(matrix.height)) {
-            sums.fill(T::default());
-            matrix.add_row_product(row, x, &mut sums);
-            y.iter_mut().zip(&sums).for_each(|(y, &sum)| *y += sign * sum);
-        }
-        return;
+    if H > 0 {
+        return rows.for_each(|row| take(&matrix.row_product::<H, W>(row, x)));
     }
-    for (row, y) in rows.zip(y.as_chunks_mut::<H>().0) {
-        let sums = matrix.row_product::<H, W>(row, x);
-        (0..H).for_each(|i| y[i] += sign * sums[i]);
-    }
-}
-
-fn step_rows<T: Real, const H: usize, const W: usize>(
-    matrix: &BlockMatrix<T>,
-    r: &[T],
-    rows: Range<usize>,
-    ([keep, gain], [step, x]): ([T; 2], [&mut [T]; 2]),
-) {
-    let put = |step: &mut T, x: &mut T, sum: T| {
-        *step = keep * *step + gain * sum;
-        *x += *step;
-    };
-    if H == 0 {
-        let mut sums = vec![T::default(); matrix.height];
-        let nodes = step.chunks_exact_mut(matrix.height).zip(x.chunks_exact_mut(matrix.height));
-        for (row, (step, x)) in rows.zip(nodes) {
-            sums.fill(T::default());
-            matrix.add_row_product(row, r, &mut sums);
-            step.iter_mut().zip(x).zip(&sums).for_each(|((step, x), &sum)| put(step, x, sum));
-        }
-        return;
-    }
-    for (row, (step, x)) in rows.zip(step.as_chunks_mut::<H>().0.iter_mut().zip(x.as_chunks_mut::<H>().0)) {
-        let sums = matrix.row_product::<H, W>(row, r);
-        (0..H).for_each(|i| put(&mut step[i], &mut x[i], sums[i]));
+    let mut sums = vec![T::default(); matrix.height];
+    for row in rows {
+        sums.fill(T::default());
+        matrix.add_row_product(row, x, &mut sums);
+        take(&sums);
     }
 }
 

@@ -4,14 +4,11 @@
 use std::sync::Arc;
 
 use super::blocks::BlockMatrix;
-use super::coarsest::LOST_DIAGONAL;
-use super::inverse::invert;
 use super::operator::Operator;
-use super::patches::Patches;
+use super::patches::{Patches, invert};
 use super::repeated::RowByRow;
 use crate::Spare;
-use crate::power_iteration::power_iteration;
-use crate::real::Real;
+use crate::real::{Real, power_iteration};
 
 /// Degree of the polynomial, before and after the coarse correction.
 const DEGREE: usize = 3;
@@ -24,6 +21,10 @@ const SAFETY: f64 = 1.1;
 
 /// Factor by which a change of a matrix on few rows may increase the largest eigenvalue.
 const CHANGED: f64 = 1.15;
+
+/// A diagonal entry reduced below this many units in the last place has lost its digits, because the face reduces it on
+/// this level and on those above.
+pub(super) const LOST_DIAGONAL: f64 = 3000.0;
 
 /// A symmetric smoother of a fixed degree.
 ///
@@ -94,12 +95,11 @@ impl<T: Real> Chebyshev<T> {
             let (Some(own), Some(changed)) = (matrix.diagonal_place(node), change.diagonal_place(node)) else {
                 continue;
             };
-            for (work, (own, changed)) in work.iter_mut().zip(matrix.block(own).iter().zip(change.block(changed))) {
-                *work = own.double() - changed.double();
-            }
+            let (own, changed) = (matrix.block(own), change.block(changed));
+            let both = own.iter().zip(changed).map(|(own, changed)| own.double() - changed.double());
+            work.iter_mut().zip(both).for_each(|(work, left)| *work = left);
             for i in 0..size {
-                let whole = matrix.block(own)[i * size + i].double();
-                if work[i * size + i] <= LOST_DIAGONAL * T::EPSILON * whole {
+                if work[i * size + i] <= LOST_DIAGONAL * T::EPSILON * own[i * size + i].double() {
                     (0..size).for_each(|j| (work[i * size + j], work[j * size + i]) = (0.0, 0.0));
                 }
             }
@@ -112,7 +112,9 @@ impl<T: Real> Chebyshev<T> {
 
     /// The same smoother with the largest eigenvalue measured where `change` has changed the matrix, if that is larger.
     pub fn measured(mut self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>, threads: usize) -> Self {
-        let near = matrix.with_rows(change.filled_rows()).within(change).plus(-1.0, change);
+        let is_filled = |row: usize| change.starts[row] < change.starts[row + 1];
+        let near = matrix.with_rows(change.filled_rows());
+        let near = near.filtered(|row, column, _| is_filled(row) && is_filled(column)).plus(-1.0, change);
         self.largest = self.largest.max(SAFETY * self.largest_eigenvalue(&near, threads));
         self
     }

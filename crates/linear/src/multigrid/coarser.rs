@@ -3,8 +3,7 @@
 //! The weights of the bounds and the share of closed parents were chosen by measurement on obstacle problems:
 //! unweighted means cost a few cycles more, and every share from 0.5 to 0.99 works.
 
-use super::coarsest::lower_part;
-use super::hierarchy::{Hierarchy, Level};
+use super::hierarchy::{Hierarchy, Level, lower_part};
 use super::{Levels, Multigrid};
 use crate::real::Real;
 use crate::{Spare, SparseMatrix, SymmetricMatrix, ldexp};

@@ -2,13 +2,12 @@
 
 use std::ops::Range;
 
-use super::super::quotient::Quotient;
-use super::super::{SymmetricMatrix, ldexp};
 use super::blocks::BlockMatrix;
-use super::firsts::Firsts;
 use super::repeated::RowByRow;
+use crate::quotient::{Firsts, Quotient};
 use crate::real::Real;
 use crate::threads::in_order;
+use crate::{SymmetricMatrix, ldexp};
 
 /// Groups of dofs whose rows are made at a time.
 const GROUPS: usize = 2048;
@@ -56,25 +55,19 @@ impl Filling<'_> {
             for rows in in_order(parts, |(groups, cursors)| self.rows(groups, cursors, &first)) {
                 let mut start = 0;
                 for length in rows.lengths {
-                    let of_first = first[node] as usize;
-                    if of_first < node {
+                    let (of_first, end) = (first[node] as usize, start + length);
+                    node += 1;
+                    if of_first + 1 < node {
                         matrix.repeat(of_first);
-                        if let Some(exact) = &mut exact {
-                            exact.repeat(of_first);
-                        }
-                        node += 1;
+                        exact.iter_mut().for_each(|exact| exact.repeat(of_first));
                         continue;
                     }
-                    let end = start + length;
                     let (columns, values) = (&rows.columns[start..end], &rows.values[start * block..end * block]);
                     rounded.clear();
                     rounded.extend(values.iter().map(|&value| T::of(value)));
-                    fill_empty_diagonal_of(node as u32, columns, self.size, &mut rounded);
+                    fill_empty_diagonal_of(of_first as u32, columns, self.size, &mut rounded);
                     matrix.push(columns, &rounded);
-                    node += 1;
-                    if let Some(exact) = &mut exact {
-                        exact.push(columns, values);
-                    }
+                    exact.iter_mut().for_each(|exact| exact.push(columns, values));
                     exact = exact.filter(RowByRow::has_few_rows);
                     start = end;
                 }

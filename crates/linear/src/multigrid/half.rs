@@ -66,61 +66,44 @@ impl<T: Real> BlockMatrix<T> {
         whole.starts.resize(self.rows() + 1, whole.indices.len());
         Cow::Owned(whole)
     }
-}
 
-/// `y += sign A x` for a matrix of which half is stored.
-pub fn add_product<T: Real>(
-    matrix: &BlockMatrix<T>,
-    sign: f64,
-    x: &[T],
-    y: &mut [T],
-    threads: usize,
-    spare: &Spare<T>,
-) {
-    let (mut parts, sign) = (matrix.shared(MOST_PARTS).runs(), T::of(sign));
-    // What a part adds ends with its last row: that of all rows comes first.
-    parts.rotate_right(1);
-    let end = |rows: &Range<usize>| rows.end * matrix.height;
-    add_parts(&parts, y, (threads, spare), end, |rows, sums| match matrix.height {
-        1 => add_products::<T, 1>(matrix, x, sign, rows, sums),
-        2 => add_products::<T, 2>(matrix, x, sign, rows, sums),
-        _ => add_products::<T, 3>(matrix, x, sign, rows, sums),
-    });
-}
+    /// `y += sign A x` for a matrix of which half is stored.
+    pub fn add_by_half<const H: usize>(&self, sign: T, x: &[T], y: &mut [T], work: (usize, &Spare<T>)) {
+        let mut parts = self.shared(MOST_PARTS).runs();
+        // What a part adds ends with its last row: that of all rows comes first.
+        parts.rotate_right(1);
+        let end = |rows: &Range<usize>| rows.end * H;
+        add_parts(&parts, y, work, end, |rows, sums| self.add_rows_by_half::<H>(rows, sign, x, sums));
+    }
 
-/// Adds what the stored blocks of some rows, and those that mirror them, add to `sign A x`.
-fn add_products<T: Real, const H: usize>(
-    matrix: &BlockMatrix<T>,
-    x: &[T],
-    sign: T,
-    rows: Range<usize>,
-    sums: &mut [T],
-) {
-    let (x, sums) = (x.as_chunks::<H>().0, sums.as_chunks_mut::<H>().0);
-    for row in rows {
-        let places = matrix.starts[row]..matrix.starts[row + 1];
-        let blocks = matrix.values[places.start * H * H..places.end * H * H].as_chunks::<H>().0;
-        let (of_row, mut own) = (x[row].map(|x| sign * x), [T::default(); H]);
-        for (&column, block) in matrix.indices[places].iter().zip(blocks.chunks_exact(H)) {
-            let column = column as usize;
-            let of_column = x[column];
-            for i in 0..H {
-                for j in 0..H {
-                    own[i] += block[i][j] * of_column[j];
-                }
-            }
-            if column < row {
-                let mut mirrored = sums[column];
+    /// Adds what the stored blocks of some rows, and those that mirror them, add to `sign A x`.
+    fn add_rows_by_half<const H: usize>(&self, rows: Range<usize>, sign: T, x: &[T], sums: &mut [T]) {
+        let (x, sums) = (x.as_chunks::<H>().0, sums.as_chunks_mut::<H>().0);
+        for row in rows {
+            let places = self.starts[row]..self.starts[row + 1];
+            let blocks = self.values[places.start * H * H..places.end * H * H].as_chunks::<H>().0;
+            let (of_row, mut own) = (x[row].map(|x| sign * x), [T::default(); H]);
+            for (&column, block) in self.indices[places].iter().zip(blocks.chunks_exact(H)) {
+                let column = column as usize;
+                let of_column = x[column];
                 for i in 0..H {
                     for j in 0..H {
-                        mirrored[j] += block[i][j] * of_row[i];
+                        own[i] += block[i][j] * of_column[j];
                     }
                 }
-                sums[column] = mirrored;
+                if column < row {
+                    let mut mirrored = sums[column];
+                    for i in 0..H {
+                        for j in 0..H {
+                            mirrored[j] += block[i][j] * of_row[i];
+                        }
+                    }
+                    sums[column] = mirrored;
+                }
             }
-        }
-        for i in 0..H {
-            sums[row][i] += sign * own[i];
+            for i in 0..H {
+                sums[row][i] += sign * own[i];
+            }
         }
     }
 }
@@ -160,10 +143,10 @@ mod tests {
         whole.add_product(1.0, &x, &mut expected, 1);
         let product = |threads: usize| {
             let mut y = vec![0.0; x.len()];
-            add_product(&half, 1.0, &x, &mut y, threads, &Spare::default());
+            half.add_by_half::<H>(1.0, &x, &mut y, (threads, &Spare::default()));
             // What is subtracted from itself leaves the rounding of as many terms.
             let mut rest = y.clone();
-            add_product(&half, -1.0, &x, &mut rest, threads, &Spare::default());
+            half.add_by_half::<H>(-1.0, &x, &mut rest, (threads, &Spare::default()));
             assert!(rest.iter().all(|rest| rest.abs() <= 4.0 * f64::EPSILON * (9 * H) as f64));
             y
         };

@@ -1,20 +1,17 @@
-//! The levels of a hierarchy.
+//! The levels of a hierarchy; the coarsest is a Cholesky factor, shifted if nothing holds the body.
 
 use std::sync::Arc;
 
-use super::aggregation::{aggregate, strong_connections};
 use super::blocks::BlockMatrix;
-use super::chebyshev::Chebyshev;
-use super::coarsest::Coarsest;
+use super::chebyshev::{Chebyshev, LOST_DIAGONAL};
 use super::filling::fill_empty_diagonal;
-use super::lines::Lines;
-use super::near_null::NearNullSpace;
-use super::nodes::Nodes;
+use super::lines::{Lines, aggregate, strong_connections};
+use super::nodes::{NearNullSpace, Nodes};
 use super::operator::Operator;
 use super::patches::Patches;
 use super::prolongator::{Candidates, smoothed, smoothed_in_steps, tentative};
 use crate::real::Real;
-use crate::{FactorError, Spare, SymmetricMatrix, ldexp};
+use crate::{Analysis, Cholesky, Equilibration, FactorError, Spare, SparseMatrix, SymmetricMatrix, ldexp};
 
 /// Strength of connection on the finest level; it is halved from level to level, as in the source.
 const THRESHOLD: f64 = 0.02;
@@ -95,7 +92,6 @@ fn smoother_of_finest<T: Real>(matrix: &BlockMatrix<T>, threads: usize) -> Cheby
 }
 
 impl<T: Real> Hierarchy<T> {
-    /// Builds the levels of `matrix`.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, FactorError> {
         let hierarchy = Self::with_steps(matrix, near_null, threads, 1)?;
         if !hierarchy.is_slow() {
@@ -192,7 +188,6 @@ impl<T: Real> Hierarchy<T> {
         })
     }
 
-    /// The matrix of each level, the finest first.
     pub fn matrices(&self) -> impl Iterator<Item = &BlockMatrix<T>> {
         self.levels.iter().map(|level| &level.matrix).chain([&*self.coarsest_matrix])
     }
@@ -202,11 +197,105 @@ impl<T: Real> Hierarchy<T> {
         self.matrices().map(|matrix| matrix.rows() * matrix.height).collect()
     }
 
-    /// Bytes of memory that the levels hold.
     pub fn bytes(&self) -> usize {
         let of_level =
             |level: &Arc<Level<T>>| level.matrix.bytes() + level.prolongator.bytes() + level.smoother.inverse.bytes();
         let of_exact = self.exact.as_ref().map_or(0, BlockMatrix::bytes);
-        self.levels.iter().map(of_level).sum::<usize>() + of_exact + size_of::<f64>() * self.coarsest.entries()
+        self.levels.iter().map(of_level).sum::<usize>() + of_exact + size_of::<f64>() * self.coarsest.cholesky.entries()
     }
+}
+
+/// Pivots of the coarsest matrix below this many units in the last place are rounding: the body is not supported. The
+/// diagonal of the matrix is of order one.
+const LEAST_PIVOT: f64 = 1000.0;
+
+/// Shift that then holds the body, on a diagonal of order one: about as stiff as a coarse cell, as its contact will be.
+const SHIFT: f64 = 1e-3;
+
+#[derive(Debug)]
+pub(super) struct Coarsest {
+    analysis: Analysis,
+    cholesky: Cholesky,
+    equilibration: Equilibration,
+    /// The matrix was singular to the precision of its entries.
+    pub is_shifted: bool,
+}
+
+impl Coarsest {
+    /// Factorises a coarsest matrix, with its zeros if a face will change them. One that is singular to the precision
+    /// of its entries is held by a shift.
+    pub fn of<T: Real>(blocks: &BlockMatrix<T>, with_zeros: bool) -> Result<Self, FactorError> {
+        let matrix = lower_part(blocks, with_zeros);
+        let analysis = Analysis::of(&matrix)?;
+        Self::factorised::<T>(&matrix, analysis)
+    }
+
+    fn factorised<T: Real>(matrix: &SymmetricMatrix, analysis: Analysis) -> Result<Self, FactorError> {
+        let equilibration = Equilibration::of(matrix);
+        let (cholesky, is_shifted) = match analysis.factor_equilibrated(matrix, &equilibration) {
+            Ok(cholesky) if cholesky.smallest_pivot() > LEAST_PIVOT * T::EPSILON => (cholesky, false),
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => {
+                let shifted = equilibration.apply(matrix).shifted_factor(SHIFT)?;
+                (shifted.ok_or(FactorError::NotPositiveDefinite)?, true)
+            }
+            Err(error) => return Err(error),
+        };
+        Ok(Coarsest { analysis, cholesky, equilibration, is_shifted })
+    }
+
+    /// Factorises the coarsest `matrix`, of which this is the factor, minus `change`, the reduction by a face. Unknowns
+    /// with a diagonal entry that is only rounding do not move.
+    pub fn in_face<T: Real>(&self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Result<Self, FactorError> {
+        let mut rest = matrix.plus(-1.0, change);
+        let size = rest.height;
+        let diagonal = |blocks: &BlockMatrix<T>, unknown: usize| {
+            let place = blocks.diagonal_place(unknown / size);
+            place.map_or(0.0, |place| blocks.block(place)[unknown % size * (size + 1)].double())
+        };
+        let lost = |unknown: usize| diagonal(&rest, unknown) <= LOST_DIAGONAL * T::EPSILON * diagonal(matrix, unknown);
+        let is_gone: Vec<bool> = (0..rest.rows() * size).map(lost).collect();
+        for node in 0..rest.rows() {
+            for place in rest.starts[node]..rest.starts[node + 1] {
+                for entry in 0..size * size {
+                    let (row, column) =
+                        (node * size + entry / size, rest.indices[place] as usize * size + entry % size);
+                    if is_gone[row] || is_gone[column] {
+                        rest.values[place * size * size + entry] = T::of(f64::from(u8::from(row == column)));
+                    }
+                }
+            }
+        }
+        // Without the unknowns that are gone, another order has less fill.
+        match rest.indices.len() == matrix.indices.len() && !is_gone.contains(&true) {
+            true => Self::factorised::<T>(&lower_part(&rest, true), self.analysis.clone()),
+            false => Self::of(&rest, false),
+        }
+    }
+
+    pub fn solve(&self, force: &[f64]) -> Vec<f64> {
+        let scale = &self.equilibration.diagonal;
+        let scaled: Vec<f64> =
+            force.iter().zip(scale).map(|(&f, &d)| ldexp(f, d + self.equilibration.factor)).collect();
+        self.cholesky.solve(&scaled).iter().zip(scale).map(|(&u, &d)| ldexp(u, d)).collect()
+    }
+}
+
+/// The matrix of the blocks, one unknown after another; zeros beside the diagonal may be left out.
+pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>, with_zeros: bool) -> SymmetricMatrix {
+    let size = blocks.height;
+    let dim = blocks.rows() * size;
+    let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+    // The matrix is symmetric: row `node` of blocks is column `node`.
+    for column in 0..dim {
+        for (other, block) in blocks.row(column / size) {
+            for (row, value) in (other * size..).zip(&block[column % size * size..][..size]) {
+                if row >= column && (row == column || with_zeros || *value != T::default()) {
+                    rows.push(row as u32);
+                    values.push(value.double());
+                }
+            }
+        }
+        starts.push(rows.len());
+    }
+    SymmetricMatrix::from_sorted_lower(SparseMatrix::from_parts(dim, starts, rows, values))
 }

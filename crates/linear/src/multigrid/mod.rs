@@ -9,23 +9,15 @@
 //! P. Vaněk, M. Brezina, J. Mandel, *Convergence of algebraic multigrid based on smoothed aggregation*, Numer. Math. 88
 //! (2001) 559-579.
 
-mod aggregation;
 mod blocks;
 mod chebyshev;
 mod coarser;
-mod coarsest;
 mod conjugate_gradients;
 mod cycle;
-mod dual_norm;
-mod face;
 mod filling;
-mod firsts;
 mod half;
-mod held;
 mod hierarchy;
-mod inverse;
 mod lines;
-mod near_null;
 mod nodes;
 mod operator;
 mod patches;
@@ -35,13 +27,12 @@ mod repeated;
 
 pub use coarser::Interval;
 pub use conjugate_gradients::Preconditioned;
-pub use held::{Direction, Hold};
-pub use near_null::NearNullSpace;
-pub use nodes::Units;
+pub use nodes::{NearNullSpace, Units};
+pub use operator::{Direction, Hold};
 
 use super::{FactorError, Spare, SymmetricMatrix};
 use crate::error::Error;
-use face::FaceLevels;
+use cycle::FaceLevels;
 use hierarchy::Hierarchy;
 
 /// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
@@ -140,15 +131,15 @@ impl Multigrid {
     /// As [`Multigrid::new`].
     pub fn face(&self, holds: &[Hold], last: Option<&Face>) -> Result<Face<'_>, Error> {
         use ByPrecision::{Double, Single};
-        let levels = match (&self.levels, last.map(|face| &face.levels)) {
-            (Single(own), Some(Single((_, last)))) => {
-                FaceLevels::new(own, holds, Some(last)).map(|face| Single((own, face)))
+        let levels = match &self.levels {
+            Single(own) => {
+                let last = last.and_then(|last| if let Single(last) = &last.levels { Some(&last.1) } else { None });
+                FaceLevels::new(own, holds, last).map(|face| Single((own, face)))
             }
-            (Single(own), _) => FaceLevels::new(own, holds, None).map(|face| Single((own, face))),
-            (Double(own), Some(Double((_, last)))) => {
-                FaceLevels::new(own, holds, Some(last)).map(|face| Double((own, face)))
+            Double(own) => {
+                let last = last.and_then(|last| if let Double(last) = &last.levels { Some(&last.1) } else { None });
+                FaceLevels::new(own, holds, last).map(|face| Double((own, face)))
             }
-            (Double(own), _) => FaceLevels::new(own, holds, None).map(|face| Double((own, face))),
         };
         Ok(Face { levels: levels.map_err(located)?, work: &self.work })
     }
@@ -223,12 +214,8 @@ fn check_diagonal(matrix: &SymmetricMatrix) -> Result<(), Error> {
     let couples = |&(row, column, value): &(usize, usize, f64)| value != 0.0 && row != column;
     let coupled = matrix.lower().triplets().filter(couples).flat_map(|(row, column, _)| [row, column]);
     let negative = (0..diagonal.len()).find(|&dof| diagonal[dof] < 0.0);
-    match negative.or_else(|| coupled.into_iter().find(|&dof| diagonal[dof] <= 0.0)) {
-        Some(dof) => {
-            Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {:e}, indices from 0", diagonal[dof]) })
-        }
-        None => Ok(()),
-    }
+    let Some(dof) = negative.or_else(|| coupled.into_iter().find(|&dof| diagonal[dof] <= 0.0)) else { return Ok(()) };
+    Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {:e}, indices from 0", diagonal[dof]) })
 }
 
 fn located(error: FactorError) -> Error {

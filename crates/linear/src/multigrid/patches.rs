@@ -10,8 +10,7 @@
 //! 97-119: local solves on patches that contain the local motions without change of volume.
 
 use super::blocks::BlockMatrix;
-use super::inverse::invert;
-use crate::grouped::group_starts;
+use crate::columns::group_starts;
 use crate::real::Real;
 use crate::threads::SharedRows;
 
@@ -84,9 +83,8 @@ impl Patches {
     pub fn touched_by<T: Real>(&self, change: &BlockMatrix<T>) -> Self {
         let is_touched = |members: &[u32]| members.iter().any(|&node| change.diagonal_place(node as usize).is_some());
         let mut touched = Patches { starts: vec![0], members: Vec::new() };
-        (0..self.count()).map(|patch| self.members(patch)).filter(|members| is_touched(members)).for_each(|members| {
-            touched.push(members);
-        });
+        let all = (0..self.count()).map(|patch| self.members(patch));
+        all.filter(|members| is_touched(members)).for_each(|members| touched.push(members));
         touched
     }
 
@@ -100,10 +98,7 @@ impl Patches {
         let matrix = &matrix.with_rows(self.members.iter().map(|&node| node as usize));
         // The start of the inverse of each patch, in blocks.
         let mut starts = vec![0];
-        starts.extend((0..self.count()).scan(0, |sum, patch| {
-            *sum += self.members(patch).len().pow(2);
-            Some(*sum)
-        }));
+        (0..self.count()).for_each(|patch| starts.push(starts[patch] + self.members(patch).len().pow(2)));
         let of_patches = SharedRows { starts: &starts, threads }.map(|patches| {
             let mut places = vec![NONE; matrix.rows()];
             let inverses = patches.map(|patch| inverse_on(self.members(patch), matrix, change, &mut places));
@@ -181,6 +176,39 @@ fn inverse_on<T: Real>(
     // Rounding of the elimination would leave the smoother unsymmetric.
     let symmetric = |place: usize| 0.5 * (result[place] + result[place % width * width + place / width]);
     (0..width * width).map(|place| T::of(symmetric(place))).collect()
+}
+
+/// A pivot of a diagonal block below this share of its entry is rounding: such a direction is not smoothed.
+const SINGULAR_PIVOT: f64 = 1e-6;
+
+/// The inverse of a symmetric block, row by row, by elimination; directions without a pivot are left out.
+pub(super) fn invert(work: &mut [f64], size: usize, result: &mut [f64]) {
+    result.fill(0.0);
+    let diagonal: Vec<f64> = (0..size).map(|i| work[i * size + i]).collect();
+    let mut kept = vec![true; size];
+    (0..size).for_each(|i| result[i * size + i] = 1.0);
+    for k in 0..size {
+        let pivot = work[k * size + k];
+        if pivot.is_nan() || pivot <= SINGULAR_PIVOT * diagonal[k] || pivot <= 0.0 {
+            kept[k] = false;
+            continue;
+        }
+        for j in 0..size {
+            work[k * size + j] /= pivot;
+            result[k * size + j] /= pivot;
+        }
+        for i in (0..size).filter(|&i| i != k) {
+            let factor = work[i * size + k];
+            if factor != 0.0 {
+                for j in 0..size {
+                    work[i * size + j] -= factor * work[k * size + j];
+                    result[i * size + j] -= factor * result[k * size + j];
+                }
+            }
+        }
+    }
+    let is_left_out = |place: usize| !kept[place / size] || !kept[place % size];
+    (0..size * size).filter(|&place| is_left_out(place)).for_each(|place| result[place] = 0.0);
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::blocks::{BlockMatrix, with_block_size};
-use super::firsts::Firsts;
+use crate::quotient::Firsts;
 use crate::real::Real;
 use crate::threads::SharedRows;
 
@@ -65,10 +65,10 @@ impl<T: Real> BlockMatrix<T> {
             product.starts.extend(starts.iter().map(|start| before + start));
             if before == 0 {
                 (product.indices, product.values) = (indices, values);
-            } else {
-                product.indices.extend(indices);
-                product.values.extend(values);
+                continue;
             }
+            product.indices.extend(indices);
+            product.values.extend(values);
         }
         product
     }

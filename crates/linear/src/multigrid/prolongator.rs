@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
-use crate::grouped::grouped;
+use crate::columns::grouped;
 use crate::real::Real;
 use crate::threads::SharedRows;
 

@@ -126,60 +126,35 @@ fn hash<T: Real>(indices: impl Iterator<Item = u32>, values: &[T]) -> u64 {
     words.fold(0, |hash: u64, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95))
 }
 
-/// `y += sign A x` for a matrix with shared rows.
-pub fn add_product<T: Real>(
-    matrix: &BlockMatrix<T>,
-    sign: f64,
-    x: &[T],
-    y: &mut [T],
-    threads: usize,
-    spare: &Spare<T>,
-) {
-    match matrix.height {
-        1 => add_product_in::<T, 1>(matrix, T::of(sign), x, y, threads, spare),
-        2 => add_product_in::<T, 2>(matrix, T::of(sign), x, y, threads, spare),
-        _ => add_product_in::<T, 3>(matrix, T::of(sign), x, y, threads, spare),
-    }
-}
-
-fn add_product_in<T: Real, const H: usize>(
-    matrix: &BlockMatrix<T>,
-    sign: T,
-    x: &[T],
-    y: &mut [T],
-    threads: usize,
-    spare: &Spare<T>,
-) {
-    let nodes = matrix.columns;
-    // The components one after another, so that those of neighbours follow each other.
-    let mut by_component = spare.take(x.len());
-    for (node, of_node) in x.as_chunks::<H>().0.iter().enumerate() {
-        of_node.iter().enumerate().for_each(|(component, &value)| by_component[component * nodes + node] = value);
-    }
-    let components: [&[T]; H] =
-        std::array::from_fn(|component| &by_component[component * nodes..(component + 1) * nodes]);
-    matrix.shared(threads).with_vectors(H, [y], |rows, [part]| {
-        let (first, part) = (rows.start, part.as_chunks_mut::<H>().0);
-        let mut row = rows.start;
-        while row < rows.end {
-            let length = |row: usize| matrix.starts[row + 1] - matrix.starts[row];
-            let of_row = |row: usize| (matrix.shared_rows[row], length(row));
-            let alike = |other: &usize| of_row(*other) == of_row(row);
-            let run = row..row + (row..rows.end).take_while(alike).count();
-            let sums = &mut part[run.start - first..run.end - first];
-            match run.len() < TILE {
-                true => {
-                    for (row, y) in run.clone().zip(sums) {
-                        let sums = matrix.row_product::<H, H>(row, x);
-                        (0..H).for_each(|i| y[i] += sign * sums[i]);
-                    }
-                }
-                false => add_repeated(matrix, components, run.clone(), sums, sign),
-            }
-            row = run.end;
+impl<T: Real> BlockMatrix<T> {
+    /// `y += sign A x` for a matrix with shared rows.
+    pub fn add_by_kinds<const H: usize>(&self, sign: T, x: &[T], y: &mut [T], (threads, spare): (usize, &Spare<T>)) {
+        let nodes = self.columns;
+        // The components one after another, so that those of neighbours follow each other.
+        let mut by_component = spare.take(x.len());
+        for (node, of_node) in x.as_chunks::<H>().0.iter().enumerate() {
+            of_node.iter().enumerate().for_each(|(component, &value)| by_component[component * nodes + node] = value);
         }
-    });
-    spare.give(by_component);
+        let components: [&[T]; H] = std::array::from_fn(|component| &by_component[component * nodes..][..nodes]);
+        self.shared(threads).with_vectors(H, [y], |rows, [part]| {
+            let (mut rest, mut row) = (part.as_chunks_mut::<H>().0, rows.start);
+            while row < rows.end {
+                let of_row = |row: usize| (self.shared_rows[row], self.starts[row + 1] - self.starts[row]);
+                let run = row..row + (row..rows.end).take_while(|&other| of_row(other) == of_row(row)).count();
+                let sums = rest.split_off_mut(..run.len()).unwrap_or_default();
+                row = run.end;
+                if run.len() >= TILE {
+                    add_repeated(self, components, run, sums, sign);
+                    continue;
+                }
+                for (row, y) in run.zip(sums) {
+                    let sums = self.row_product::<H, H>(row, x);
+                    (0..H).for_each(|i| y[i] += sign * sums[i]);
+                }
+            }
+        });
+        spare.give(by_component);
+    }
 }
 
 for_processor! {
@@ -263,8 +238,8 @@ mod tests {
         for threads in [1, 2, 3] {
             let mut y = vec![0.0; x.len()];
             let add = |sign, y: &mut [f32]| match is_shared {
-                true => add_product(&found, sign, &x, y, threads, &Spare::default()),
-                false => found.add_product(sign, &x, y, threads),
+                true => found.add_by_kinds::<3>(sign, &x, y, (threads, &Spare::default())),
+                false => found.add_product(sign.into(), &x, y, threads),
             };
             add(1.0, &mut y);
             assert_eq!(y, expected, "{threads} threads");

@@ -5,7 +5,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverError, So
 
 use super::{Ending, Outcome, ScaledProblem};
 use crate::error::{Error, LinearError};
-use crate::linear::panics::guarded;
+use crate::linear::guarded;
 use crate::linear::watch::Watch;
 use crate::linear::{SparseMatrix, exponent, largest, ldexp};
 use crate::problem::ContactProblem;

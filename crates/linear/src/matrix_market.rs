@@ -1,10 +1,103 @@
-//! Reading the text of a Matrix Market file, line by line; every error names its line.
+//! Matrix Market files: matrices and vectors as text, read line by line; every error names its line.
+//!
+//! # Source
+//! R. F. Boisvert, R. Pozo, K. A. Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
 
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
 
 use crate::error::Error;
-use crate::file::{Capped, open_capped, unread};
+use crate::file::{Capped, Streamed, open_capped, unread};
+use crate::{SparseMatrix, SymmetricMatrix};
+
+/// The Matrix Market file of a vector in any unit, as text: an array of one column, one entry per line, in the order of
+/// the vector.
+pub fn format_vector(vector: &[f64]) -> String {
+    Streamed::new("vector", |out| write_columns(out, &[vector])).text()
+}
+
+impl SparseMatrix {
+    /// Reads a Matrix Market file; of a symmetric one both triangles. For the crates of this workspace.
+    #[doc(hidden)]
+    pub fn read(file: &Path) -> Result<Self, Error> {
+        let (is_symmetric, lower) = matrix(file, None)?;
+        if !is_symmetric {
+            return Ok(lower);
+        }
+        let below = lower.triplets().filter(|(row, column, _)| row != column);
+        let above: Vec<_> = below.map(|(row, column, value)| (column, row, value)).collect();
+        let all: Vec<_> = lower.triplets().chain(above).collect();
+        SparseMatrix::from_triplets(lower.rows(), lower.columns(), &all)
+    }
+
+    /// Reads a file as [`read_vector`] does, in which `-inf` and `inf` stand for no bound. For the crates of this
+    /// workspace.
+    #[doc(hidden)]
+    pub fn read_bounds(file: &Path) -> Result<Vec<f64>, Error> {
+        vector(file, BOUNDS)
+    }
+
+    /// The matrix as a Matrix Market file of this name.
+    pub fn file(&self, name: &'static str) -> Streamed<'_> {
+        Streamed::new(name, |out| write_entries(out, self, "general"))
+    }
+}
+
+impl SymmetricMatrix {
+    /// The matrix as a Matrix Market file of this name, by its lower triangle.
+    pub fn file(&self, name: &'static str) -> Streamed<'_> {
+        Streamed::new(name, |out| write_entries(out, self.lower(), "symmetric"))
+    }
+}
+
+/// Writes a sparse matrix with `symmetry` `general`, or the lower triangle of a matrix with `symmetry` `symmetric`.
+pub fn write_entries(out: &mut dyn Write, matrix: &SparseMatrix, symmetry: &str) -> io::Result<()> {
+    writeln!(out, "%%MatrixMarket matrix coordinate real {symmetry}")?;
+    writeln!(out, "{} {} {}", matrix.rows(), matrix.columns(), matrix.entries())?;
+    matrix.triplets().try_for_each(|(row, column, value)| writeln!(out, "{} {} {value:e}", row + 1, column + 1))
+}
+
+/// Writes columns of one length as an array.
+pub fn write_columns(out: &mut dyn Write, columns: &[impl AsRef<[f64]>]) -> io::Result<()> {
+    let rows = columns.first().map_or(0, |column| column.as_ref().len());
+    writeln!(out, "%%MatrixMarket matrix array real general\n{rows} {}", columns.len())?;
+    columns.iter().flat_map(AsRef::as_ref).try_for_each(|value| writeln!(out, "{value:e}"))
+}
+
+/// Reads a vector of finite numbers from a Matrix Market file of one column, or of one row; its length and unit are
+/// those of the file.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::FileSyntax`].
+pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
+    vector(file, FINITE)
+}
+
+/// Reads a vector with `values`, in the order and the unit of its file.
+pub fn vector(file: &Path, values: Allowed) -> Result<Vec<f64>, Error> {
+    let content = Content::read(file, values)?;
+    if content.columns != 1 && content.rows != 1 {
+        let message = format!("a vector has one column, but this is {} x {}", content.rows, content.columns);
+        return Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message });
+    }
+    content.check_filled(file, content.rows.saturating_mul(content.columns))?;
+    let mut vector = vec![0.0; content.rows * content.columns];
+    for (row, column, value) in content.entries {
+        // Entries with the same row and column are added, as in a matrix.
+        vector[row + column] += value;
+    }
+    Ok(vector)
+}
+
+/// A matrix, and whether the file holds its lower triangle only. A body has many dofs without a row: a matrix of rows
+/// must have as many columns as there are `dofs`, or else be credible by its entries.
+pub fn matrix(file: &Path, dofs: Option<usize>) -> Result<(bool, SparseMatrix), Error> {
+    let content = Content::read(file, FINITE)?;
+    let fits = dofs == Some(content.columns);
+    content.check_filled(file, if fits { content.rows } else { content.rows.max(content.columns) })?;
+    let matrix = SparseMatrix::from_triplets(content.rows, content.columns, &content.entries)?;
+    Ok((content.symmetric, matrix))
+}
 
 /// Most bytes of a matrix in text, which is not held in memory: fifty million dofs of a body in space.
 const MOST_OF_MATRIX: u64 = 64 << 30;
@@ -151,14 +244,9 @@ impl TextLines<'_> {
             let found = self.excerpt(&self.text);
             return Err(self.fault(format!("the first line is {found}; it must be `{expected}`")));
         };
-        let one_of = |what: &str, found: &str, allowed: [&str; 2]| match allowed.iter().position(|word| *word == found)
-        {
-            Some(place) => Ok(place == 1),
-            None => {
-                let [one, other] = allowed;
-                let found = self.excerpt(found);
-                Err(self.fault(format!("the {what} is {found}; it must be `{one}` or `{other}`")))
-            }
+        let one_of = |what: &str, found: &str, [one, other]: [&str; 2]| {
+            let words = || format!("the {what} is {}; it must be `{one}` or `{other}`", self.excerpt(found));
+            if [one, other].contains(&found) { Ok(found == other) } else { Err(self.fault(words())) }
         };
         let is_array = one_of("layout", layout, ["coordinate", "array"])?;
         one_of("field", if field == "double" { "real" } else { field }, ["real", "integer"])?;
@@ -261,19 +349,16 @@ impl TextLines<'_> {
         Ok(false)
     }
 
-    fn advance(&mut self) -> Result<bool, Error> {
-        self.read_line().map_err(unread(self.file))
-    }
-
     /// Reads a line; `false` at the end of the file.
-    fn read_line(&mut self) -> io::Result<bool> {
+    fn advance(&mut self) -> Result<bool, Error> {
         self.bytes.clear();
-        self.reader.by_ref().take(LONGEST as u64).read_until(b'\n', &mut self.bytes)?;
+        let piece = self.reader.by_ref().take(LONGEST as u64).read_until(b'\n', &mut self.bytes);
+        piece.map_err(unread(self.file))?;
         if self.bytes.is_empty() {
             return Ok(false);
         }
         if self.bytes.len() == LONGEST && !self.bytes.ends_with(b"\n") {
-            self.reader.skip_until(b'\n')?;
+            self.reader.skip_until(b'\n').map_err(unread(self.file))?;
         }
         self.number += 1;
         // Comments of older collections hold names in other encodings; the numbers are always ASCII.
