@@ -58,7 +58,7 @@ impl Compliance {
         let (size, count) = (rows.columns() as f64, rows.rows() as f64);
         let own = size * size * count / 2.0 + size * count * count / 2.0;
         let mut lengths = vec![0.0; rows.rows()];
-        (0..rows.columns()).for_each(|dof| rows.with_rows(dof, &mut lengths, |length, _| *length += 1.0));
+        rows.row_indices().for_each(|row| lengths[row as usize] += 1.0);
         let products: f64 = lengths.iter().map(|length| length * length / 2.0).sum();
         let pays = own <= OF_PRODUCT * products + SETS * cholesky.multiplications();
         cholesky.is_dense() && cholesky.is_safely_definite() && pays

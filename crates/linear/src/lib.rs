@@ -38,7 +38,6 @@ pub mod memory;
 pub mod multigrid;
 mod null_space;
 mod ordering;
-mod orthogonal;
 mod power_of_two;
 mod quotient;
 mod real;
@@ -59,13 +58,12 @@ pub use dense::{
     LowerTriangle, UpperTriangle, across, check_finite, check_vector, dot, extend, largest, norm, subtract, take_out,
     turned,
 };
-pub use dependence::Dependence;
+pub use dependence::{Dependence, inverse_lengths, inverse_lengths_by_products};
 pub use error::{Error, guarded};
 pub use factor::{FactorError, call, if_definite, par};
 pub use multigrid::Width;
 pub use null_space::NullSpace;
 pub use ordering::Fill;
-pub use orthogonal::{inverse_lengths, inverse_lengths_by_products};
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use quotient::Forest;
 pub use real::generic;
@@ -313,9 +311,7 @@ impl SparseMatrix {
     /// The columns with an entry other than zero, increasing.
     pub fn columns_with_entries(&self) -> Vec<usize> {
         let has_entry = |&column: &usize| self.column_slices(column).1.iter().any(|&value| value != 0.0);
-        let mut columns = Vec::with_capacity(self.columns());
-        columns.extend((0..self.columns()).filter(has_entry));
-        columns
+        (0..self.columns()).filter(has_entry).collect()
     }
 
     /// Calls `take(of_row, value)` for each entry of a column, with the item of its row: a column of all rows is walked
@@ -439,12 +435,9 @@ impl SparseMatrix {
 
     /// The rows listed in `kept` (increasing), as a matrix of `kept.len()` rows.
     pub fn select_rows(&self, kept: &[usize]) -> Self {
-        let mut new_row = vec![usize::MAX; self.rows];
-        for (new, &old) in kept.iter().enumerate() {
-            new_row[old] = new;
-        }
-        let place = |row: usize| Some(new_row[row]).filter(|&row| row != usize::MAX);
-        self.select(kept.len(), place, 0..self.columns())
+        let mut new_row = vec![None; self.rows];
+        kept.iter().enumerate().for_each(|(new, &old)| new_row[old] = Some(new));
+        self.select(kept.len(), |row| new_row[row], 0..self.columns())
     }
 
     /// The given columns, as a matrix of `rows` rows; `place` gives the new place of a row, increasing, or `None` to

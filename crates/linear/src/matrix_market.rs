@@ -201,7 +201,6 @@ fn is_inside(file: &Path) -> bool {
     matches!((file.canonicalize(), folder.canonicalize()), (Ok(file), Ok(folder)) if file.starts_with(&folder))
 }
 
-/// The lines of a file, one at a time.
 struct TextLines<'a> {
     file: &'a Path,
     /// Permission for an error to quote the content of the file.
@@ -219,7 +218,6 @@ impl TextLines<'_> {
         Error::FileSyntax { file: self.file.to_path_buf(), line, message: message.into() }
     }
 
-    /// The error of the present line.
     fn fault(&self, message: impl Into<String>) -> Error {
         self.fault_at(self.number, message)
     }

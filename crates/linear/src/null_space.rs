@@ -102,10 +102,7 @@ impl Cholesky {
 
     /// The vector with the least energy, largest entry one, by inverse iteration.
     pub fn softest_vector(&self) -> Vec<f64> {
-        power_iteration(self.dim(), 0.5, SOFTEST_STEPS, |x| {
-            *x = self.solve(x);
-            true
-        })
+        power_iteration(self.dim(), 0.5, SOFTEST_STEPS, |x| Some(self.solve(x)))
     }
 }
 
@@ -230,9 +227,8 @@ impl SymmetricMatrix {
     /// The connected component of each unknown, and their number.
     pub fn components(&self) -> (Vec<usize>, usize) {
         let mut forest = Forest::new(self.dim());
-        for (row, column, _) in self.lower().triplets().filter(|entry| entry.2 != 0.0) {
-            forest.join(row, column);
-        }
+        let couplings = self.lower().triplets().filter(|entry| entry.2 != 0.0);
+        couplings.for_each(|(row, column, _)| forest.join(row, column));
         forest.into_trees()
     }
 
@@ -268,16 +264,12 @@ impl SymmetricMatrix {
                 continue;
             };
             // With a shift close above the least eigenvalue, inverse iteration converges to its vector.
-            let vector = power_iteration(self.dim(), -0.5, MOST_STEPS, |x| {
-                *x = factor.solve(x);
-                true
-            });
+            let vector = power_iteration(self.dim(), -0.5, MOST_STEPS, |x| Some(factor.solve(x)));
             return Ok((dot(&vector, &self.mul(&vector)) < 0.0).then_some(vector));
         }
         Ok(None)
     }
 
-    /// The factor of `A + shift I`; `None` if that is not positive definite.
     pub(super) fn shifted_factor(&self, shift: f64) -> Result<Option<Cholesky>, FactorError> {
         self.shifts(Analysis::of(self)?)?.shifted(shift)
     }

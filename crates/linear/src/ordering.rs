@@ -33,10 +33,7 @@ pub struct Fill {
 impl Fill {
     /// The fill of the factor of `matrix`, found without a factorisation.
     pub fn by_minimum_degree(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
-        call(|| {
-            let quotient = Quotient::of(matrix.lower());
-            Ok(minimum_degree(&quotient)?.1)
-        })
+        call(|| Ok(minimum_degree(&Quotient::of(matrix.lower()))?.1))
     }
 }
 
@@ -49,15 +46,15 @@ pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, 
     let mut quotient = Quotient::of(lower);
     let (by_degree, fill) = minimum_degree(&quotient)?;
     quotient.remove(last);
-    let mut elimination = SymbolicElimination::of(&quotient, by_degree)?;
+    let (mut order, multiplications) = postordered(&quotient, by_degree)?;
     if fill.is_dissected {
-        let dissected = SymbolicElimination::of(&quotient, nested_dissection(&quotient)?)?;
-        if dissected.multiplications < elimination.multiplications {
-            elimination = dissected;
+        let dissected = postordered(&quotient, nested_dissection(&quotient)?)?;
+        if dissected.1 < multiplications {
+            order = dissected.0;
         }
     }
     let mut columns = Vec::with_capacity(lower.columns());
-    elimination.postorder.into_iter().for_each(|group| columns.extend_from_slice(quotient.members(group)));
+    order.into_iter().for_each(|group| columns.extend_from_slice(quotient.members(group)));
     columns.extend_from_slice(last);
     Ok(columns)
 }
@@ -81,7 +78,6 @@ fn minimum_degree(quotient: &Quotient) -> Result<(Vec<u32>, Fill), FactorError> 
     Ok((order, Fill { multiplications, entries, is_dissected }))
 }
 
-/// Multilevel nested dissection.
 fn nested_dissection(quotient: &Quotient) -> Result<Vec<u32>, FactorError> {
     let signed = |values: &[u32]| values.iter().map(|&value| value as i32).collect::<Vec<_>>();
     let failed = || FactorError::Failed("nested dissection".into());
@@ -92,47 +88,38 @@ fn nested_dissection(quotient: &Quotient) -> Result<Vec<u32>, FactorError> {
     Ok(order.into_iter().map(|group| group as u32).collect())
 }
 
-/// The elimination of the groups of a quotient graph in some order; groups without columns are left out.
-struct SymbolicElimination {
-    /// The groups in postorder of the elimination tree: each after all of its descendants, and these next to each
-    /// other.
-    postorder: Vec<u32>,
-    /// Multiplications of the factorisation, approximately.
-    multiplications: f64,
-}
-
-impl SymbolicElimination {
-    fn of(quotient: &Quotient, mut order: Vec<u32>) -> Result<Self, FactorError> {
-        order.retain(|&group| !quotient.members(group).is_empty());
-        let count = order.len();
-        // Groups that are left out come last.
-        let mut place = vec![count as u32; quotient.count()];
-        order.iter().zip(0..).for_each(|(&group, position)| place[group as usize] = position);
-        let (mut starts, mut before) = (vec![0], Vec::with_capacity(quotient.edges()));
-        for (&group, position) in order.iter().zip(0..) {
-            let places = quotient.neighbours(group).iter().map(|&neighbour| place[neighbour as usize]);
-            before.extend(places.filter(|&place| place < position));
-            starts.push(before.len() as u32);
-        }
-        let graph = SymbolicSparseColMatRef::new_unsorted_checked(count, count, &starts, None, &before);
-        let (mut parents, mut entries, mut post) = (vec![0; count], vec![0; count], vec![0; count]);
-        let mut buffer = memory(postorder_scratch::<u32>(count))?;
-        let stack = MemStack::new(&mut buffer);
-        let tree = prefactorize_symbolic_cholesky(&mut parents, &mut entries, graph, stack);
-        postorder(&mut post, tree, stack);
-        let work = |(&group, &entries): (&u32, &u32)| {
-            let (size, below) = (quotient.members(group).len() as f64, f64::from(entries - 1));
-            size * (below * quotient.mean_size() + size / 2.0).powi(2) / 2.0
-        };
-        let multiplications = order.iter().zip(&entries).map(work).sum();
-        let postorder = post.into_iter().map(|position| order[position as usize]).collect();
-        Ok(SymbolicElimination { postorder, multiplications })
+/// The groups of a quotient graph, eliminated in some order, in postorder of the elimination tree: each after all its
+/// descendants, and these next to each other. Groups without columns are left out. And the multiplications of the
+/// factorisation, approximately.
+fn postordered(quotient: &Quotient, mut order: Vec<u32>) -> Result<(Vec<u32>, f64), FactorError> {
+    order.retain(|&group| !quotient.members(group).is_empty());
+    let count = order.len();
+    // Groups that are left out come last.
+    let mut place = vec![count as u32; quotient.count()];
+    order.iter().zip(0..).for_each(|(&group, position)| place[group as usize] = position);
+    let (mut starts, mut before) = (vec![0], Vec::with_capacity(quotient.edges()));
+    for (&group, position) in order.iter().zip(0..) {
+        let places = quotient.neighbours(group).iter().map(|&neighbour| place[neighbour as usize]);
+        before.extend(places.filter(|&place| place < position));
+        starts.push(before.len() as u32);
     }
+    let graph = SymbolicSparseColMatRef::new_unsorted_checked(count, count, &starts, None, &before);
+    let (mut parents, mut entries, mut post) = (vec![0; count], vec![0; count], vec![0; count]);
+    let mut buffer = memory(postorder_scratch::<u32>(count))?;
+    let stack = MemStack::new(&mut buffer);
+    let tree = prefactorize_symbolic_cholesky(&mut parents, &mut entries, graph, stack);
+    postorder(&mut post, tree, stack);
+    let work = |(&group, &entries): (&u32, &u32)| {
+        let (size, below) = (quotient.members(group).len() as f64, f64::from(entries - 1));
+        size * (below * quotient.mean_size() + size / 2.0).powi(2) / 2.0
+    };
+    let multiplications = order.iter().zip(&entries).map(work).sum();
+    Ok((post.into_iter().map(|position| order[position as usize]).collect(), multiplications))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Fill, Quotient, SymbolicElimination, minimum_degree};
+    use super::{Fill, Quotient, minimum_degree, postordered};
     use crate::{Analysis, SparseMatrix, SymmetricMatrix};
 
     /// A lattice with this number of nodes along each side, each of three columns that have the same neighbours.
@@ -158,8 +145,7 @@ mod tests {
             let matrix = lattice(sides);
             let (fill, quotient) = (Fill::by_minimum_degree(&matrix).unwrap(), Quotient::of(matrix.lower()));
             let (order, _) = minimum_degree(&quotient).unwrap();
-            let eliminated = SymbolicElimination::of(&quotient, order).unwrap().multiplications;
-            let ratio = fill.multiplications / eliminated;
+            let ratio = fill.multiplications / postordered(&quotient, order).unwrap().1;
             assert!((0.9..=1.1).contains(&ratio), "{sides:?}: {ratio}");
             // Supernodes add zeros to the factor; for a chain they are as many as its values.
             let entries = fill.entries / Analysis::of(&matrix).unwrap().factor_entries() as f64;

@@ -25,7 +25,6 @@ pub trait Real:
     /// A unit in the last place of one.
     const EPSILON: f64;
 
-    /// The nearest value.
     fn of(value: f64) -> Self;
 
     fn double(self) -> f64 {
@@ -67,19 +66,18 @@ pub fn scramble(index: u64) -> u64 {
     bits ^ (bits >> 31)
 }
 
-/// The vector that `map` makes of a vector without symmetry in `steps` applications, fewer if one returns `false`; the
+/// The vector that `map` makes of a vector without symmetry in `steps` applications, fewer if one returns `None`; the
 /// largest entry is one after each. The entries of the first vector are spread evenly from `least` to `least + 1`.
 pub fn power_iteration<T: Real>(
     dim: usize,
     least: f64,
     steps: usize,
-    mut map: impl FnMut(&mut Vec<T>) -> bool,
+    mut map: impl FnMut(&[T]) -> Option<Vec<T>>,
 ) -> Vec<T> {
     let mut x: Vec<T> = (0..dim).map(|index| T::of((index as f64 * GOLDEN).fract() + least)).collect();
     for _ in 0..steps {
-        if !map(&mut x) {
-            break;
-        }
+        let Some(next) = map(&x) else { break };
+        x = next;
         let size = x.iter().fold(0.0_f64, |size, value| size.max(value.double().abs()));
         let shrink = T::of(1.0 / size);
         x.iter_mut().for_each(|value| *value = *value * shrink);

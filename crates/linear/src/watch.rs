@@ -282,7 +282,6 @@ impl Deadline {
         Some(Deadline { at: Instant::now().checked_add(span)?, span, cut: Arc::default() })
     }
 
-    /// This deadline, or `other` if that is sooner.
     fn or_sooner(&self, other: Deadline) -> Self {
         if other.at < self.at { other } else { self.clone() }
     }
@@ -299,7 +298,6 @@ impl Deadline {
         Some(Deadline { at: self.at.checked_add(self.span.mul_f64(FINISHING))?, ..self.clone() })
     }
 
-    /// Seconds until the deadline, 0 after it.
     fn left(&self) -> f64 {
         self.at.saturating_duration_since(Instant::now()).as_secs_f64()
     }

@@ -63,7 +63,6 @@ impl<T: Real> BlockMatrix<T> {
         self.height * self.width
     }
 
-    /// The values of block `place`, row by row.
     #[inline]
     pub fn block(&self, place: usize) -> &[T] {
         &self.values[place * self.block_size()..(place + 1) * self.block_size()]
@@ -81,7 +80,6 @@ impl<T: Real> BlockMatrix<T> {
         }
     }
 
-    /// Returns `true` if several rows have the same blocks.
     pub fn is_shared(&self) -> bool {
         !self.shared_rows.is_empty()
     }
@@ -110,7 +108,6 @@ impl<T: Real> BlockMatrix<T> {
         size_of_val(&self.starts[..]) + size_of_val(&self.values[..]) + words * size_of::<u32>()
     }
 
-    /// The rows, to be shared out among threads.
     pub fn shared(&self, threads: usize) -> SharedRows<'_> {
         SharedRows { starts: &self.starts, threads }
     }

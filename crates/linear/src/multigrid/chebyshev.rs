@@ -123,16 +123,14 @@ impl<T: Real> Chebyshev<T> {
         let spare = Spare::default();
         let operator = Operator::whole(matrix, threads, &spare);
         let mut estimate = 1.0;
-        power_iteration(operator.dim(), -0.5, POWER_STEPS, |x: &mut Vec<T>| {
-            let found = operator.quotient(x, |force| {
+        power_iteration(operator.dim(), -0.5, POWER_STEPS, |x| {
+            let (found, moved) = operator.quotient(x, |force| {
                 let mut moved = spare.zeros(force.len());
                 self.inverse.add_product(1.0, force, &mut moved, threads);
                 moved
-            });
-            found.is_some_and(|found| {
-                (estimate, *x) = found;
-                true
-            })
+            })?;
+            estimate = found;
+            Some(moved)
         });
         estimate
     }

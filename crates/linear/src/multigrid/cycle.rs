@@ -46,7 +46,6 @@ const DEGREE: f64 = 0.35;
 /// The largest degree: beyond it a cycle costs more than it saves.
 const MOST: usize = 32;
 
-/// The data of a face on the levels of a hierarchy.
 #[derive(Debug)]
 pub struct FaceLevels<T> {
     pub held: Held<T>,
@@ -193,11 +192,10 @@ impl<T: Real> Hierarchy<T> {
         let mut share = 1.0;
         power_iteration(operator.dim(), -0.5, cycles, |error| {
             let found = operator.quotient(error, |force| self.descend(0, self.spare.copy(force), None));
-            found.is_some_and(|(of_taken, taken)| {
-                share = of_taken;
-                error.iter_mut().zip(&taken).for_each(|(error, &taken)| *error -= taken);
-                true
-            })
+            let (of_taken, mut left) = found?;
+            share = of_taken;
+            left.iter_mut().zip(error).for_each(|(taken, &error)| *taken = error - *taken);
+            Some(left)
         });
         share
     }

@@ -123,8 +123,7 @@ mod tests {
             columns.dedup();
             columns.into_iter().map(move |column| {
                 let entry = move |i: usize, j: usize| {
-                    let (low, high) =
-                        if (row, i) <= (column, j) { ((row, i), (column, j)) } else { ((column, j), (row, i)) };
+                    let (low, high) = ((row, i).min((column, j)), (row, i).max((column, j)));
                     ((low.0 * 31 + low.1 * 7 + high.0 * 17 + high.1) as f64).sin()
                 };
                 (column, (0..H * H).map(move |place| entry(place / H, place % H)))
@@ -141,18 +140,18 @@ mod tests {
         let x: Vec<f64> = (0..H * count).map(|index| (index as f64 * 0.37).sin()).collect();
         let mut expected = vec![0.0; x.len()];
         whole.add_product(1.0, &x, &mut expected, 1);
+        // Rows have at most nine blocks, of entries and unknowns up to one.
+        let rounding = 4.0 * f64::EPSILON * (9 * H) as f64;
         let product = |threads: usize| {
             let mut y = vec![0.0; x.len()];
             half.add_by_half::<H>(1.0, &x, &mut y, (threads, &Spare::default()));
             // What is subtracted from itself leaves the rounding of as many terms.
             let mut rest = y.clone();
             half.add_by_half::<H>(-1.0, &x, &mut rest, (threads, &Spare::default()));
-            assert!(rest.iter().all(|rest| rest.abs() <= 4.0 * f64::EPSILON * (9 * H) as f64));
+            assert!(rest.iter().all(|rest| rest.abs() <= rounding));
             y
         };
         let found = product(1);
-        // Rows have at most nine blocks, of entries and unknowns up to one.
-        let rounding = 4.0 * f64::EPSILON * (9 * H) as f64;
         assert!(found.iter().zip(&expected).all(|(found, expected)| (found - expected).abs() <= rounding));
         for threads in 2..=5 {
             assert_eq!(product(threads), found, "{threads} threads");

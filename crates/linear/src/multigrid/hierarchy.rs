@@ -114,8 +114,8 @@ impl<T: Real> Hierarchy<T> {
         let count = near_null.count();
         let mut candidates = Candidates { count, values: vec![0.0; nodes.size * nodes.count * count] };
         for (index, vector) in near_null.vectors().iter().enumerate() {
-            for (&place, &value) in nodes.place.iter().zip(vector) {
-                candidates.values[place as usize * count + index] = ldexp(value, -nodes.exponent(place));
+            for ((place, unit), &value) in nodes.places().zip(vector) {
+                candidates.values[place * count + index] = ldexp(value, -unit);
             }
         }
         let mut levels = Vec::new();
@@ -161,13 +161,13 @@ impl<T: Real> Hierarchy<T> {
     /// precision; a vector of `work`. `None` if the matrix is better read entry by entry.
     pub fn product(&self, u: &[f64], work: &Spare<f64>) -> Option<Vec<f64>> {
         let exact = self.exact.as_ref()?;
-        let places = || self.nodes.place.iter().map(|&place| (place as usize, self.nodes.exponent(place)));
         let places_of_all = exact.rows() * exact.height;
         let (mut x, mut y) = (work.zeros(places_of_all), work.take(places_of_all));
-        places().zip(u).for_each(|((place, unit), &u)| x[place] = ldexp(u, -unit));
+        self.nodes.places().zip(u).for_each(|((place, unit), &u)| x[place] = ldexp(u, -unit));
         Operator::whole(exact, self.threads, work).mul_into(&x, &mut y);
         let mut product = work.take(u.len());
-        places().zip(&mut product).for_each(|((place, unit), own)| *own = ldexp(y[place], -unit - self.shift));
+        let of_dofs = self.nodes.places().zip(&mut product);
+        of_dofs.for_each(|((place, unit), own)| *own = ldexp(y[place], -unit - self.shift));
         [x, y].into_iter().for_each(|vector| work.give(vector));
         Some(product)
     }

@@ -84,31 +84,29 @@ impl Nodes {
     /// The node of each dof, and the exponent of its unit.
     pub fn units(&self) -> Units {
         let groups = self.place.iter().map(|&place| place / self.size as u32).collect();
-        Units { groups, exponents: self.place.iter().map(|&place| self.exponent(place)).collect() }
+        Units { groups, exponents: self.places().map(|place| place.1).collect() }
     }
 
-    /// The exponent of the unit at a place.
-    pub fn exponent(&self, place: u32) -> i32 {
-        self.exponents[place as usize / self.size]
+    /// The place of each dof, and the exponent of its unit.
+    pub fn places(&self) -> impl Iterator<Item = (usize, i32)> {
+        self.place.iter().map(|&place| (place as usize, self.exponents[place as usize / self.size]))
     }
 
     /// Puts the forces on the dofs into their places in `gathered`, in the units of the nodes, times `2^exponent`.
     /// Returns that exponent: they are then of order one, because single precision has a small range.
     pub fn gather<T: Real>(&self, forces: &[f64], gathered: &mut [T]) -> i32 {
-        let exponents = || self.place.iter().map(|&place| self.exponent(place)).zip(forces);
-        let largest = exponents().filter(|entry| *entry.1 != 0.0).map(|(unit, &force)| exponent(force) + unit).max();
+        let all = || self.places().zip(forces);
+        let largest = all().filter(|of| *of.1 != 0.0).map(|((_, unit), &force)| exponent(force) + unit).max();
         let scale = -largest.unwrap_or(0);
-        for (&place, (unit, &force)) in self.place.iter().zip(exponents()) {
-            gathered[place as usize] = T::of(ldexp(force, scale + unit));
-        }
+        all().for_each(|((place, unit), &force)| gathered[place] = T::of(ldexp(force, scale + unit)));
         scale
     }
 
     /// Puts the displacements of the dofs, of unknowns in the units of the nodes, times `2^exponent`, into
     /// `displacements`.
     pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32, displacements: &mut [f64]) {
-        for (&place, displacement) in self.place.iter().zip(displacements) {
-            *displacement = ldexp(gathered[place as usize].double(), exponent + self.exponent(place));
+        for ((place, unit), displacement) in self.places().zip(displacements) {
+            *displacement = ldexp(gathered[place].double(), exponent + unit);
         }
     }
 }

@@ -10,7 +10,7 @@
 //! 97-119: local solves on patches that contain the local motions without change of volume.
 
 use super::blocks::BlockMatrix;
-use crate::columns::group_starts;
+use crate::columns::grouped;
 use crate::real::Real;
 use crate::threads::SharedRows;
 
@@ -110,29 +110,22 @@ impl Patches {
     /// The sum of dense matrices on the patches, as a matrix of `rows` nodes with `size` unknowns each; `starts` are
     /// their starts in `values`, in blocks.
     fn sum<T: Real>(&self, starts: &[usize], values: &[T], rows: usize, size: usize) -> BlockMatrix<T> {
-        // The patches of each node, with its place in them.
-        let first = group_starts(rows, self.members.iter().map(|&node| node as usize));
-        let mut next = first.clone();
-        let mut patches = vec![(0, 0); self.members.len()];
-        for patch in 0..self.count() {
-            for (place, &node) in self.members(patch).iter().enumerate() {
-                patches[next[node as usize]] = (patch, place);
-                next[node as usize] += 1;
-            }
-        }
+        let (first, places) = grouped(rows, &self.members);
+        let patch_of = |&at: &usize| self.starts.partition_point(|&start| start <= at) - 1;
         let mut sum = BlockMatrix::empty(0, rows, (size, size));
         let (mut columns, mut place_of) = (Vec::new(), vec![0; rows]);
         for node in 0..rows {
-            let of_node = &patches[first[node]..first[node + 1]];
+            let of_node = &places[first[node]..first[node + 1]];
             columns.clear();
-            of_node.iter().for_each(|&(patch, _)| columns.extend_from_slice(self.members(patch)));
+            of_node.iter().for_each(|at| columns.extend_from_slice(self.members(patch_of(at))));
             columns.sort_unstable();
             columns.dedup();
             let start = sum.values.len();
             sum.values.resize(start + columns.len() * size * size, T::default());
             columns.iter().enumerate().for_each(|(place, &column)| place_of[column as usize] = place);
-            for &(patch, own) in of_node {
-                let members = self.members(patch);
+            for at in of_node {
+                let patch = patch_of(at);
+                let (members, own) = (self.members(patch), at - self.starts[patch]);
                 let width = members.len() * size;
                 let lines = &values[starts[patch] * size * size + own * size * width..][..size * width];
                 for (i, line) in lines.chunks_exact(width).enumerate() {
