@@ -38,11 +38,9 @@ impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
 
 /// An empty vector with room for this number of entries.
 fn with_room<T>(entries: usize) -> Result<Vec<T>, Error> {
-    let mut room = Vec::new();
-    match room.try_reserve_exact(entries) {
-        Ok(()) => Ok(room),
-        Err(error) => Err(Error::Numerical { step: "copying a matrix", reason: error.to_string() }),
-    }
+    let (mut room, step) = (Vec::new(), "copying a matrix");
+    let asked = room.try_reserve_exact(entries);
+    asked.map(|()| room).map_err(|error| Error::Numerical { step, reason: error.to_string() })
 }
 
 impl SymmetricLines {

@@ -50,10 +50,7 @@ impl<S: Copy + TryInto<usize>, R: Copy + TryInto<usize>> Columns<'_, S, R> {
     /// Calls `take(column, rows, values)` for each column, from the first on.
     pub fn each(self, mut take: impl FnMut(usize, &[R], &[f64]) -> Result<(), Error>) -> Result<(), Error> {
         let (columns, entries) = (self.starts.len().saturating_sub(1), self.values.len());
-        if self.rows.len() != entries {
-            let (name, found) = ("row indices", self.rows.len());
-            return Err(Error::Length { name, found, expected: entries, of: "values" });
-        }
+        Error::check_length("row indices", self.rows.len(), entries, "values")?;
         if self.starts.is_empty() || self.start(0)? != 0 || self.start(columns)? != entries {
             let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
             return Err(Error::Pattern { message });

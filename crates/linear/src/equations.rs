@@ -197,10 +197,8 @@ impl Pivots {
             (true, true) => Remainder::Follows { weights, is_exact: true },
             (true, false) if is_rounding => Remainder::Follows { weights, is_exact: false },
             (true, false) => {
-                let sign = if left.rounded() > 0.0 { 1.0 } else { -1.0 };
-                Remainder::Contradicts(
-                    weights.into_iter().map(|(number, weight)| (number, weight * sign.into())).collect(),
-                )
+                let sign = Twice::from(if left.rounded() > 0.0 { 1.0 } else { -1.0 });
+                Remainder::Contradicts(weights.into_iter().map(|(number, weight)| (number, weight * sign)).collect())
             }
             _ if largest(&others) > follows * terms => {
                 Remainder::Row(Pivot { dof: 0, constant: left, others, weights })

@@ -119,12 +119,8 @@ fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
     }
     runs.sort_unstable();
     let mut first_of = vec![NONE; dim];
-    let mut first = 0;
-    for place in 0..runs.len() {
-        if place == 0 || runs[place].0 != runs[place - 1].0 {
-            first = runs[place].1;
-        }
-        first_of[runs[place].1 as usize] = first;
+    for alike in runs.chunk_by(|a, b| a.0 == b.0) {
+        alike.iter().for_each(|run| first_of[run.1 as usize] = alike[0].1);
     }
     let mut of_column = vec![NONE; dim];
     let mut count = 0;

@@ -134,9 +134,7 @@ impl Watch {
     /// work asks this where it can end, and then ends.
     pub fn acknowledge(&self) -> bool {
         let stopped = self.is_stopped();
-        if stopped {
-            self.shared.is_noticed.store(true, SeqCst);
-        }
+        self.shared.is_noticed.fetch_or(stopped, SeqCst);
         stopped
     }
 

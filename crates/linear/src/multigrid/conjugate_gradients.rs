@@ -81,15 +81,9 @@ impl Preconditioned<'_> {
     pub fn negative_direction(&self, watch: &Watch) -> Option<Vec<f64>> {
         let force = generic(self.matrix.dim(), 0);
         let mut iterate = Iterate::new(vec![0.0; force.len()], force, Blocks::ONE);
-        for _ in 0..LOOKED {
-            if watch.is_over() {
-                return None;
-            }
-            if !iterate.step(self.multigrid.cycle(&iterate.rest), |p| self.product(p)) {
-                return Some(iterate.direction);
-            }
-        }
-        None
+        let mut steps = (0..LOOKED).take_while(|_| !watch.is_over());
+        let ends = steps.any(|_| !iterate.step(self.multigrid.cycle(&iterate.rest), |p| self.product(p)));
+        ends.then_some(iterate.direction)
     }
 }
 
@@ -169,9 +163,10 @@ impl Preconditioned<'_> {
                 }
             }
             if lanczos.iter().all(|lanczos| lanczos.found.is_some()) {
-                let in_unit = |(found, &unit): (DualNorm, &i32)| {
-                    let [least, most] = [found.least, found.most].map(|norm| ldexp(norm, -unit));
-                    DualNorm { least, most, ..found }
+                let in_unit = |(found, &unit): (DualNorm, &i32)| DualNorm {
+                    least: ldexp(found.least, -unit),
+                    most: ldexp(found.most, -unit),
+                    ..found
                 };
                 return Some(lanczos.iter().filter_map(|lanczos| lanczos.found).zip(&units).map(in_unit).collect());
             }

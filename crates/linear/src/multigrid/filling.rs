@@ -79,10 +79,9 @@ impl Filling<'_> {
     /// For each node the first one whose row has the same blocks: the nodes around have the same columns of the lower
     /// triangle, and lie alike. Where few are alike, each is the first.
     fn first_alike(&self) -> Vec<u32> {
-        let (mut kinds, mut key) = (Firsts::default(), Vec::new());
+        let mut key = Vec::new();
         let mut of_nodes = |keys: &dyn Fn(u32, u32, &mut Vec<u32>)| -> Option<Vec<u32>> {
-            kinds = Firsts::default();
-            let mut firsts = Vec::with_capacity(self.exponents.len());
+            let (mut kinds, mut firsts) = (Firsts::default(), Vec::with_capacity(self.exponents.len()));
             for group in 0..self.graph.count() as u32 {
                 for node in self.nodes(group) {
                     key.clear();
@@ -110,10 +109,9 @@ impl Filling<'_> {
             of_nodes(&|node, group, key| {
                 for of_other in [&[group], self.graph.neighbours(group)].into_iter().flatten() {
                     for other in self.nodes(*of_other) {
-                        let apart = |of: u32, from: u32| of.wrapping_sub(from);
                         let dof = |node: u32, group: u32| self.dofs(node, group)[0] as u32;
-                        key.extend([apart(other, node), apart(dof(other, *of_other), dof(node, group))]);
-                        key.push(kinds[other as usize]);
+                        let apart = dof(other, *of_other).wrapping_sub(dof(node, group));
+                        key.extend([other.wrapping_sub(node), apart, kinds[other as usize]]);
                     }
                 }
             })

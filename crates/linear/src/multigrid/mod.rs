@@ -102,10 +102,7 @@ impl Multigrid {
         threads: usize,
         precision: Width,
     ) -> Result<Self, Error> {
-        if near_null.dofs() != matrix.dim() {
-            let (found, expected) = (near_null.dofs(), matrix.dim());
-            return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
-        }
+        Error::check_length("near-null vector", near_null.dofs(), matrix.dim(), "dofs")?;
         check_diagonal(matrix)?;
         let levels = match precision {
             Width::Single => Hierarchy::new(matrix, near_null, threads).map(Levels::Single),

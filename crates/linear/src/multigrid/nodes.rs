@@ -203,9 +203,8 @@ impl NearNullSpace {
             let (name, value) = ("the number of coordinates of a node", dimension as f64);
             return Err(Error::Setting { name, value, allowed: "1, 2 or 3" });
         }
-        if let Some(axis) = axes.iter().find(|axis| axis.len() != nodes) {
-            return Err(Error::Length { name: "axis of coordinates", found: axis.len(), expected: nodes, of: "nodes" });
-        }
+        let check = |axis: &Vec<f64>| Error::check_length("axis of coordinates", axis.len(), nodes, "nodes");
+        axes.iter().try_for_each(check)?;
         for (axis, values) in axes.iter().enumerate() {
             if let Some((node, &value)) = values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
                 let at = format!("({node}, {axis})");

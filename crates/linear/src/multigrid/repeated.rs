@@ -97,7 +97,9 @@ impl<T: Real> RowByRow<T> {
         if let Some(&last) = matrix.shared_rows.last().filter(|&&last| is_same(last)) {
             return last;
         }
-        let alike = self.known.entry(hash(relative(), values)).or_default();
+        let words = relative().map(u64::from).chain(values.iter().map(|value| value.double().to_bits()));
+        let mixed = |hash: u64, word: u64| (hash.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95);
+        let alike = self.known.entry(words.fold(0, mixed)).or_default();
         if let Some(&first) = alike.iter().find(|&&first| is_same(first)) {
             return first;
         }
@@ -119,11 +121,6 @@ impl<T: Real> RowByRow<T> {
         (matrix.indices, matrix.values, matrix.shared_rows) = (whole.indices, whole.values, whole.shared_rows);
         self.known.clear();
     }
-}
-
-fn hash<T: Real>(indices: impl Iterator<Item = u32>, values: &[T]) -> u64 {
-    let words = indices.map(u64::from).chain(values.iter().map(|value| value.double().to_bits()));
-    words.fold(0, |hash: u64, word| (hash.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95))
 }
 
 impl<T: Real> BlockMatrix<T> {
