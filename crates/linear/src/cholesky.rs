@@ -152,7 +152,6 @@ impl Analysis {
         self.factorised(self.permuted(matrix.lower(), entry))
     }
 
-    /// The dense factor of the matrix with this lower triangle.
     fn factorised_densely(&self, order: &[usize], lower: &SparseMatrix) -> Result<Cholesky, FactorError> {
         let (dim, place) = (order.len(), places(order));
         let is_in_order = place.is_sorted();

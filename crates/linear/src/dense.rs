@@ -85,10 +85,9 @@ pub fn check_vector(
     allowed: &'static str,
 ) -> Result<(), Error> {
     Error::check_length(name, values.len(), expected, of)?;
-    match values.iter().enumerate().find(|entry| !is_allowed(*entry.1)) {
-        Some((index, &value)) => Err(Error::NotFinite { name, at: format!("entry {index}"), value, allowed }),
-        None => Ok(()),
-    }
+    let refused = values.iter().enumerate().find(|entry| !is_allowed(*entry.1));
+    let Some((index, &value)) = refused else { return Ok(()) };
+    Err(Error::NotFinite { name, at: format!("entry {index}"), value, allowed })
 }
 
 /// The same for a vector of this length of any finite values.

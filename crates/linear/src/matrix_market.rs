@@ -25,7 +25,7 @@ impl SparseMatrix {
             return Ok(lower);
         }
         let below = lower.triplets().filter(|(row, column, _)| row != column);
-        let above: Vec<_> = below.map(|(row, column, value)| (column, row, value)).collect();
+        let above = below.map(|(row, column, value)| (column, row, value));
         let all: Vec<_> = lower.triplets().chain(above).collect();
         SparseMatrix::from_triplets(lower.rows(), lower.columns(), &all)
     }

@@ -42,7 +42,7 @@ impl SymmetricMatrix {
     /// # Errors
     /// [`Error::Shape`] if not square, [`Error::NotSymmetric`] if the triangles differ.
     pub fn from_full(full: &SparseMatrix) -> Result<Self, Error> {
-        square(full)?;
+        check_shape("stiffness", (full.rows(), full.columns()), (full.rows(), full.rows()))?;
         let (starts, values, rows) = (full.column_starts(), full.values(), full.row_indices().collect::<Vec<_>>());
         Ok(SymmetricMatrix { lower: Columns { starts, rows: &rows, values }.walked(Taken::Lower)?.0 })
     }
@@ -112,7 +112,7 @@ impl SymmetricMatrix {
     /// # Errors
     /// [`Error::Shape`] if not square, [`Error::NotSymmetric`] if an entry lies above the diagonal.
     pub fn from_lower(lower: SparseMatrix) -> Result<Self, Error> {
-        square(&lower)?;
+        check_shape("stiffness", (lower.rows(), lower.columns()), (lower.rows(), lower.rows()))?;
         let above = lower.triplets().find(|&(row, column, _)| row < column);
         let Some((row, column, value)) = above else { return Ok(SymmetricMatrix { lower }) };
         Err(Error::NotSymmetric { row, column, value, mirrored: 0.0 })
@@ -160,10 +160,7 @@ impl SymmetricMatrix {
     /// # Errors
     /// [`Error::Shape`] for a matrix R of another height, [`Error::NotFinite`] if entries overflow.
     pub fn congruent(&self, rows: &SparseMatrix) -> Result<Self, Error> {
-        if rows.columns() != self.dim() {
-            let (found, expected) = ((rows.columns(), rows.rows()), (self.dim(), rows.rows()));
-            return Err(Error::Shape { name: "change of unknowns", found, expected });
-        }
+        check_shape("change of unknowns", (rows.columns(), rows.rows()), (self.dim(), rows.rows()))?;
         let mut entries = Vec::with_capacity(self.lower.entries());
         for (i, j, value) in self.lower.triplets() {
             for (p, a) in rows.column(i) {
@@ -184,10 +181,7 @@ impl SymmetricMatrix {
     /// # Errors
     /// [`Error::Shape`] for a matrix of another size, [`Error::NotFinite`] if entries overflow.
     pub fn combined(&self, own: f64, factor: f64, other: &Self) -> Result<Self, Error> {
-        if other.dim() != self.dim() {
-            let (found, expected) = ((other.dim(), other.dim()), (self.dim(), self.dim()));
-            return Err(Error::Shape { name: "mass", found, expected });
-        }
+        check_shape("mass", (other.dim(), other.dim()), (self.dim(), self.dim()))?;
         let places = self.lower.entries().max(other.lower.entries());
         let (mut starts, mut rows, mut values) =
             (Vec::with_capacity(self.dim() + 1), Vec::with_capacity(places), Vec::with_capacity(places));
@@ -344,8 +338,6 @@ impl SymmetricMatrix {
     }
 }
 
-fn square(matrix: &SparseMatrix) -> Result<(), Error> {
-    let (rows, columns) = (matrix.rows(), matrix.columns());
-    let (name, found, expected) = ("stiffness", (rows, columns), (rows, rows));
-    if rows == columns { Ok(()) } else { Err(Error::Shape { name, found, expected }) }
+fn check_shape(name: &'static str, found: (usize, usize), expected: (usize, usize)) -> Result<(), Error> {
+    if found == expected { Ok(()) } else { Err(Error::Shape { name, found, expected }) }
 }

@@ -183,7 +183,9 @@ impl Watch {
     /// The same watch for finishing an answer, for example its certificate: its deadline is later by a share of the
     /// time.
     pub fn finishing(&self) -> Watch {
-        Watch { deadline: self.deadline.as_ref().and_then(Deadline::finishing), ..self.clone() }
+        let later =
+            |own: &Deadline| Some(Deadline { at: own.at.checked_add(own.span.mul_f64(FINISHING))?, ..own.clone() });
+        Watch { deadline: self.deadline.as_ref().and_then(later), ..self.clone() }
     }
 
     /// Seconds until the deadline, if there is one.
@@ -256,7 +258,6 @@ impl Watch {
     }
 }
 
-/// A moment at which work must end.
 #[derive(Clone, Debug)]
 struct Deadline {
     at: Instant,
@@ -289,11 +290,6 @@ impl Deadline {
         let left = self.left();
         let sooner = Self::within(left - seconds.min(left)).map(|sooner| self.or_sooner(sooner));
         Deadline { cut: self.cut.clone(), ..sooner.unwrap_or_else(|| self.clone()) }
-    }
-
-    /// The deadline for finishing an answer: later by a share of the time.
-    fn finishing(&self) -> Option<Self> {
-        Some(Deadline { at: self.at.checked_add(self.span.mul_f64(FINISHING))?, ..self.clone() })
     }
 
     fn left(&self) -> f64 {

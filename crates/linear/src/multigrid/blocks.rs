@@ -149,7 +149,6 @@ impl<T: Real> BlockMatrix<T> {
         }
     }
 
-    /// A matrix without entries, of `rows` by `columns` blocks.
     pub fn empty(rows: usize, columns: usize, (height, width): (usize, usize)) -> Self {
         let (starts, indices, values) = (vec![0; rows + 1], Vec::new(), Vec::new());
         let (shared_rows, shifts) = (Vec::new(), Vec::new());

@@ -52,7 +52,6 @@ pub struct Hierarchy<T> {
     pub(super) coarsest_matrix: Arc<BlockMatrix<T>>,
     pub(super) coarsest: Arc<Coarsest>,
     pub(super) threads: usize,
-    /// Work vectors of the cycle.
     pub(super) spare: Spare<T>,
 }
 
@@ -192,7 +191,6 @@ impl<T: Real> Hierarchy<T> {
         self.levels.iter().map(|level| &level.matrix).chain([&*self.coarsest_matrix])
     }
 
-    /// Number of unknowns of each level, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
         self.matrices().map(|matrix| matrix.rows() * matrix.height).collect()
     }

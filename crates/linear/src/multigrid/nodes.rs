@@ -81,7 +81,6 @@ impl Nodes {
         (size, place.into_iter().map(|place| place as usize % size).collect())
     }
 
-    /// The node of each dof, and the exponent of its unit.
     pub fn units(&self) -> Units {
         let groups = self.place.iter().map(|&place| place / self.size as u32).collect();
         Units { groups, exponents: self.places().map(|place| place.1).collect() }

@@ -25,7 +25,6 @@ impl<'a, T: Real> Operator<'a, T> {
         Operator { matrix, held: None, change: None, threads, spare }
     }
 
-    /// Number of unknowns of the level: its nodes times the dofs of a node.
     pub fn dim(&self) -> usize {
         self.matrix.rows() * self.matrix.height
     }

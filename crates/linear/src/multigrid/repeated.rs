@@ -211,19 +211,15 @@ mod tests {
         (0..length * lines).map(row).collect()
     }
 
-    /// The matrix of some rows, and the same with each row stored by itself.
-    fn both(rows: &[(Vec<u32>, Vec<f32>)]) -> [BlockMatrix<f32>; 2] {
+    fn check(rows: &[(Vec<u32>, Vec<f32>)], is_shared: bool) {
         let mut shared = RowByRow::new(3, rows.len());
         rows.iter().for_each(|(columns, values)| shared.push(columns, values));
         let blocks = |(columns, values): &(Vec<u32>, Vec<f32>)| -> Vec<(usize, Vec<f32>)> {
             columns.iter().zip(values.chunks(9)).map(|(&column, block)| (column as usize, block.to_vec())).collect()
         };
+        // The same with each row stored by itself.
         let plain = BlockMatrix::of_rows(rows.len(), (3, 3), rows.iter().map(blocks));
-        [shared.finished(), plain]
-    }
-
-    fn check(rows: &[(Vec<u32>, Vec<f32>)], is_shared: bool) {
-        let [found, plain] = both(rows);
+        let found = shared.finished();
         assert_eq!(!found.shared_rows.is_empty(), is_shared);
         for row in 0..rows.len() {
             assert!(found.row(row).eq(plain.row(row)), "row {row}");
