@@ -149,7 +149,7 @@ impl Watch {
     pub fn is_over(&self) -> bool {
         let passed = self.deadline.as_ref().filter(|deadline| deadline.left() == 0.0);
         if let Some(deadline) = passed {
-            deadline.note(self.activity(), None);
+            deadline.cut.get_or_init(|| Cut { activity: self.activity(), refused: None });
         }
         self.acknowledge() || passed.is_some()
     }
@@ -199,7 +199,7 @@ impl Watch {
         let Some(deadline) = &self.deadline else { return true };
         let (left, needed) = (deadline.left(), self.needed(estimate));
         if needed >= left {
-            deadline.note(self.activity(), Some([needed, left]));
+            deadline.cut.get_or_init(|| Cut { activity: self.activity(), refused: Some([needed, left]) });
         }
         needed < left
     }
@@ -263,10 +263,10 @@ struct Deadline {
     at: Instant,
     /// Time from setting the deadline to the deadline.
     span: Duration,
+    /// The first work that it cut short or left out.
     cut: Arc<OnceLock<Cut>>,
 }
 
-/// Work that a deadline cut short or left out.
 #[derive(Clone, Debug)]
 struct Cut {
     activity: Activity,
@@ -294,11 +294,6 @@ impl Deadline {
 
     fn left(&self) -> f64 {
         self.at.saturating_duration_since(Instant::now()).as_secs_f64()
-    }
-
-    /// Takes down that the deadline ended this activity, or `refused` to begin the next; only the first is kept.
-    fn note(&self, activity: Activity, refused: Option<[f64; 2]>) {
-        self.cut.get_or_init(|| Cut { activity, refused });
     }
 }
 

@@ -59,12 +59,9 @@ pub fn aggregate(graph: &Graph) -> (Vec<u32>, usize) {
     }
     for node in 0..nodes {
         if of_node[node] == NONE {
-            of_node[node] = count;
-            for &other in graph.neighbours(node) {
-                if of_node[other as usize] == NONE {
-                    of_node[other as usize] = count;
-                }
-            }
+            let around = graph.neighbours(node).iter().map(|&other| other as usize).chain([node]);
+            // A node in an aggregate has a lower number, and keeps it.
+            around.for_each(|other| of_node[other] = of_node[other].min(count));
             count += 1;
         }
     }
