@@ -28,12 +28,10 @@ const DEPENDENT: f64 = 1e-12;
 /// A pivot of a matrix with a diagonal of order one below this is rounding: the matrix may be singular.
 const SINGULAR: f64 = 1e-12;
 
-/// Shift of a singular matrix, relative to the smallest ratio of diagonal entries: far above the rounding of its
-/// pivots, far below the eigenvalues that are not zero.
+/// Shift of a singular matrix, relative to the smallest ratio of diagonals: far above rounding, far below eigenvalues.
 const SHIFT: f64 = 1e-8;
 
-/// The largest ratio of the largest and the smallest eigenvalue of the operator: with more, the smallest have too few
-/// digits.
+/// The largest ratio of the extreme eigenvalues of the operator: with more, the smallest have too few digits.
 const SPREAD: f64 = 1e6;
 
 /// Pairs after the last wanted one among which a gap for the count is looked for.
@@ -121,7 +119,6 @@ pub fn modes(
     Ok(found)
 }
 
-/// The lowest pairs of a stiffness and a mass, without multipliers.
 fn lowest(
     [stiffness, mass]: [&SymmetricMatrix; 2],
     count: usize,
@@ -229,8 +226,7 @@ impl Shifted<'_> {
         Ok(space)
     }
 
-    /// A shift with which the largest eigenvalue keeps its digits, if the smallest of the first `count` lie far below
-    /// it.
+    /// A shift with which the largest eigenvalue keeps its digits, if the first `count` reach far below it.
     fn better_shift(&self, pairs: &Pairs, count: usize) -> Option<f64> {
         let (first, last) = (pairs.values.first()?, pairs.values[..with_mass(pairs, count)].last()?);
         (first / last > SPREAD).then(|| (1.0 / last - self.shift) / SPREAD.sqrt())
@@ -311,8 +307,7 @@ impl Shifted<'_> {
         })
     }
 
-    /// The ends of a gap of the eigenvalues w at or after the first `count` ones, and how many of the pairs lie below
-    /// it; `None` without a gap.
+    /// The ends of a gap of the eigenvalues w after the first `count`, and how many lie below it; `None` without a gap.
     fn gap_after(&self, pairs: &Pairs, count: usize) -> Option<([f64; 2], usize)> {
         let all = pairs.values.len();
         // Eigenvalues 1/(w + s), decreasing.

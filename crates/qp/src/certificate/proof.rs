@@ -18,7 +18,7 @@
 //! that of the body alone, with rows that this uncertainty brings nearer.
 
 use super::bound::Answer;
-use super::bound::row_by_row::negligible;
+use super::bound::general::negligible;
 use super::conditions::{Bounding, Evidence, examined};
 use super::energy_norm::{EnergyNorm, ROUNDED_BOUND};
 use super::reach::{ComplianceFactor, measured_reach, monotone_reach, within_reach};

@@ -111,7 +111,7 @@ pub fn within_reach(compliance: &ComplianceFactor, rows: &[(usize, f64)]) -> Vec
 
 /// The compliance of the rows of a contact matrix: on the boundary if all rows are on it, and otherwise in the whole
 /// body.
-pub(super) struct ComplianceFactor<'a> {
+pub struct ComplianceFactor<'a> {
     contact: &'a SparseMatrix,
     norm: &'a EnergyNorm,
     rows: RowsOnBoundary,
@@ -120,16 +120,21 @@ pub(super) struct ComplianceFactor<'a> {
 }
 
 impl<'a> ComplianceFactor<'a> {
-    pub(super) fn of(problem: &'a ContactProblem, norm: &'a EnergyNorm) -> Self {
+    pub fn of(problem: &'a ContactProblem, norm: &'a EnergyNorm) -> Self {
         let contact = &problem.contact;
         let on_boundary = norm.rows_on_boundary(contact, |_| true);
         let boundary = on_boundary.as_ref().and(norm.boundary.as_deref());
-        ComplianceFactor { contact, norm, rows: on_boundary.unwrap_or_else(|| norm.rows_in_body(contact)), boundary }
+        ComplianceFactor {
+            contact,
+            norm,
+            rows: on_boundary.unwrap_or_else(|| norm.normalised(&norm.scaled_rows(contact), None)),
+            boundary,
+        }
     }
 
     /// `sqrt(G_ii)`, with the rounding of a sweep: the distance by which a displacement of unit energy norm moves the
     /// row.
-    pub(super) fn reach(&self, row: usize) -> f64 {
+    pub fn reach(&self, row: usize) -> f64 {
         if self.norm.is_over() {
             return f64::INFINITY;
         }
@@ -146,7 +151,7 @@ impl<'a> ComplianceFactor<'a> {
 
     /// The reach of all rows, if their compliance is known; otherwise upper bounds by one sweep, if the contact
     /// boundary is known: the length of a column is at most the sum of its magnitudes.
-    pub(super) fn reach_at_once(&self) -> Option<Vec<f64>> {
+    pub fn reach_at_once(&self) -> Option<Vec<f64>> {
         let all = 0..self.rows.shift.len();
         if self.rows.compliance.is_kept() {
             return Some(all.map(|row| self.reach(row)).collect());
@@ -157,7 +162,7 @@ impl<'a> ComplianceFactor<'a> {
     }
 
     /// Multiplications of one sweep.
-    pub(super) fn sweep(&self) -> f64 {
+    pub fn sweep(&self) -> f64 {
         match self.boundary {
             Some(boundary) => (boundary.dofs.len() as f64).powi(2) / 2.0,
             None => self.norm.cholesky.entries() as f64,

@@ -83,6 +83,21 @@ impl<T> Derivative<T> {
             Derivative::Unknown { why } => Derivative::Unknown { why: why.clone() },
         }
     }
+
+    /// Its value, if the exact answer is known to be smooth; otherwise `None`.
+    pub fn proven(&self) -> Option<&T> {
+        if let Derivative::Proven(value) = self { Some(value) } else { None }
+    }
+
+    /// `proven`, `one-sided`, `undecided` or `unknown`.
+    pub fn verdict(&self) -> &'static str {
+        match self {
+            Derivative::Proven(_) => "proven",
+            Derivative::OneSided { .. } => "one-sided",
+            Derivative::Undecided { .. } => "undecided",
+            Derivative::Unknown { .. } => "unknown",
+        }
+    }
 }
 
 impl<T> Derivative<Result<T, String>> {
@@ -100,23 +115,6 @@ impl<T> Derivative<Result<T, String>> {
             Derivative::Unknown { why } => Err(why),
         };
         found.unwrap_or_else(|why| Derivative::Unknown { why })
-    }
-}
-
-impl<T> Derivative<T> {
-    /// Its value, if the exact answer is known to be smooth; otherwise `None`.
-    pub fn proven(&self) -> Option<&T> {
-        if let Derivative::Proven(value) = self { Some(value) } else { None }
-    }
-
-    /// `proven`, `one-sided`, `undecided` or `unknown`.
-    pub fn verdict(&self) -> &'static str {
-        match self {
-            Derivative::Proven(_) => "proven",
-            Derivative::OneSided { .. } => "one-sided",
-            Derivative::Undecided { .. } => "undecided",
-            Derivative::Unknown { .. } => "unknown",
-        }
     }
 }
 
@@ -148,8 +146,7 @@ impl<T: Serialize> Serialize for Derivative<T> {
 ///
 /// // A spring of stiffness 2, pushed with force 3 towards a wall at 1: the wall takes 3 - 2 x 1 = 1.
 /// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
-/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
-/// let problem = ContactProblem::new(stiffness, vec![3.0], one(1.0)?, vec![1.0])?;
+/// let problem = ContactProblem::new(SymmetricMatrix::of_diagonal(vec![2.0]), vec![3.0], one(1.0)?, vec![1.0])?;
 /// let prepared = Prepared::new(&problem, &Settings::default())?;
 ///
 /// // The force on the wall, -lambda, falls by 2 for each unit of gap, grows with the load, and falls with the stiffness.
@@ -266,8 +263,7 @@ impl Derivatives {
         })
     }
 
-    /// The tangent for a growing parameter at a kink: a contact problem of the weak rows, with the pressing rows held.
-    /// `None` if its set is not confirmed.
+    /// The tangent at a kink: a contact problem of the weak rows, others held. `None` if its set is not confirmed.
     fn one_sided(&self, rows: &RowStates, change: &Change) -> Result<Option<Tangent>, Error> {
         let (problem, RowStates { closed, weak, .. }) = (&self.problem, rows);
         let distances = self.on_first_rows(&change.distance);
@@ -332,13 +328,11 @@ impl Derivatives {
         Ok(Some(Tangent { displacement: x, multiplier: self.problem.split(y).concat(), error }))
     }
 
-    /// Number of rows as they were given: those of B and the equality rows.
     fn given_rows(&self) -> usize {
         self.problem.inequalities() + self.problem.equality_rows()
     }
 
-    /// Values of the rows as they were given, for all rows of the problem: an equality is held by the first of its two
-    /// rows.
+    /// Values of the rows as given, for all rows of the problem: an equality is held by the first of its two rows.
     fn on_first_rows(&self, given: &[f64]) -> Vec<f64> {
         let mut values = given.to_vec();
         values.resize(self.problem.rows(), 0.0);
@@ -383,7 +377,6 @@ impl Prepared {
     }
 }
 
-/// The derivatives of an answer of `problem`, with a factor or a hierarchy of their own.
 pub fn derivatives(problem: &ContactProblem, solution: &Solution, settings: &Settings) -> Result<Derivatives, Error> {
     // A derivative takes the method of its answer.
     let method = if solution.method.starts_with("mprgp") { Method::Mprgp } else { Method::ActiveSet };

@@ -19,8 +19,7 @@ const DUST: f64 = 1e-20;
 
 /// The rows of the exact answer. Sets are those of all rows of the problem, one row of each equality included.
 #[derive(Clone, Debug)]
-pub(super) struct RowStates {
-    /// The rows that press.
+pub struct RowStates {
     pub closed: ContactSet,
     /// The rows that may be open or closed; all others that do not press have a gap.
     pub weak: Vec<usize>,
@@ -28,9 +27,8 @@ pub(super) struct RowStates {
     pub is_kink: bool,
 }
 
-/// The rows of the exact answer of `problem`, of which `solution` is the answer in doubles, with these multipliers of
-/// all rows; or why nothing is known.
-pub(super) fn rows_of(
+/// The rows of the exact answer, from one in doubles with these multipliers of all rows; or why nothing is known.
+pub fn rows_of(
     problem: &ContactProblem,
     engine: &Engine,
     solution: &Solution,
@@ -43,7 +41,7 @@ pub(super) fn rows_of(
         None => proven_here(problem, engine, answer.map(Vec::as_slice), watch)?,
     };
     let Some(ProvenSet { open, closed }) = proven else {
-        return Ok(Err(match problem.has_free_mode() {
+        return Ok(Err(match problem.free_motions() > 0 {
             true => "contact alone holds the body: no row is proven",
             false => "no bound on the error of the answer is known: no row is proven",
         }));
@@ -90,9 +88,8 @@ fn proven_here(
     Examination::of(problem, answer, &Bounding::Factor(norm))?.proof(None)
 }
 
-/// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: every force is in
-/// balance, and every condition holds, without any rounding. The answer is unique, because a bound on its error is
-/// known.
+/// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: all conditions hold
+/// without any rounding. The answer is unique, because its error has a bound.
 fn exact_answer(
     problem: &ContactProblem,
     engine: &Engine,
@@ -131,8 +128,7 @@ fn without_dust(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&value| if value.abs() <= least { 0.0 } else { value }).collect()
 }
 
-/// The closed and the weak rows of an answer in which an equality has a multiplier of either sign on its first row;
-/// `None` if it is not exact.
+/// The closed and the weak rows of an answer, an equality as its first row of either sign; `None` if it is not exact.
 fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<RowStates> {
     let mut sums = vec![ExactSum::default(); problem.dofs()];
     for (i, j, stiffness) in problem.stiffness().lower().triplets() {

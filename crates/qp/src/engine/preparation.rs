@@ -18,7 +18,7 @@ use crate::transform::{Condensation, RowSelection, Scaling};
 const LOST_PIVOT: f64 = 1e-10;
 
 /// Scales, condenses and factorises `problem`, for the method of an attempt.
-pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<Factored, Error> {
+pub fn factored(problem: &ContactProblem, settings: &Settings) -> Result<Factored, Error> {
     let Settings { threads, watch, .. } = settings;
     let clock = Instant::now();
     watch.step("ordering", 0);
@@ -47,10 +47,7 @@ pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<
     }
     // If no columns come last, the contact sets have the order of the stiffness.
     let analysis = last.is_empty().then_some(analysis);
-    let condensation = match is_condensed {
-        true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
-        false => None,
-    };
+    let condensation = if is_condensed { condensed(cholesky.as_ref(), &scaling, &last, settings)? } else { None };
     let norm = match (cholesky, &analysis) {
         (None, _) => Norm::Missing,
         (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
@@ -91,8 +88,7 @@ pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<
     })
 }
 
-/// The factor of a stiffness with an analysed pattern, `None` if it is not definite to working precision, and its
-/// smallest pivot, zero without a factor. It may serve to condense the problem.
+/// The factor of an analysed stiffness, `None` if it is not definite, and its smallest pivot, zero without a factor.
 fn definite(
     problem: &ContactProblem,
     scaling: &Scaling,
@@ -118,9 +114,7 @@ fn definite(
     }
 }
 
-/// The condensation onto the contact dofs `last`, from the factor of the stiffness or, without one, from that of the
-/// stiffness with its rows; `None` if even all rows together do not hold the body: the full problem then gives the
-/// reason.
+/// The condensation onto `last`, by the factor of K or of K with its rows; `None` if these do not hold the body.
 fn condensed(
     cholesky: Option<&Cholesky>,
     scaling: &Scaling,

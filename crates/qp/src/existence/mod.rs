@@ -33,8 +33,7 @@ const BALANCED: f64 = 1e-9;
 /// A row presses if its force on a dof exceeds this share of the forces in balance there; smaller forces are rounding.
 const PRESSED: f64 = 1e-13;
 
-/// If an answer leaves forces out of balance that may move a row by more than this share of its displacement and gap,
-/// it does not show which rows touch.
+/// An answer whose imbalance may move a row by more than this share of its displacement and gap shows no touching rows.
 const SETTLED_FORCES: f64 = 1e-4;
 
 /// A row that is open by less than this share of its displacement and gap may touch.
@@ -46,12 +45,10 @@ const STRAINED: f64 = 1e-13;
 /// An answer is settled to this share of its largest displacement, in the units of equal stiffness.
 const SETTLED_TO: f64 = 1e-11;
 
-/// A body moves at most this many times as far as a dof that a force moves alone: enough for bodies that are not
-/// slender.
+/// A body moves at most this many times as far as a dof that a force moves alone, unless it is slender.
 const BENDS: f64 = 1e3;
 
-/// A direction is a rigid-body mode if it differs from one by less than this share of its length: null vectors of
-/// rounded entries have about ten digits.
+/// A direction within this share of its length is a rigid-body mode: null vectors of rounded entries have ten digits.
 const RIGID: f64 = 1e-6;
 
 /// The analysis of the stiffness, if memory and time allow its factorisation.
@@ -72,7 +69,7 @@ fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem,
 }
 
 /// A scaled problem with a basis of the null space of its stiffness.
-pub(super) struct Existence {
+pub struct Existence {
     scaled: ContactProblem,
     pub scaling: Scaling,
     null: NullSpace,
@@ -81,8 +78,7 @@ pub(super) struct Existence {
     rows: Vec<(usize, Row)>,
     /// `-f'N`: as a row, the load stops directions against it.
     against_load: Row,
-    /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with
-    /// which.
+    /// The softest motion that the stiffness holds within rounding, and the share of its terms with which.
     within_rounding: Option<(usize, f64)>,
 }
 
@@ -122,8 +118,7 @@ impl Existence {
         Existence { scaled, scaling, null, rounding, rows, against_load, within_rounding: None }
     }
 
-    /// Springs at as many dofs as there are motions without energy to rounding, which hold all of them: their entries
-    /// of a matrix.
+    /// Springs at as many dofs as there are motions without energy, which hold all: their entries of a matrix.
     pub fn springs(&self) -> Vec<(usize, usize, f64)> {
         let (kind, mut motions, mut springs) = (self.scaling.identity(0), self.null.found.clone(), Vec::new());
         while let Some(motion) = motions.pop() {
@@ -144,8 +139,7 @@ impl Existence {
         Some(Error::Unbounded { mode: mode.in_words(), direction: self.expanded(&mode) })
     }
 
-    /// The reason why existence is not decided, if the stiffness holds a motion by no more than the rounding of its
-    /// entries.
+    /// The reason why existence is not decided, if the stiffness holds a motion by rounding alone.
     pub fn doubt(&self) -> Option<String> {
         let (dof, share) = self.within_rounding?;
         Some(format!(
@@ -178,8 +172,7 @@ impl Existence {
 
     /// A mode without energy that leads from an answer to others.
     ///
-    /// If a displacement differs from u by a d with `K d = 0` and `f'd = 0`, it has the same energy. It meets the rows
-    /// if d closes no row that touches.
+    /// A d with `K d = 0` and `f'd = 0` keeps the energy, and the rows if it closes none that touches.
     fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<NullMode> {
         let u = &solution.displacement;
         let violation = problem.accurate_violation(u);
@@ -288,8 +281,7 @@ fn shares_of_forces(problem: &ContactProblem, solution: &Solution) -> Vec<f64> {
     shares
 }
 
-/// Returns `true` if a displacement, of one body, is one of the rigid-body modes that the problem declares. `bodies`
-/// gives the body of each dof.
+/// Returns `true` if a displacement of one of these bodies is a rigid-body mode that the problem declares.
 fn is_rigid(problem: &ContactProblem, displacement: &[f64], bodies: &[usize]) -> bool {
     let Some(modes) = problem.near_null() else { return false };
     let body = bodies[place_of_largest(displacement)];

@@ -29,10 +29,11 @@ const CHANGES_PER_ROW: usize = 50;
 /// The compliance of the contact rows, with the violation of the free body as a function of t.
 #[derive(Clone, Debug)]
 pub struct ParametricLcp {
-    /// G, column by column.
-    matrix: Vec<f64>,
-    constant: Vec<f64>,
-    slope: Vec<f64>,
+    /// G (m x m), column by column.
+    pub matrix: Vec<f64>,
+    /// b(t) = `constant` + t `slope`.
+    pub constant: Vec<f64>,
+    pub slope: Vec<f64>,
 }
 
 /// A row that changes sides on the way between two gaps: it touches, or it releases.
@@ -67,11 +68,6 @@ impl Piece {
 }
 
 impl ParametricLcp {
-    /// From the symmetric matrix G (m x m, column by column) and b(t) = `constant` + t `slope`.
-    pub fn new(matrix: Vec<f64>, constant: Vec<f64>, slope: Vec<f64>) -> Self {
-        ParametricLcp { matrix, constant, slope }
-    }
-
     /// The violation of every row for a unit multiplier of one row.
     fn column(&self, row: usize) -> &[f64] {
         &self.matrix[row * self.rows()..][..self.rows()]
@@ -166,8 +162,7 @@ impl ParametricLcp {
         Err(LinearError::Numerical { step: "the exact path", reason }.into())
     }
 
-    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found from
-    /// `next` by block pivoting on these rows, and by single pivots if that does not help.
+    /// The set that holds next, with slopes of right signs on `undecided` rows: by block, then by single pivots.
     fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: [f64; 2]) -> Result<ContactSet, Error> {
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {

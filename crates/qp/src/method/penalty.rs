@@ -63,8 +63,7 @@ const FINAL_SOLVES: usize = 2;
 /// A relative error in the energy norm, and the bound on that of an answer (displacement, multiplier).
 pub type AccuracyGoal<'a> = (f64, &'a dyn Fn(&[f64], &[f64]) -> f64);
 
-/// Climbs the ladder on a scaled problem from the contact set `closed`, by at most `most_iterations` factorisations on
-/// all rungs together. It ends at its goal, if there is one.
+/// Climbs the ladder from the set `closed`, by at most `most_iterations` factorisations in all, or to its goal.
 pub fn solve(
     scaled: &ScaledProblem,
     ladder: Penalty,

@@ -57,7 +57,6 @@ fn fault(file: &Path, message: String) -> LinearError {
     LinearError::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
 }
 
-/// The places of the free dofs in the stiffness.
 struct Places {
     /// The place in the stiffness of each free dof, increasing.
     free: Vec<u32>,
@@ -87,8 +86,7 @@ impl Places {
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }
 
-    /// Leaves out the entries of supported components, which must be zero, in the last row, of the stiffness that of
-    /// place `own`; what stands on its diagonal has no meaning.
+    /// Leaves out entries of supported components, which must be zero but on their diagonal, in the row of place `own`.
     fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), LinearError> {
         let (supported, mut kept) = (own.filter(|&own| self.dof[own] == SUPPORTED), 0);
         for entry in 0..rows.columns.len() {

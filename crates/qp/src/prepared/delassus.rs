@@ -10,7 +10,7 @@
 //! As many springs N as there are motions, if they hold all, give a generalised inverse `K+ = (K + N)^-1`, exactly. A
 //! motion that K holds by no more than the rounding of its entries counts as one without energy.
 
-use super::reuse::Prepared;
+use super::Prepared;
 use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{Kept, check_memory};
 use crate::error::{Error, LinearError};

@@ -1,17 +1,14 @@
 //! The contact problem as a convex QP, checked once.
 
 mod given_rows;
-mod opposed;
-mod parts;
+mod structure;
 
-pub(crate) use opposed::Equality;
-pub(crate) use parts::Parts;
+pub(crate) use structure::{Equality, Parts};
 
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use opposed::{OpposedRows, settle, without_entries};
-use parts::Diagonal;
+use structure::{Diagonal, OpposedRows, settle, without_entries};
 
 use crate::error::{Error, LinearError};
 use crate::linear::equations::Following;
@@ -59,14 +56,12 @@ pub struct ContactProblem {
     equalities: FoundOnce<Vec<Equality>>,
     /// The number of equality rows: the last rows are as many, and the same from the other side.
     equality_rows: usize,
-    /// The equality rows that follow from the others except for rounding, each after its value: their rows
-    /// have no gap.
+    /// The equality rows that follow from others except for rounding, each after its value: they have no gap.
     following: Arc<[(f64, Following)]>,
     /// The rows without an entry, and those of them whose gaps were rounding, with these gaps.
     pub(crate) without_entries: Arc<[usize]>,
     rounded: Vec<(usize, f64)>,
-    /// The rows that count as equalities by themselves, with a multiplier of either sign: only in a certificate, see
-    /// `two_sided`.
+    /// The rows that are equalities by themselves, with a multiplier of either sign: see `two_sided`.
     two_sided: Vec<bool>,
 }
 
@@ -164,8 +159,7 @@ impl ContactProblem {
         Ok(ContactProblem { near_null: Some(near_null), free_motions: FoundOnce::default(), ..self })
     }
 
-    /// The same with the near-null space of another problem, each of its vectors made one `of` these dofs; those that
-    /// vanish are left out.
+    /// The same with the near-null space of another problem, each vector made one `of` these dofs unless it vanishes.
     pub(crate) fn with_near_null_of(self, other: &Self, of: impl Fn(&[f64]) -> Vec<f64>) -> Result<Self, Error> {
         let vectors = other.near_null().map_or(&[][..], |modes| modes.vectors()).iter().map(|mode| of(mode));
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
@@ -247,7 +241,6 @@ impl ContactProblem {
         Ok(problem)
     }
 
-    /// The diagonal of K, computed at its first use.
     pub(crate) fn diagonal(&self) -> &Diagonal {
         self.diagonal.get_or_init(|| Diagonal::of(&self.stiffness))
     }
@@ -272,7 +265,7 @@ impl ContactProblem {
         let count = || {
             let parts = self.parts();
             let mut part_of_body = vec![0; parts.bodies()];
-            (0..self.dofs()).for_each(|dof| part_of_body[parts.body_of_dof(dof)] = parts.of_dof(dof));
+            (0..self.dofs()).for_each(|dof| part_of_body[parts.body_of_dof(dof)] = parts.of_dof[dof]);
             let largest = |forces: &[f64]| {
                 let mut of_body = vec![0.0_f64; parts.bodies()];
                 for (dof, force) in forces.iter().enumerate() {
@@ -293,17 +286,11 @@ impl ContactProblem {
         *self.free_motions.get_or_init(count)
     }
 
-    /// Returns `true` if a vector of the near-null space has no energy on one of the bodies: supports do not hold it.
-    pub(crate) fn has_free_mode(&self) -> bool {
-        self.free_motions() > 0
-    }
-
     /// Returns `true` if the stiffness is known to be singular: contact alone holds a dof or a mode.
     pub(crate) fn is_singular(&self) -> bool {
-        !self.without_stiffness().is_empty() || self.has_free_mode()
+        !self.without_stiffness().is_empty() || self.free_motions() > 0
     }
 
-    /// The parts, computed at their first use.
     pub(crate) fn parts(&self) -> &Parts {
         self.parts.get_or_init(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
@@ -381,15 +368,10 @@ impl ContactProblem {
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
     pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
-        self.accurate_residual_of(u, &[lambda])
+        self.accurate_balance(u, &[lambda]).residual
     }
 
-    /// The same for multipliers that are given as sums, which are not rounded.
-    pub(crate) fn accurate_residual_of(&self, u: &[f64], multipliers: &[&[f64]]) -> Vec<f64> {
-        self.accurate_balance(u, multipliers).residual
-    }
-
-    /// The same, with its terms.
+    /// The same with its terms, for multipliers that are given as sums, which are not rounded.
     pub(crate) fn accurate_balance(&self, u: &[f64], multipliers: &[&[f64]]) -> Balance {
         // Summed with opposite sign, K u first: if a body moves far and bends little, its energy is so small that
         // forces rounded first would leave nothing of that energy.
@@ -419,7 +401,7 @@ impl ContactProblem {
 }
 
 /// The forces on each dof at a displacement u, with twice the working precision.
-pub(crate) struct Balance {
+pub struct Balance {
     /// `f + B' lambda - K u` at the displacement u, one entry per dof.
     pub residual: Vec<f64>,
     /// `|K u|`.
@@ -431,7 +413,7 @@ pub(crate) struct Balance {
 }
 
 /// The distances `B u - g` of a displacement that is a sum, which is not rounded.
-pub(crate) struct Distances<'a> {
+pub struct Distances<'a> {
     problem: &'a ContactProblem,
     sums: Accumulator,
 }
@@ -451,13 +433,11 @@ impl<'a> Distances<'a> {
     }
 }
 
-/// Checks that `load` has the right length and allowed values.
-pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
+pub fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
     Ok(check_finite("load vector", load, (dofs, "dofs"))?)
 }
 
-/// Checks that `gap` has the right length and allowed values.
-pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
+pub fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
     let allowed = "finite, or +inf for a row without obstacle";
     Ok(check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)?)
 }

@@ -1,6 +1,6 @@
 //! What is taken out of a problem before its ladder: equalities, eliminated, or pieces that nothing couples.
 
-use super::carried_out::{Run, solved};
+use super::{Run, solved};
 use crate::certificate::{Bounding, motion_along, with_rounding};
 use crate::cost::bytes;
 use crate::error::Error;
@@ -8,12 +8,11 @@ use crate::method::Start;
 use crate::plan::{Answered, Best, Ended, Record};
 use crate::settings::Settings;
 use crate::solution::{Certificate, ContactSet, Iteration, ProvenSet, Seconds, Solution, Why};
-use crate::transform::{Elimination, Pieces};
+use crate::transform::{Elimination, Pieces, joined};
 
 impl Run<'_> {
-    /// The answer without the equalities, and these put back; nothing if they are not eliminated, or if it is left to
-    /// the whole whether there is an answer.
-    pub(super) fn by_elimination(&mut self, record: &mut Record) -> Result<Ended, Error> {
+    /// The answer without equalities, and these put back; nothing if none is eliminated, or the whole must decide.
+    pub fn by_elimination(&mut self, record: &mut Record) -> Result<Ended, Error> {
         let (problem, kept) = (self.problem, self.rest);
         let made = if kept.is_some() { None } else { Elimination::of(problem)? };
         let Some(elimination) = kept.map(|kept| kept.elimination).or(made.as_ref()) else { return Ok(Ended::Empty) };
@@ -64,9 +63,8 @@ impl Run<'_> {
         Ok(all.map_or(Ended::Empty, Ended::Answered))
     }
 
-    /// The answers of the pieces as one; nothing if a piece has no answer of its own, or more than one: that is decided
-    /// for the whole.
-    pub(super) fn in_pieces(&mut self, pieces: &Pieces, record: &mut Record) -> Result<Ended, Error> {
+    /// The answers of the pieces as one; nothing if a piece has none or several: that is decided for the whole.
+    pub fn in_pieces(&mut self, pieces: &Pieces, record: &mut Record) -> Result<Ended, Error> {
         let problem = self.problem;
         // The whole problem stays in memory beside the piece.
         let of_whole = bytes::of_problem(problem.dofs() as f64, problem.stiffness().entries() as f64);
@@ -83,11 +81,11 @@ impl Run<'_> {
         }
         let in_whole = |(piece, answer): (usize, &Solution)| {
             let mut certificate = answer.certificate;
-            certificate.cancellation.dof = pieces.dof(piece, certificate.cancellation.dof);
+            certificate.cancellation.dof = pieces.dofs[piece].get(certificate.cancellation.dof).copied().unwrap_or(0);
             certificate
         };
         let certificates: Vec<_> = answers.iter().enumerate().map(in_whole).collect();
-        let joined = joined(pieces, answers);
+        let joined = put_together(pieces, answers);
         let Seconds { factor, certificate, proof, .. } = joined.seconds;
         record.stages = Seconds { factor, certificate, proof, solve: 0.0 };
         let answer = Best::of(joined, record.attempt);
@@ -96,9 +94,9 @@ impl Run<'_> {
 }
 
 /// The answer put together from those of the pieces, without a certificate.
-fn joined(pieces: &Pieces, answers: Vec<Solution>) -> Solution {
-    let displacement = pieces.join_dofs(answers.iter().map(|answer| &answer.displacement[..]));
-    let multiplier = pieces.join_rows(answers.iter().map(|answer| &answer.multiplier[..]));
+fn put_together(pieces: &Pieces, answers: Vec<Solution>) -> Solution {
+    let displacement = joined(&pieces.dofs, answers.iter().map(|answer| &answer.displacement[..]));
+    let multiplier = joined(&pieces.rows, answers.iter().map(|answer| &answer.multiplier[..]));
     let mut names: Vec<&str> = answers.iter().map(|answer| answer.method.as_str()).collect();
     names.sort_unstable();
     names.dedup();

@@ -106,7 +106,7 @@ pub enum Met {
 
 /// The dof at which loads and contact forces cancel most digits of what is left for the elastic force.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Cancellation {
+pub struct Cancellation {
     /// The dof, from 0.
     pub dof: usize,
     /// `(|B|'|lambda| + |f|)_i`, the forces that cancel, in the problem's unit of force.
@@ -134,7 +134,7 @@ impl Serialize for Cancellation {
 }
 
 /// A number that is zero, or another value that says nothing, is left out of a report.
-pub(super) fn is_nothing<T: Default + PartialEq>(value: &T) -> bool {
+pub fn is_nothing<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
@@ -254,8 +254,7 @@ impl Certificate {
         if self.meets(reached) { reached } else { f64::INFINITY }
     }
 
-    /// Returns `true` if this certificate falls short by less than `share` of what `before` falls short by. One with a
-    /// bound is better than one without.
+    /// Returns `true` if this falls short by less than `share` of what `before` does. A bound is better than none.
     pub(crate) fn improves_on(&self, before: &Certificate, share: f64) -> bool {
         match self.has_bound() == before.has_bound() {
             true => self.worst().1 < share * before.worst().1,
@@ -287,10 +286,8 @@ impl Certificate {
     /// The same numbers, with the statement that they meet `goal`, and in which way.
     pub fn judged(mut self, goal: Goal) -> Self {
         let tolerance = goal.required();
-        self.met = self.meets(tolerance).then_some(match self.part_error_bound <= tolerance {
-            true => Met::Tolerance,
-            false => Met::Rounding,
-        });
+        let met = if self.part_error_bound <= tolerance { Met::Tolerance } else { Met::Rounding };
+        self.met = self.meets(tolerance).then_some(met);
         self
     }
 }
