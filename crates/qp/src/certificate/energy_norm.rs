@@ -157,6 +157,11 @@ impl EnergyNorm {
         SWEEP_ROUNDING * self.loss() <= ROUNDED_BOUND - 1.0
     }
 
+    /// The same of a single sweep `L^-1 r`, beside another with the same factor: over the smallest diagonal entry of L.
+    pub fn rounding_of_column(&self) -> f64 {
+        SWEEP_ROUNDING * self.loss().sqrt()
+    }
+
     /// Amplification of rounding by a sweep, on a diagonal of order one: one over the smallest pivot, at least one.
     pub fn loss(&self) -> f64 {
         1.0 / self.cholesky.smallest_pivot().min(1.0)

@@ -175,14 +175,14 @@ impl<'a> ComplianceFactor<'a> {
 
     /// `sqrt((G_CC^-1)_ii)` of the rows C; infinite for those that take part in a dependence.
     pub fn moved_together(&self, rows: &[usize]) -> Vec<f64> {
-        let none = || vec![f64::INFINITY; rows.len()];
+        let (none, rounding) = (|| vec![f64::INFINITY; rows.len()], self.norm.rounding_of_column());
         let of_reciprocal = |row: usize, reciprocal: f64| {
             self.norm.rounding() * ldexp_root(reciprocal, -self.norm.equilibration.factor, self.rows.shift[row])
         };
         if self.norm.is_sharp()
             && self.boundary.is_some()
             && let Some(products) = self.rows.compliance.products(rows, || self.norm.is_over())
-            && let Some(reciprocals) = inverse_lengths_by_products(rows.len(), products)
+            && let Some(reciprocals) = inverse_lengths_by_products(rows.len(), products, rounding)
         {
             return rows.iter().zip(reciprocals).map(|(&row, reciprocal)| of_reciprocal(row, reciprocal)).collect();
         }
@@ -195,7 +195,7 @@ impl<'a> ComplianceFactor<'a> {
             if self.norm.is_over() { None } else { Some(self.rows.compliance.columns(&[rows[index]])) }
         };
         let Some(columns) = basis.iter().map(in_time).collect::<Option<Vec<_>>>() else { return none() };
-        let Some(reciprocals) = inverse_lengths(columns, || self.norm.is_over()) else { return none() };
+        let Some(reciprocals) = inverse_lengths(columns, rounding, || self.norm.is_over()) else { return none() };
         let mut lengths = none();
         for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
             lengths[index] = of_reciprocal(rows[index], reciprocal);

@@ -172,7 +172,8 @@ impl Existence {
 
     /// A mode without energy that leads from an answer to others.
     ///
-    /// A d with `K d = 0` and `f'd = 0` keeps the energy, and the rows if it closes none that touches.
+    /// If a displacement differs from u by a d with `K d = 0` and `f'd = 0`, it has the same energy. It meets the rows
+    /// if d closes no row that touches, also not on the way to where it has opened all rows that u violates.
     fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<NullMode> {
         let u = &solution.displacement;
         let violation = problem.accurate_violation(u);
@@ -200,7 +201,14 @@ impl Existence {
             let closed = TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row] + unbalanced[row];
             violation[row] >= -closed || solution.multiplier[row] != 0.0
         };
-        self.idle(&touches).filter(|mode| self.rows.iter().all(|&(row, _)| !presses(row) || mode.approach[row] == 0.0))
+        let violation = self.scaling.gap(&violation, 0);
+        let leads_on = |NullMode { approach, .. }: &NullMode| {
+            let leaving = self.rows.iter().filter(|(row, _)| approach[*row] < 0.0);
+            let way = leaving.fold(0.0, |way: f64, &(row, _)| way.max(violation[row] / -approach[row]));
+            let stays_open = |row: usize| approach[row] <= 0.0 || violation[row] + way * approach[row] < 0.0;
+            self.rows.iter().all(|&(row, _)| stays_open(row) && (!presses(row) || approach[row] == 0.0))
+        };
+        self.idle(&touches).filter(leads_on)
     }
 
     /// Returns `true` if these forces of the rows hold the load on all modes without energy: they do so to the digits
