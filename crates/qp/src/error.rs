@@ -5,6 +5,8 @@ use crate::linear::FactorError;
 use crate::linear::memory::in_words as memory;
 use crate::solution::{Cancellation, Solution};
 
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
 /// The step that fails at a dof without stiffness.
 const HIERARCHY: &str = "multigrid hierarchy";
 

@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::SymmetricMatrix;
 use crate::linear::file::Streamed;
 use crate::linear::matrix_market::{
@@ -21,7 +21,7 @@ use crate::solution::Solution;
 /// The file that makes a directory one of Matrix Market files.
 pub const STIFFNESS: &str = "K.mtx";
 
-pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
+pub fn read_problem(directory: &Path) -> Result<ContactProblem> {
     let (is_symmetric, stiffness) = matrix(&directory.join(STIFFNESS), None)?;
     let stiffness =
         if is_symmetric { SymmetricMatrix::from_lower(stiffness) } else { SymmetricMatrix::from_full(&stiffness) }?;
@@ -36,7 +36,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
 }
 
 /// The problem with the equality rows of `E.mtx` and `e.mtx`, if there are these files.
-fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactProblem, Error> {
+fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactProblem> {
     let [rows, values] = ["E.mtx", "e.mtx"].map(|name| directory.join(name));
     let missing = |file: PathBuf, sentence: &str| Err(fault(file, format!("it is missing, but {sentence}")));
     match (rows.exists(), values.exists()) {
@@ -49,7 +49,7 @@ fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactP
     problem.with_equalities(&rows, read_vector(&values)?)
 }
 
-pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem, Error> {
+pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem> {
     let [gap_file, load_file] = ["g1.mtx", "f1.mtx"].map(|name| directory.join(name));
     if !gap_file.exists() && !load_file.exists() {
         let message =
@@ -84,7 +84,7 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
 
 /// The near-null space of the body: from `near_null.mtx`, one column for each vector, or from `coordinates.mtx`, one
 /// row for each node. The dofs of a node then follow each other and are all free.
-fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
+fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>> {
     let [given, of_nodes] = ["near_null.mtx", "coordinates.mtx"].map(|name| directory.join(name));
     let is_given = given.exists();
     let file = if is_given { given } else { of_nodes };

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::memory;
 use crate::linear::watch::Watch;
 use crate::method::interior_point::InteriorPoint;
@@ -76,7 +76,7 @@ impl Method {
         self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)
     }
 
-    fn check(self) -> Result<(), Error> {
+    fn check(self) -> Result<()> {
         match self {
             Method::Qp(InteriorPoint { tolerance, .. }) => positive("tolerance of the interior point", tolerance),
             Method::Penalty(Penalty { first, last, penetration_threshold, .. }) => {
@@ -306,7 +306,7 @@ impl Settings {
         Goal { tolerance: self.tolerance.unwrap_or(ANY_FINITE), accuracy: self.accuracy }
     }
 
-    fn check(&self) -> Result<(), Error> {
+    fn check(&self) -> Result<()> {
         for (name, value) in [("tolerance", self.tolerance), ("accuracy", self.accuracy)] {
             value.map_or(Ok(()), |value| positive(name, value))?;
         }
@@ -318,10 +318,10 @@ impl Settings {
     }
 }
 
-fn positive(name: &'static str, value: f64) -> Result<(), Error> {
+fn positive(name: &'static str, value: f64) -> Result<()> {
     in_range(name, value, value.is_finite() && value > 0.0, "positive and finite")
 }
 
-fn in_range(name: &'static str, value: f64, is_allowed: bool, allowed: &'static str) -> Result<(), Error> {
+fn in_range(name: &'static str, value: f64, is_allowed: bool, allowed: &'static str) -> Result<()> {
     if is_allowed { Ok(()) } else { Err(LinearError::Setting { name, value, allowed }.into()) }
 }

@@ -8,7 +8,7 @@ use super::bound::general::energy_error_bound_by;
 use super::bound::{Answer, ErrorBound, Measured};
 use super::energy_norm::{EnergyNorm, norm_of_answer};
 use super::scales::{OfPart, Scales, balanced_forces, coupled_lengths, larger, relative};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::multigrid::Multigrid;
 use crate::linear::watch::Watch;
 use crate::problem::{Balance, ContactProblem};
@@ -82,7 +82,7 @@ pub fn at_rest(problem: &ContactProblem, u: &[f64], may_rest: &[usize]) -> Optio
 }
 
 /// The certificate of an answer, with a factor that is made here if there is none.
-pub fn examined(problem: &ContactProblem, by: &Bounding, [u, lambda]: [&[f64]; 2]) -> Result<Examined, Error> {
+pub fn examined(problem: &ContactProblem, by: &Bounding, [u, lambda]: [&[f64]; 2]) -> Result<Examined> {
     let (two_sided, of_rows) = problem.two_sided(lambda);
     let own = if matches!(by, Bounding::OwnFactor) { norm_of_answer(&two_sided, u, &of_rows)? } else { None };
     let norm = if let Bounding::Factor(norm) = by { Some(norm) } else { own.as_ref() };

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::scales::{compliance_of_rows, energies};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::watch::Watch;
 use crate::linear::{
     Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, exponent,
@@ -73,7 +73,7 @@ pub struct RowsOnBoundary {
 impl EnergyNorm {
     /// The energy norm of `stiffness`, with the boundary of the dofs in the rows `contact`; `None` if the stiffness is
     /// not positive definite to working precision.
-    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>, Error> {
+    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>> {
         if stiffness.diagonal().iter().any(|&value| value <= 0.0) {
             return Ok(None);
         }
@@ -290,11 +290,7 @@ pub struct Springs {
 
 impl Springs {
     /// `K + B_C' D B_C`; `None` if no row presses.
-    pub fn added_to(
-        &self,
-        stiffness: &SymmetricMatrix,
-        contact: &SparseMatrix,
-    ) -> Result<Option<SymmetricMatrix>, Error> {
+    pub fn added_to(&self, stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<SymmetricMatrix>> {
         let closed: Vec<usize> = (0..contact.rows()).filter(|&row| self.stiffness[row] > 0.0).collect();
         if closed.is_empty() {
             return Ok(None);
@@ -331,7 +327,7 @@ pub fn norm_of_answer(
     problem: &ContactProblem,
     displacement: &[f64],
     multiplier: &[f64],
-) -> Result<Option<EnergyNorm>, Error> {
+) -> Result<Option<EnergyNorm>> {
     if let Some(norm) = EnergyNorm::of(&problem.stiffness, &problem.contact)? {
         return Ok(Some(norm));
     }
@@ -354,7 +350,7 @@ pub fn norm_of_answer(
 
 /// The energy norm of a stiffness that is definite by itself, or with springs on equalities alone: it serves every
 /// answer. `None` if there is none.
-pub fn norm_on_equalities(problem: &ContactProblem) -> Result<Option<EnergyNorm>, Error> {
+pub fn norm_on_equalities(problem: &ContactProblem) -> Result<Option<EnergyNorm>> {
     let (at_rest, forces) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
     let norm = norm_of_answer(&problem.two_sided(&forces).0, &at_rest, &forces)?;
     Ok(norm.filter(|norm| norm.loose_dofs() == 0))

@@ -22,7 +22,7 @@ use conditions::{energy_of, examined};
 use energy_norm::ldexp_root;
 use proof::{proven_by_cycles, proven_in, proven_pressed};
 
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::{SymmetricMatrix, exponent, largest, ldexp};
 use crate::problem::{ContactProblem, Equality};
 use crate::solution::{Cancellation, Certificate, ProvenSet};
@@ -47,7 +47,7 @@ impl<'a> Examination<'a> {
         problem: &'a ContactProblem,
         [displacement, multiplier]: [&'a [f64]; 2],
         by: &'a Bounding<'a>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self> {
         let multiplier = problem.of_all_rows(multiplier);
         problem.check_answer(displacement, &multiplier)?;
         // A hierarchy of one level is a factor already, of so few dofs that another one costs nothing.
@@ -55,7 +55,7 @@ impl<'a> Examination<'a> {
         Ok(Examination { problem, displacement, multiplier, by: if is_factor { &Bounding::OwnFactor } else { by } })
     }
 
-    pub fn certificate(&self) -> Result<Examined, Error> {
+    pub fn certificate(&self) -> Result<Examined> {
         let (u, lambda) = (self.displacement, &*self.multiplier);
         let mut found = match self.in_far_units()? {
             None => examined(self.problem, self.by, [u, lambda])?,
@@ -72,7 +72,7 @@ impl<'a> Examination<'a> {
 
     /// The rows that the answer proves open or closed, by the evidence of its certificate if any; `None` if K is not
     /// positive definite by itself, except for travels that forces drive against rows, and if no bound is known.
-    pub fn proof(&self, evidence: Option<Evidence>) -> Result<Option<ProvenSet>, Error> {
+    pub fn proof(&self, evidence: Option<Evidence>) -> Result<Option<ProvenSet>> {
         let mut proven = self.proven(evidence)?;
         // The rows of equalities are closed in every answer.
         for Equality { row, opposed, .. } in self.problem.equalities() {
@@ -81,7 +81,7 @@ impl<'a> Examination<'a> {
         Ok(proven)
     }
 
-    fn proven(&self, mut evidence: Option<Evidence>) -> Result<Option<ProvenSet>, Error> {
+    fn proven(&self, mut evidence: Option<Evidence>) -> Result<Option<ProvenSet>> {
         let (problem, answer, far) = (self.problem, [self.displacement, &*self.multiplier], self.in_far_units()?);
         let norm = match self.by {
             Bounding::Nothing | Bounding::Pieces(_) => None,
@@ -109,7 +109,7 @@ impl<'a> Examination<'a> {
 
     /// The units in which the answer is of order one, if its own would over- or underflow, with problem and means in
     /// them.
-    fn in_far_units(&self) -> Result<Option<(UnitExponents, ContactProblem, Bounding<'static>)>, Error> {
+    fn in_far_units(&self) -> Result<Option<(UnitExponents, ContactProblem, Bounding<'static>)>> {
         let Some(units) = far_units(self.problem, self.displacement) else { return Ok(None) };
         let by = match self.by {
             Bounding::OwnFactor => Bounding::OwnFactor,
@@ -164,7 +164,7 @@ fn far_units(problem: &ContactProblem, displacement: &[f64]) -> Option<UnitExpon
     far.then_some(UnitExponents { stiffness, length })
 }
 
-fn in_units(problem: &ContactProblem, units: &UnitExponents) -> Result<ContactProblem, Error> {
+fn in_units(problem: &ContactProblem, units: &UnitExponents) -> Result<ContactProblem> {
     let lower = problem.stiffness.lower();
     let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();
     let stiffness = SymmetricMatrix::from_lower(lower.with_values(values))?;

@@ -124,12 +124,8 @@ impl<'a> ComplianceFactor<'a> {
         let contact = &problem.contact;
         let on_boundary = norm.rows_on_boundary(contact, |_| true);
         let boundary = on_boundary.as_ref().and(norm.boundary.as_deref());
-        ComplianceFactor {
-            contact,
-            norm,
-            rows: on_boundary.unwrap_or_else(|| norm.normalised(&norm.scaled_rows(contact), None)),
-            boundary,
-        }
+        let rows = on_boundary.unwrap_or_else(|| norm.normalised(&norm.scaled_rows(contact), None));
+        ComplianceFactor { contact, norm, rows, boundary }
     }
 
     /// `sqrt(G_ii)`, with the rounding of a sweep: the distance by which a displacement of unit energy norm moves the

@@ -6,7 +6,7 @@ pub(crate) mod seconds;
 
 use super::method::mprgp::takes_travels;
 use super::problem::ContactProblem;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::watch::Watch;
 use direct::{BodyFactor, Direct};
 pub(crate) use direct::{NEAR_CYCLES, Smooth, is_everywhere, starts_near};
@@ -139,21 +139,12 @@ pub enum Kept {
     /// Nothing yet: the problem is being ordered.
     Nothing,
     /// The factor of the body, with `values` values, and dense matrices on `contact_dofs` contact dofs.
-    Condensed {
-        values: usize,
-        contact_dofs: usize,
-        by_interior_point: bool,
-    },
+    Condensed { values: usize, contact_dofs: usize, by_interior_point: bool },
     /// The factor of the body and those of two contact sets, with `values` values each; `last` contact dofs come last.
-    Factors {
-        values: usize,
-        last: usize,
-        by_interior_point: bool,
-    },
+    Factors { values: usize, last: usize, by_interior_point: bool },
     /// The factor of one contact set, with `values` values.
-    OneFactor {
-        values: usize,
-    },
+    OneFactor { values: usize },
+    /// A hierarchy instead of a factor.
     Multigrid,
 }
 
@@ -161,7 +152,7 @@ pub enum Kept {
 pub const FACTORS: f64 = 2.0;
 
 /// Refuses a problem that would take more than these bytes, if there is a limit.
-pub fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f64>) -> Result<(), Error> {
+pub fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f64>) -> Result<()> {
     let Some(allowed) = most else { return Ok(()) };
     let (dofs, stiffness_entries) = (problem.dofs() as f64, problem.stiffness().entries() as f64);
     let of_interior_point = |values: f64, is_used| if is_used { bytes::OF_INTERIOR_POINT * values } else { 0.0 };
@@ -197,7 +188,7 @@ pub fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f64>) -> 
 }
 
 /// Refuses work with this estimate in seconds if there is no time for it.
-pub fn check_time(watch: &Watch, estimate: f64) -> Result<(), Error> {
+pub fn check_time(watch: &Watch, estimate: f64) -> Result<()> {
     match watch.time_left() {
         Some(time) if !watch.allows(estimate) => Err(Error::OutOfTime { needed: watch.needed(estimate), time }),
         _ => Ok(()),

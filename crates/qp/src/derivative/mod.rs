@@ -33,7 +33,7 @@ use serde::{Serialize, Serializer};
 
 use crate::certificate::Examination;
 use crate::engine::{Engine, factored};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::watch::Watch;
 use crate::linear::{check_finite, largest};
 use crate::method::Start;
@@ -241,10 +241,7 @@ impl Derivatives {
     }
 
     /// What one linear system gives: at a kink, and for undecided rows, with all of them open, and with all closed.
-    fn by_linear_system<T>(
-        &self,
-        of: impl Fn(&ContactSet) -> Result<Option<T>, Error>,
-    ) -> Result<Derivative<T>, Error> {
+    fn by_linear_system<T>(&self, of: impl Fn(&ContactSet) -> Result<Option<T>>) -> Result<Derivative<T>> {
         let RowStates { closed, weak, .. } = match &self.rows {
             Ok(rows) => rows,
             Err(why) => return Ok(Derivative::Unknown { why: why.to_string() }),
@@ -252,7 +249,7 @@ impl Derivatives {
         let mut all = closed.clone();
         weak.iter().for_each(|&row| all.insert(row));
         let sets = if weak.is_empty() { vec![closed] } else { vec![closed, &all] };
-        let mut found = sets.into_iter().filter_map(|set| of(set).transpose()).collect::<Result<Vec<T>, Error>>()?;
+        let mut found = sets.into_iter().filter_map(|set| of(set).transpose()).collect::<Result<Vec<T>>>()?;
         Ok(match found.pop() {
             None => Derivative::Unknown { why: NOT_HELD.to_string() },
             Some(only) if weak.is_empty() => Derivative::Proven(only),
@@ -264,7 +261,7 @@ impl Derivatives {
     }
 
     /// The tangent at a kink: a contact problem of the weak rows, others held. `None` if its set is not confirmed.
-    fn one_sided(&self, rows: &RowStates, change: &Change) -> Result<Option<Tangent>, Error> {
+    fn one_sided(&self, rows: &RowStates, change: &Change) -> Result<Option<Tangent>> {
         let (problem, RowStates { closed, weak, .. }) = (&self.problem, rows);
         let distances = self.on_first_rows(&change.distance);
         let held: Vec<usize> = closed.iter().collect();
@@ -287,7 +284,7 @@ impl Derivatives {
 
     /// `K x - B_C' y = force`, `B_C x = distances` on the rows of `closed`: with a factor, corrected by residuals in
     /// twice the precision. `None` if the rows do not hold the body, or follow from each other.
-    fn held(&self, closed: &ContactSet, force: &[f64], distances: &[f64]) -> Result<Option<Tangent>, Error> {
+    fn held(&self, closed: &ContactSet, force: &[f64], distances: &[f64]) -> Result<Option<Tangent>> {
         let watch = &self.settings.watch;
         let is_exact = self.engine.hierarchy().is_none();
         // Open rows have no part in the system; their distances only must fit the pattern of infinite gaps.
@@ -377,7 +374,7 @@ impl Prepared {
     }
 }
 
-pub fn derivatives(problem: &ContactProblem, solution: &Solution, settings: &Settings) -> Result<Derivatives, Error> {
+pub fn derivatives(problem: &ContactProblem, solution: &Solution, settings: &Settings) -> Result<Derivatives> {
     // A derivative takes the method of its answer.
     let method = if solution.method.starts_with("mprgp") { Method::Mprgp } else { Method::ActiveSet };
     Prepared::new(problem, &settings.clone().by(method))?.derivatives(solution)

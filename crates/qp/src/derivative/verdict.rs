@@ -2,7 +2,7 @@
 
 use crate::certificate::{Bounding, Examination, norm_on_equalities};
 use crate::engine::Engine;
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::watch::Watch;
 use crate::linear::{Dependence, ExactSum, largest};
 use crate::problem::ContactProblem;
@@ -34,7 +34,7 @@ pub fn rows_of(
     solution: &Solution,
     answer: [&Vec<f64>; 2],
     watch: &Watch,
-) -> Result<Result<RowStates, &'static str>, Error> {
+) -> Result<Result<RowStates, &'static str>> {
     problem.check_answer(answer[0], answer[1])?;
     let proven = match &solution.proven {
         Some(proven) => Some(proven.clone()),
@@ -68,7 +68,7 @@ fn proven_here(
     engine: &Engine,
     [displacement, multiplier]: [&[f64]; 2],
     watch: &Watch,
-) -> Result<Option<ProvenSet>, Error> {
+) -> Result<Option<ProvenSet>> {
     let answer = [displacement, multiplier];
     // Travels have no bound by the data of an engine.
     if engine.hierarchy().is_none() && !problem.without_stiffness().is_empty() {
@@ -160,16 +160,12 @@ fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<Row
             }
             false => 1,
         };
-        if equalities.contains(&row) {
-            if sign != 0 {
-                return None;
-            }
-            continue;
-        }
+        let is_equality = equalities.contains(&row);
         match (sign, lambda[row]) {
+            (0, _) if is_equality => {}
             (0, 0.0) => weak.push(row),
             (0, force) if force < 0.0 => closed.insert(row),
-            (1, 0.0) => {}
+            (1, 0.0) if !is_equality => {}
             _ => return None,
         }
     }

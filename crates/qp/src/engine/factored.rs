@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{bytes, check_time, seconds};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::watch::Watch;
 use crate::linear::{Analysis, Augmented, Compliance, Equilibration, exponent, largest, ldexp};
 use crate::plan::Tried;
@@ -55,8 +55,7 @@ impl Factored {
     pub fn bounding(&self, watch: &Watch) -> Bounding<'_> {
         let in_time = watch.allows(self.norm_seconds);
         // A norm that is made again takes the time of a factorisation too.
-        let norm = if self.is_norm_at_hand() || watch.allows(self.norm_seconds) { self.norm() } else { None };
-        match norm {
+        match (self.is_norm_at_hand() || in_time).then(|| self.norm()).flatten() {
             Some(norm) => Bounding::Factor(norm.watched(watch)),
             None if in_time => Bounding::OwnFactor,
             None => Bounding::Nothing,
@@ -129,7 +128,7 @@ impl Factored {
     }
 
     /// A watch that is over once no time is left for one more factorisation of a loop and the certificate.
-    pub fn watch_of_loop(&self, method: Method, watch: &Watch) -> Result<Watch, Error> {
+    pub fn watch_of_loop(&self, method: Method, watch: &Watch) -> Result<Watch> {
         if watch.time_left().is_none() {
             return Ok(watch.clone());
         }

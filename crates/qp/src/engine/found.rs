@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::factored::{Factored, Load, Loading, Norm};
 use crate::certificate::{self, Bounding, EnergyNorm, Examination};
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::watch::Watch;
 use crate::linear::{dot, ldexp};
 use crate::method::interior_point::{self, InteriorPoint};
@@ -37,7 +37,7 @@ fn outcome(
     (method, start): (Method, Option<ContactSet>),
     most_iterations: usize,
     goal: Option<AccuracyGoal>,
-) -> Result<Option<Outcome>, Error> {
+) -> Result<Option<Outcome>> {
     match step {
         Step::Method => by_method(scaled, (method, start), most_iterations, goal).map(Some),
         Step::InteriorPoint => {
@@ -56,7 +56,7 @@ fn by_method(
     (method, start): (Method, Option<ContactSet>),
     most_iterations: usize,
     goal: Option<AccuracyGoal>,
-) -> Result<Outcome, Error> {
+) -> Result<Outcome> {
     let Some(cold) = scaled.start()? else { return Ok(Outcome::at_rest(scaled.problem, Ending::Unheld)) };
     let by_sets = |start: ContactSet| active_set::solve(scaled, start, most_iterations.min(PATIENCE));
     match (method, start) {
@@ -88,7 +88,7 @@ fn by_method(
 /// # Source
 /// K. Ito and K. Kunisch, *Semi-smooth Newton methods for variational inequalities of the first kind*, ESAIM: M2AN 37
 /// (2003) 41-62.
-fn continued(scaled: &ScaledProblem, start: Option<ContactSet>, most_iterations: usize) -> Result<Outcome, Error> {
+fn continued(scaled: &ScaledProblem, start: Option<ContactSet>, most_iterations: usize) -> Result<Outcome> {
     let ladder = Penalty { penetration_threshold: 0.0, ..Penalty::default() };
     let start = start.unwrap_or_else(|| ContactSet::open(scaled.problem.rows()));
     let most_on_ladder = most_iterations.min(PATIENCE.max(3 * scaled.problem.rows().isqrt()));
@@ -116,13 +116,13 @@ pub struct Reduced {
 type Walk = (Vec<Piece>, Vec<Event>, i32);
 
 /// The result of a method, on the boundary if the problem is condensed; `None` if the step has no means here.
-pub fn find(engine: &Factored, task: &Task) -> Result<Option<Reduced>, Error> {
+pub fn find(engine: &Factored, task: &Task) -> Result<Option<Reduced>> {
     check_gap(engine, task.problem.gap())?;
     let gap = task.problem.gap();
     find_under(engine, task.load.swept(engine, &engine.selection.gap(gap)), gap, task)
 }
 
-fn find_under(engine: &Factored, loading: Arc<Loading>, gap: &[f64], task: &Task) -> Result<Option<Reduced>, Error> {
+fn find_under(engine: &Factored, loading: Arc<Loading>, gap: &[f64], task: &Task) -> Result<Option<Reduced>> {
     let Task { settings, .. } = *task;
     let method = engine.chosen(settings.method);
     let watch = engine.watch_of_loop(method, &settings.watch)?;
@@ -148,7 +148,7 @@ fn scaled_problem<'a>(engine: &'a Factored, problem: &'a ContactProblem, watch: 
 }
 
 /// The problem that the methods work on, and the exponent of its reference displacement.
-fn scaled(engine: &Factored, loading: &Loading, gap: &[f64]) -> Result<(ContactProblem, i32), Error> {
+fn scaled(engine: &Factored, loading: &Loading, gap: &[f64]) -> Result<(ContactProblem, i32)> {
     let gap = engine.selection.gap(gap);
     let unit = loading.unit_with(engine, &gap);
     let (stiffness, contact) = match &engine.condensation {
@@ -160,7 +160,7 @@ fn scaled(engine: &Factored, loading: &Loading, gap: &[f64]) -> Result<(ContactP
 }
 
 /// Rows that were without obstacle when the problem was prepared, and only these, must still be so.
-fn check_gap(engine: &Factored, gap: &[f64]) -> Result<(), Error> {
+fn check_gap(engine: &Factored, gap: &[f64]) -> Result<()> {
     let changes = |(gap, before): (&f64, &f64)| gap.is_finite() != before.is_finite();
     match gap.iter().zip(engine.problem.gap()).position(changes) {
         None => Ok(()),
@@ -221,7 +221,7 @@ pub fn repaired(engine: &Factored, task: &Task, best: &Solution) -> Option<(Outc
 }
 
 /// The step d from an answer (u, lambda): the answer for its residual, from its set, with the whole multiplier.
-fn step_from(engine: &Factored, task: &Task, answer: &Solution) -> Result<Option<Reduced>, Error> {
+fn step_from(engine: &Factored, task: &Task, answer: &Solution) -> Result<Option<Reduced>> {
     let Solution { displacement: u, multiplier, contact_set, .. } = answer;
     // The contact force is balanced on its own dofs; only the imbalance is swept.
     let imbalance = task.problem.accurate_residual(u, multiplier);
@@ -274,7 +274,7 @@ pub fn balanced(engine: &Factored, closed: &ContactSet, load: &[f64], gap: &[f64
 }
 
 /// The displacement without a certificate; `None` if the method did not settle on a set.
-pub fn settled(engine: &Factored, task: &Task) -> Result<Option<Vec<f64>>, Error> {
+pub fn settled(engine: &Factored, task: &Task) -> Result<Option<Vec<f64>>> {
     let settled = find(engine, task)?.filter(|found| found.outcome.is_settled());
     Ok(settled.map(|found| displacement(engine, &found)))
 }
@@ -291,7 +291,7 @@ pub fn response(engine: &Factored, load: &Load) -> Option<Vec<f64>> {
 }
 
 /// The result of the method with the certificate of the condensed problem; `None` if that does not meet the goal.
-pub fn on_boundary(engine: &Factored, task: &Task, is_bounded: bool) -> Result<Option<(Reduced, Certificate)>, Error> {
+pub fn on_boundary(engine: &Factored, task: &Task, is_bounded: bool) -> Result<Option<(Reduced, Certificate)>> {
     let settings = task.settings;
     let Some(found) = find(engine, task)? else { return Ok(None) };
     let Reduced { problem, outcome, .. } = &found;
@@ -306,7 +306,7 @@ pub fn on_boundary(engine: &Factored, task: &Task, is_bounded: bool) -> Result<O
 }
 
 /// The exact way from the answer of a task to that at the gaps `to`; `None` if no answer meets its goal.
-pub fn walk(engine: &Factored, from: &Task, to: &[f64]) -> Result<Option<Walk>, Error> {
+pub fn walk(engine: &Factored, from: &Task, to: &[f64]) -> Result<Option<Walk>> {
     let contact = engine.selection.contact(engine.problem.contact());
     let norm = engine.norm().map(|norm| norm.keeping(&contact));
     let (Some(condensed), Some(compliance)) = (&engine.condensation, norm.as_ref().and_then(EnergyNorm::compliance))

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use crate::certificate::Bounding;
 use crate::cost::{Kept, NEAR_CYCLES, bytes, check_memory, check_time, seconds};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::linear::threads_of_machine;
 use crate::linear::watch::Watch;
@@ -32,7 +32,7 @@ pub enum Engine {
 
 impl Engine {
     /// The engine with these means, under the settings of an attempt; `None` for the problem alone.
-    pub fn new(means: Means, problem: &ContactProblem, settings: &Settings) -> Result<Option<Self>, Error> {
+    pub fn new(means: Means, problem: &ContactProblem, settings: &Settings) -> Result<Option<Self>> {
         Ok(match means {
             Means::Problem => None,
             Means::Multigrid => Some(Engine::Levels(Arc::new(Hierarchical::new(problem, settings)?))),
@@ -72,7 +72,7 @@ impl Engine {
     }
 
     /// Makes a step: what it found for the whole problem, and the seconds of its factors; `None` without means.
-    pub fn make(&self, task: &Task) -> Result<Option<(Outcome, f64)>, Error> {
+    pub fn make(&self, task: &Task) -> Result<Option<(Outcome, f64)>> {
         Ok(match (self, task.step, task.best) {
             (Engine::Levels(levels), ..) => Some((levels.solve(task)?, 0.0)),
             (Engine::Factor(factored), Step::Refinement, Some(best)) => found::refined(factored, task, best),
@@ -106,13 +106,7 @@ impl Engine {
 
     /// Displacement and multiplier under `load` (length n) with the rows of `closed` held at `gap` (one entry per row),
     /// pushing or pulling, and all others free; `None` if these rows do not hold the body, or contradict each other.
-    pub fn held(
-        &self,
-        closed: &ContactSet,
-        load: &[f64],
-        gap: &[f64],
-        watch: &Watch,
-    ) -> Result<Option<[Vec<f64>; 2]>, Error> {
+    pub fn held(&self, closed: &ContactSet, load: &[f64], gap: &[f64], watch: &Watch) -> Result<Option<[Vec<f64>; 2]>> {
         match self {
             Engine::Factor(factored) => Ok(balanced(factored, closed, load, gap)),
             Engine::Levels(levels) => levels.held(closed, load, gap, watch),
@@ -145,7 +139,7 @@ pub struct Hierarchical {
 
 impl Hierarchical {
     /// Builds the hierarchy from the near-null space of `problem`, or from constants if it has none.
-    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self> {
         let Settings { watch, threads, .. } = settings;
         if watch.acknowledge() {
             return Err(Error::Interrupted);
@@ -171,7 +165,7 @@ impl Hierarchical {
         Ok(Hierarchical { problem: problem.clone(), multigrid, seconds })
     }
 
-    pub fn solve(&self, task: &Task) -> Result<Outcome, Error> {
+    pub fn solve(&self, task: &Task) -> Result<Outcome> {
         let Task { problem, limits, settings, .. } = *task;
         // Once the loop ends, its answer is still to be certified.
         let watch = &settings.watch.keeping(seconds::certificate(problem));
@@ -179,13 +173,7 @@ impl Hierarchical {
     }
 
     /// As [`Engine::held`](super::Engine::held): the held rows are pairs of opposed rows, bounds that are equal.
-    pub fn held(
-        &self,
-        closed: &ContactSet,
-        load: &[f64],
-        gap: &[f64],
-        watch: &Watch,
-    ) -> Result<Option<[Vec<f64>; 2]>, Error> {
+    pub fn held(&self, closed: &ContactSet, load: &[f64], gap: &[f64], watch: &Watch) -> Result<Option<[Vec<f64>; 2]>> {
         let rows: Vec<usize> = closed.iter().collect();
         let problem = &self.problem.with_held(load.to_vec(), [&[], &rows], gap)?;
         let limits = Limits { most_cycles: MOST_HELD_CYCLES, ..Limits::to(HELD) };

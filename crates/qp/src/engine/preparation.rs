@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::factored::{Factored, Norm};
 use crate::certificate::EnergyNorm;
 use crate::cost::{check_time, seconds};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::{Analysis, Augmented, AugmentedMatrix, Cholesky, FactorError, largest};
 use crate::plan::{Layout, Tried};
 use crate::problem::ContactProblem;
@@ -18,7 +18,7 @@ use crate::transform::{Condensation, RowSelection, Scaling};
 const LOST_PIVOT: f64 = 1e-10;
 
 /// Scales, condenses and factorises `problem`, for the method of an attempt.
-pub fn factored(problem: &ContactProblem, settings: &Settings) -> Result<Factored, Error> {
+pub fn factored(problem: &ContactProblem, settings: &Settings) -> Result<Factored> {
     let Settings { threads, watch, .. } = settings;
     let clock = Instant::now();
     watch.step("ordering", 0);
@@ -94,7 +94,7 @@ fn definite(
     scaling: &Scaling,
     (analysis, is_condensed): (&Analysis, bool),
     settings: &Settings,
-) -> Result<(Option<Cholesky>, f64), Error> {
+) -> Result<(Option<Cholesky>, f64)> {
     if problem.stiffness().diagonal().contains(&0.0) {
         return Ok((None, 0.0));
     }
@@ -120,7 +120,7 @@ fn condensed(
     scaling: &Scaling,
     last: &[usize],
     settings: &Settings,
-) -> Result<Option<Condensation>, Error> {
+) -> Result<Option<Condensation>> {
     let factor = match cholesky {
         Some(cholesky) => Some(cholesky.clone()),
         None => factor_with_rows(scaling, last, settings)?,
@@ -151,7 +151,7 @@ fn augmented(
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` if it is not safely definite.
-fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
+fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>> {
     let augmented = AugmentedMatrix::with_last(scaling.stiffness(), &scaling.contact, contact_dofs)?;
     let augmented = augmented.with_threads(settings.threads.unwrap_or(1));
     check_time(&settings.watch, seconds::factorisation(augmented.analysis()))?;

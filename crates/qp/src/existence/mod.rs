@@ -20,7 +20,7 @@ use cone::{Cone, ConeFace, Row};
 use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
 use crate::certificate::{NullMode, Rounding, mode_along, not_convex_along};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::twice::Sum;
 use crate::linear::{Analysis, FactorError, NullSpace, Twice, across, extend, generic, largest, norm, subtract};
 use crate::problem::ContactProblem;
@@ -52,7 +52,7 @@ const BENDS: f64 = 1e3;
 const RIGID: f64 = 1e-6;
 
 /// The analysis of the stiffness, if memory and time allow its factorisation.
-fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, Error> {
+fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis> {
     check_memory(problem, Kept::Nothing, settings.memory)?;
     check_time(&settings.watch, seconds::ordering(problem))?;
     let analysis = Analysis::of(problem.stiffness())?;
@@ -63,7 +63,7 @@ fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, E
 }
 
 /// The problem in the units of `scaling`.
-fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem, Error> {
+fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem> {
     let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
     ContactProblem::computed(scaling.stiffness().clone(), load, scaling.contact.clone(), gap)
 }
@@ -84,7 +84,7 @@ pub struct Existence {
 
 impl Existence {
     /// The null space of the stiffness of `problem`; `None` if the range of doubles does not allow it.
-    pub fn of(problem: &ContactProblem, settings: &Settings) -> Result<Option<Self>, Error> {
+    pub fn of(problem: &ContactProblem, settings: &Settings) -> Result<Option<Self>> {
         let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
         let Ok(scaled) = scaled(problem, &scaling) else { return Ok(None) };
         let shifts = scaled.stiffness().shifts(analysed(&scaled, settings)?)?;
@@ -151,7 +151,7 @@ impl Existence {
 
     /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and
     /// without a mode that the load drives, has an answer.
-    pub fn check_unique(&self, problem: &ContactProblem, solution: &Solution, tolerance: f64) -> Result<(), Error> {
+    pub fn check_unique(&self, problem: &ContactProblem, solution: &Solution, tolerance: f64) -> Result<()> {
         let certificate = &solution.certificate;
         // No row stops such a mode from any start: with it, a problem has more than one answer if it has any.
         let drift = if certificate.penetration <= tolerance { self.idle(&|_| true) } else { None };

@@ -18,7 +18,7 @@ use std::cell::{Cell, LazyCell};
 use std::collections::HashSet;
 
 use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::{Cholesky, largest};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
@@ -52,7 +52,7 @@ const SQUARED: f64 = 1e-9;
 const CONTRADICTION: f64 = 1e-9;
 
 /// Runs the loop from the contact set `closed`, over at most `most_iterations` sets, each with a factorisation.
-pub fn solve(scaled: &ScaledProblem, mut closed: ContactSet, most_iterations: usize) -> Result<Outcome, Error> {
+pub fn solve(scaled: &ScaledProblem, mut closed: ContactSet, most_iterations: usize) -> Result<Outcome> {
     let (mut displacement, mut multiplier) = (vec![0.0; scaled.problem.dofs()], vec![0.0; scaled.problem.rows()]);
     let (mut history, mut seen) = (Vec::new(), HashSet::new());
     let (mut rule, mut ending) = (Rule::Exchange, Ending::Unsettled);
@@ -102,7 +102,7 @@ pub fn solve(scaled: &ScaledProblem, mut closed: ContactSet, most_iterations: us
 }
 
 /// Balance of forces with the rows of `closed` held; `None` if they do not hold the body, or contradict each other.
-pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
+pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>> {
     let balance = match by_compliance(scaled, closed, |_| true) {
         None => scaled.hold(closed, WEIGHT)?.map(|cholesky| equilibrium(scaled.problem, &cholesky, closed)),
         balance => balance,

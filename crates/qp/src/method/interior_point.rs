@@ -4,7 +4,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT};
 
 use super::{Ending, Outcome, ScaledProblem};
-use crate::error::{Error, LinearError};
+use crate::error::{LinearError, Result};
 use crate::linear::panics::guarded;
 use crate::linear::watch::Watch;
 use crate::linear::{SparseMatrix, exponent, largest, ldexp};
@@ -58,7 +58,7 @@ impl Default for InteriorPoint {
 /// the rows with `z / z_scale > s / s_scale`, and `iterations` counts the steps over all units that were tried.
 ///
 /// Clarabel's claims of unbounded or infeasible problems are not believed: the outcome is then unsettled.
-pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<Outcome, Error> {
+pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<Outcome> {
     let (problem, watch) = (scaled.problem, &scaled.watch);
     if problem.rows() == 0 {
         return Ok(unpolished(Outcome::at_rest(problem, Ending::Settled)));
@@ -89,7 +89,7 @@ fn unpolished(outcome: Outcome) -> Outcome {
 }
 
 /// Solves the QP of the rows within reach in these units of displacement and force.
-fn solve_in_units(problem: &ContactProblem, tolerance: f64, units: [i32; 2], watch: &Watch) -> Result<Outcome, Error> {
+fn solve_in_units(problem: &ContactProblem, tolerance: f64, units: [i32; 2], watch: &Watch) -> Result<Outcome> {
     let [length, force] = units;
     let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -length)).collect();
     let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();

@@ -13,7 +13,7 @@ pub mod penalty;
 use std::cell::{Cell, OnceCell};
 use std::time::Instant;
 
-use crate::error::{Error, LinearError};
+use crate::error::{LinearError, Result};
 use crate::linear::watch::Watch;
 use crate::linear::{Augmented, Cholesky, Compliance, SymmetricMatrix, if_definite, largest};
 use crate::problem::ContactProblem;
@@ -67,7 +67,7 @@ impl Start {
     }
 
     /// Refuses a start that does not fit a problem with this number of dofs and rows, or is not finite.
-    pub(crate) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
+    pub(crate) fn check(&self, dofs: usize, rows: usize) -> Result<()> {
         let lengths = [
             ("the displacement to start from", self.displacement.as_ref().map(Vec::len), dofs, "dofs"),
             ("the multiplier to start from", self.contact_set.as_ref().map(ContactSet::rows), rows, "contact rows"),
@@ -148,12 +148,12 @@ impl<'a> ScaledProblem<'a> {
     }
 
     /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
-    pub fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> Result<SymmetricMatrix, Error> {
+    pub fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> Result<SymmetricMatrix> {
         Ok(self.augmented.matrix()?.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift))
     }
 
     /// The factor of such a matrix; `None` if it is not positive definite.
-    pub fn factor(&self, matrix: SymmetricMatrix) -> Result<Option<Cholesky>, Error> {
+    pub fn factor(&self, matrix: SymmetricMatrix) -> Result<Option<Cholesky>> {
         let clock = Instant::now();
         let factor = if_definite(self.augmented.matrix()?.factor(matrix));
         self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
@@ -163,7 +163,7 @@ impl<'a> ScaledProblem<'a> {
     /// The start of a loop: C = 0 if K is definite; otherwise all rows are replaced by springs, which hold the body,
     /// and those in compression are closed. `None` if not even all rows together hold the body, or if K is not positive
     /// semidefinite to the largest of the shifts.
-    pub fn start(&self) -> Result<Option<ContactSet>, Error> {
+    pub fn start(&self) -> Result<Option<ContactSet>> {
         let (rows, nothing_closed) = (self.problem.rows(), ContactSet::open(self.problem.rows()));
         if self.is_definite {
             return Ok(Some(nothing_closed));
@@ -179,7 +179,7 @@ impl<'a> ScaledProblem<'a> {
     }
 
     /// The factor of K + weight B_C'B_C; `None` if the rows of C do not hold the body.
-    pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Option<Cholesky>, Error> {
+    pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Option<Cholesky>> {
         let matrix = self.matrix(closed, weight, 0.0)?;
         // If K is definite by itself, this is not checked again.
         let looked_at = (!self.is_definite).then(|| matrix.clone());
@@ -194,7 +194,7 @@ impl<'a> ScaledProblem<'a> {
         closed: &mut ContactSet,
         weight: f64,
         displacement: &[f64],
-    ) -> Result<Result<Cholesky, Ending>, Error> {
+    ) -> Result<Result<Cholesky, Ending>> {
         loop {
             if let Some(cholesky) = self.hold(closed, weight)? {
                 return Ok(Ok(cholesky));
@@ -212,7 +212,7 @@ impl<'a> ScaledProblem<'a> {
     /// A direction d with K d = 0 and B_C d = 0, largest entry one, and whether the load does work on it, `f'd > 0`:
     /// the projection of the load onto the null space or, if the load does no work there, any null vector. `None` if no
     /// shift makes the matrix definite.
-    fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<Option<(Vec<f64>, bool)>, Error> {
+    fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<Option<(Vec<f64>, bool)>> {
         // A weight does not change the null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
         for shift in SHIFTS {

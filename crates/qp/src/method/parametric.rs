@@ -15,7 +15,7 @@
 //! pivoting).
 
 use super::SIGN_TOLERANCE;
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::watch::Watch;
 use crate::linear::{UpperTriangle, dot, largest, subtract};
 use crate::solution::ContactSet;
@@ -94,7 +94,7 @@ impl ParametricLcp {
     }
 
     /// Multipliers of the set `closed`, and violations of all other rows, as linear functions of t.
-    fn respond(&self, closed: &ContactSet) -> Result<Linear, Error> {
+    fn respond(&self, closed: &ContactSet) -> Result<Linear> {
         let (list, factor) = self.independent(closed);
         if list.len() < closed.count() {
             return Err(LinearError::Numerical {
@@ -118,7 +118,7 @@ impl ParametricLcp {
     }
 
     /// Walks from t = 0 to t = 1, from the set that holds at the beginning.
-    pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>), Error> {
+    pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>)> {
         let (mut pieces, mut events) = (Vec::new(), Vec::new());
         let mut closed = ContactSet::open(self.rows());
         self.independent(start).0.into_iter().for_each(|row| closed.insert(row));
@@ -163,7 +163,7 @@ impl ParametricLcp {
     }
 
     /// The set that holds next, with slopes of right signs on `undecided` rows: by block, then by single pivots.
-    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: [f64; 2]) -> Result<ContactSet, Error> {
+    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: [f64; 2]) -> Result<ContactSet> {
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {
             let line = self.respond(&next)?;

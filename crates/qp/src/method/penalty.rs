@@ -13,7 +13,7 @@
 use std::collections::HashSet;
 
 use super::{Ending, Outcome, ScaledProblem};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::{Cholesky, largest};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
@@ -70,7 +70,7 @@ pub fn solve(
     closed: ContactSet,
     most_iterations: usize,
     goal: Option<AccuracyGoal>,
-) -> Result<Outcome, Error> {
+) -> Result<Outcome> {
     let problem = scaled.problem;
     let (displacement, violation) = (vec![0.0; problem.dofs()], vec![f64::NEG_INFINITY; problem.rows()]);
     let mut climb = Climb { closed, displacement, violation, history: Vec::new(), ending: Ending::Unsettled };
@@ -114,7 +114,7 @@ struct Climb {
 
 impl Climb {
     /// One rung: exchanges the rows of the set until it returns, or until the loop must end.
-    fn settle(&mut self, scaled: &ScaledProblem, penalty: f64, most_iterations: usize) -> Result<(), Error> {
+    fn settle(&mut self, scaled: &ScaledProblem, penalty: f64, most_iterations: usize) -> Result<()> {
         let mut seen = HashSet::new();
         self.ending = Ending::Unsettled;
         while self.ending == Ending::Unsettled

@@ -1,7 +1,7 @@
 //! Factor or multigrid, by the estimates of seconds and bytes.
 
 use crate::cost::{Estimate, Smooth};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::memory::in_words as written;
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
@@ -40,7 +40,7 @@ impl Estimate {
     }
 
     /// The path within `most_bytes`. If a factor is not clearly too large, its analysis decides whether it fits.
-    pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
+    pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice> {
         let ratio = self.direct_seconds / self.multigrid_seconds;
         let fits = self.direct_bytes <= most_bytes;
         // For a body, constants alone give a poor hierarchy.
@@ -115,7 +115,7 @@ impl Estimate {
     }
 
     /// The reason for multigrid if a solve with a factor takes `factor` bytes, which is too much.
-    pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
+    pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String> {
         let multigrid = self.multigrid_bytes;
         if multigrid > most_bytes {
             return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes, ended: None });
@@ -132,7 +132,7 @@ impl Estimate {
 
 /// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from
 /// multigrid. A factor gives a proven bound; it is taken if it fits and takes at most these seconds.
-pub fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, settings: &Settings) -> Result<bool, Error> {
+pub fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, settings: &Settings) -> Result<bool> {
     let (estimate, memory) = (Estimate::of(problem), settings.memory.unwrap_or(f64::INFINITY));
     if estimate.direct_bytes > memory {
         return estimate.without_factor(estimate.direct_bytes, memory).map(|_| false);

@@ -353,13 +353,11 @@ impl History {
         let failed = |record: &Record| matches!(&record.ended, Ended::Failed(error) if error.leaves_existence_open());
         let Some(best) = &self.best else { return self.records.iter().any(failed) };
         let certificate = &best.solution.certificate;
-        match certificate.has_bound() {
-            true => certificate.loose_dofs > 0,
-            false => {
-                let is_singular = best.tried.is_some_and(|tried| tried.is_singular);
-                self.is_unheld() || is_singular || certificate.conditions_hold(self.settings.goal().tolerance)
-            }
+        if certificate.has_bound() {
+            return certificate.loose_dofs > 0;
         }
+        let is_singular = best.tried.is_some_and(|tried| tried.is_singular);
+        self.is_unheld() || is_singular || certificate.conditions_hold(self.settings.goal().tolerance)
     }
 
     /// The tolerance to which the conditions of an answer must hold if its rows are to tell whether it is the only one.

@@ -11,7 +11,7 @@ use super::choice::Choice;
 use super::history::{Answered, Ended, From, History, Means, Record, Step};
 use super::layout::check_rank;
 use crate::cost::{Estimate, is_everywhere, starts_near};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::Analysis;
 use crate::method::interior_point::InteriorPoint;
 use crate::method::mprgp::Limits;
@@ -68,7 +68,7 @@ pub struct Ladder {
 impl Ladder {
     /// The ladder for `problem`, if this number of gaps or loads shares the prepared data. It is whole if a start is
     /// given, or data are kept.
-    pub fn of(problem: &ContactProblem, gaps: usize, is_whole: bool, settings: &Settings) -> Result<Self, Error> {
+    pub fn of(problem: &ContactProblem, gaps: usize, is_whole: bool, settings: &Settings) -> Result<Self> {
         let mut ladder = Ladder {
             attempts: Vec::with_capacity(8),
             door: None,

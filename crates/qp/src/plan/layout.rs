@@ -5,7 +5,7 @@ use super::attempt::Arrangement;
 use super::history::unknowns;
 use crate::certificate::EnergyNorm;
 use crate::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::Analysis;
 use crate::problem::ContactProblem;
 use crate::settings::{Condense, Method, Settings};
@@ -38,7 +38,7 @@ impl Layout {
     ///
     /// # Errors
     /// [`Error::TooLarge`] with the least memory that a layout needs, [`Error::OutOfTime`], [`Error::Interrupted`].
-    pub fn within(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<Self, Error> {
+    pub fn within(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<Self> {
         check_room_to_order(problem, settings)?;
         let mut refused: Option<Error> = None;
         for arrangement in Arrangement::under(settings.condense) {
@@ -84,7 +84,7 @@ impl Layout {
     }
 
     /// The layout with the method and the parts that fit into memory and time.
-    fn fitting(mut self, problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+    fn fitting(mut self, problem: &ContactProblem, settings: &Settings) -> Result<Self> {
         let mut choices = vec![(self.method, true)];
         // The chosen method may take more memory than available, or too much time before its first step.
         if settings.method == Method::Auto && self.method != Method::ActiveSet {
@@ -139,7 +139,7 @@ impl Layout {
 }
 
 /// Refuses a problem that is too large to be ordered, with a rough estimate of its factor.
-fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<()> {
     match check_memory(problem, Kept::Nothing, settings.memory) {
         Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
             let factor_entries = Estimate::of(problem).factor_entries;
@@ -199,7 +199,7 @@ const MOST_UNKNOWNS: usize = 20_000;
 const NO_PIVOT: f64 = 1e-10;
 
 /// Refuses a nearly linear program: each of its motions without energy would have to be stopped by a row of its own.
-pub fn check_rank(problem: &ContactProblem) -> Result<(), Error> {
+pub fn check_rank(problem: &ContactProblem) -> Result<()> {
     // An equality takes a direction away.
     let unknowns = problem.dofs().saturating_sub(problem.equalities().len());
     let most = unknowns.saturating_sub(FEW_MOTIONS).min(unknowns / ONE_OF);

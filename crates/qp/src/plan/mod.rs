@@ -32,7 +32,7 @@ use std::fmt;
 use attempt::{Arrangement, Rung};
 use choice::Choice;
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::problem::ContactProblem;
 use crate::settings::{Condense, Settings};
 use crate::solution::Why;
@@ -103,7 +103,7 @@ impl Ladder {
     }
 
     /// The ladder in words, with the layout of the first factor; only the pattern of the stiffness is analysed.
-    pub fn in_words(&self, problem: &ContactProblem, settings: &Settings) -> Result<String, Error> {
+    pub fn in_words(&self, problem: &ContactProblem, settings: &Settings) -> Result<String> {
         let words = self.to_string();
         let Some((first, attempt)) = self.first_factor() else { return Ok(words) };
         let selection = RowSelection::of(problem);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Prepared;
 use crate::engine::{Factored, Reduced, displacement, on_boundary, response, settled, walk};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::method::Start;
 use crate::method::parametric::{Event, Piece};
 use crate::settings::Method;
@@ -86,7 +86,7 @@ impl Prepared {
         self.on_boundary(gap, true)
     }
 
-    fn on_boundary(&self, gap: &[f64], is_bounded: bool) -> Result<BoundarySolution, Error> {
+    fn on_boundary(&self, gap: &[f64], is_bounded: bool) -> Result<BoundarySolution> {
         if self.problem.equality_rows() > 0 {
             return Ok(self.solve(gap)?.into());
         }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::certificate::{Bounding, EnergyNorm, norm_on_equalities};
 use crate::engine::{Engine, Factored, Load, Task};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::multigrid::Multigrid;
 use crate::method::Start;
 use crate::plan::{Attempt, Ended, Ladder, Record, Step, Tried};
@@ -187,7 +187,7 @@ impl Prepared {
     }
 
     /// Solves a problem with equalities, which are eliminated already if they are those of the one that was prepared.
-    fn without_equalities(&self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    fn without_equalities(&self, problem: &ContactProblem, settings: &Settings) -> Result<Solution> {
         let kept = self.without.as_ref().filter(|without| without.elimination.serves(problem, &self.problem));
         let Some(Without { elimination, rest, norm }) = kept.map(Arc::as_ref) else {
             return solved(problem, &self.start, settings);
@@ -216,7 +216,7 @@ impl Prepared {
         self.with_load(load)?.solve(self.problem.gap())
     }
 
-    fn problem_at(&self, gap: &[f64]) -> Result<ContactProblem, Error> {
+    fn problem_at(&self, gap: &[f64]) -> Result<ContactProblem> {
         self.start.of_all_rows(&self.problem).check(self.problem.dofs(), self.problem.rows())?;
         let problem = self.problem.with_gap(gap.to_vec())?;
         problem.check_rows()?;
@@ -228,8 +228,8 @@ impl Prepared {
         &self,
         gap: &[f64],
         start: &Start,
-        answer: impl FnOnce(&Engine, &Task) -> Result<Option<T>, Error>,
-    ) -> Result<Option<T>, Error> {
+        answer: impl FnOnce(&Engine, &Task) -> Result<Option<T>>,
+    ) -> Result<Option<T>> {
         let Some(Workbench { attempt, engine, load }) = &self.bench else { return Ok(None) };
         let (problem, settings) = (&self.problem_at(gap)?, &self.settings.started()?);
         let by = &self.ladder.attempts[*attempt];

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::ContactProblem;
 use super::structure::largest_finite;
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::equations::{FOLLOWS, Following};
 use crate::linear::{Accumulator, SparseMatrix, check_finite, largest};
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
@@ -60,7 +60,7 @@ impl ContactProblem {
     }
 
     /// The same with all rows, whether they follow from each other or not.
-    pub(crate) fn with_all_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
+    pub(crate) fn with_all_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self> {
         if rows.columns() != self.dofs() {
             let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));
             return Err(LinearError::Shape { name: "equality matrix", found, expected }.into());
@@ -80,12 +80,7 @@ impl ContactProblem {
     }
 
     /// The same body under another load, with the rows `open` and with those `held` as equalities, at distances of all.
-    pub(crate) fn with_held(
-        &self,
-        load: Vec<f64>,
-        [open, held]: [&[usize]; 2],
-        distances: &[f64],
-    ) -> Result<Self, Error> {
+    pub(crate) fn with_held(&self, load: Vec<f64>, [open, held]: [&[usize]; 2], distances: &[f64]) -> Result<Self> {
         let pick = |rows: &[usize]| (self.contact.select_rows(rows), rows.iter().map(|&row| distances[row]).collect());
         let ((open, gap), (held, values)) = (pick(open), pick(held));
         let problem = ContactProblem::computed(self.stiffness.clone(), load, open, gap)?;

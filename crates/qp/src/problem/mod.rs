@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 
 use structure::{Diagonal, OpposedRows, settle, without_entries};
 
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::equations::Following;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_finite, check_vector};
@@ -110,7 +110,7 @@ impl ContactProblem {
         load: Vec<f64>,
         contact: SparseMatrix,
         gap: Vec<f64>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self> {
         let dofs = stiffness.dim();
         if contact.columns() != dofs {
             let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
@@ -160,7 +160,7 @@ impl ContactProblem {
     }
 
     /// The same with the near-null space of another problem, each vector made one `of` these dofs unless it vanishes.
-    pub(crate) fn with_near_null_of(self, other: &Self, of: impl Fn(&[f64]) -> Vec<f64>) -> Result<Self, Error> {
+    pub(crate) fn with_near_null_of(self, other: &Self, of: impl Fn(&[f64]) -> Vec<f64>) -> Result<Self> {
         let vectors = other.near_null().map_or(&[][..], |modes| modes.vectors()).iter().map(|mode| of(mode));
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
         match NearNullSpace::of_modes(vectors.filter(moves).collect()) {
@@ -246,7 +246,7 @@ impl ContactProblem {
     }
 
     /// Returns `true` if K is positive semidefinite, to rounding. One factorisation, at the first use.
-    pub(crate) fn is_semidefinite(&self) -> Result<bool, Error> {
+    pub(crate) fn is_semidefinite(&self) -> Result<bool> {
         if let Some(&found) = self.semidefinite.get() {
             return Ok(found);
         }
@@ -296,7 +296,7 @@ impl ContactProblem {
     }
 
     /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
-    pub(crate) fn check_rows(&self) -> Result<(), Error> {
+    pub(crate) fn check_rows(&self) -> Result<()> {
         match self.opposed_rows().check(&self.without_entries, &self.gap) {
             Err(Error::Infeasible { rows, weights, .. }) if self.equality_rows > 0 => {
                 Err(self.infeasible(&rows, &weights))
@@ -354,7 +354,7 @@ impl ContactProblem {
     }
 
     /// Checks that the vectors of an answer have the lengths of the problem.
-    pub(crate) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
+    pub(crate) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<()> {
         let length = LinearError::check_length;
         length("displacement", displacement.len(), self.dofs(), "dofs")?;
         let (found, of) =
@@ -433,11 +433,11 @@ impl<'a> Distances<'a> {
     }
 }
 
-pub fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
+pub fn check_load(load: &[f64], dofs: usize) -> Result<()> {
     Ok(check_finite("load vector", load, (dofs, "dofs"))?)
 }
 
-pub fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
+pub fn check_gap(gap: &[f64], rows: usize) -> Result<()> {
     let allowed = "finite, or +inf for a row without obstacle";
     Ok(check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)?)
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::{Accumulator, Forest, SparseMatrix, SymmetricMatrix, exponent, ldexp};
 
 /// A coupling below this share of `sqrt(K_ii K_jj)` does not make two dofs one part.
@@ -172,7 +172,7 @@ impl OpposedRows {
     }
 
     /// Checks that no rows, of which these are without entries, contradict each other at sight under `gap` (length m).
-    pub fn check(&self, without_entries: &[usize], gap: &[f64]) -> Result<(), Error> {
+    pub fn check(&self, without_entries: &[usize], gap: &[f64]) -> Result<()> {
         if let Some(&row) = without_entries.iter().find(|&&row| gap[row] < 0.0) {
             let reason =
                 format!("contact row {row} has no free dof, but its gap is {:e}: it must not be negative", gap[row]);

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::{Run, solved, without_certificate};
 use crate::certificate::{Bounding, Examination};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Best, Door, Ended, Record, Step};
 use crate::solution::{Attempt, Goal, ProvenSet, Seconds, Solution};
@@ -16,7 +16,7 @@ fn fallen_short(solution: Solution, goal: Goal) -> Error {
 }
 
 impl Run<'_> {
-    pub fn decided(&mut self) -> Result<Best, Error> {
+    pub fn decided(&mut self) -> Result<Best> {
         let is_decided = |record: &Record| match record.ended {
             Ended::Decided(Error::Interrupted) => self.history.best.is_none(),
             Ended::Decided(_) => true,
@@ -65,7 +65,7 @@ impl Run<'_> {
     }
 
     /// The answer in the rows as they were given, if it meets the goal.
-    pub fn certified(&self, solution: Solution) -> Result<Solution, Error> {
+    pub fn certified(&self, solution: Solution) -> Result<Solution> {
         let goal = self.settings.goal();
         if goal.is_met_by(&solution.certificate) {
             let without = self.without_open_rows(&solution)?;
@@ -77,7 +77,7 @@ impl Run<'_> {
     }
 
     /// The answer without rows closed in `solution` but proven open: the exact one is the same. `None` without any.
-    fn without_open_rows(&self, solution: &Solution) -> Result<Option<Solution>, Error> {
+    fn without_open_rows(&self, solution: &Solution) -> Result<Option<Solution>> {
         let Some(proven) = &solution.proven else { return Ok(None) };
         let is_open = |row: usize| solution.contact_set.contains(row) && proven.open.contains(row);
         if !(0..self.problem.rows()).any(is_open) {
@@ -129,7 +129,7 @@ impl Run<'_> {
     }
 
     /// The error if no step gave an answer: the limit of time, with the body at rest, or the last error.
-    fn without_answer(&mut self) -> Result<Error, Error> {
+    fn without_answer(&mut self) -> Result<Error> {
         let records = std::mem::take(&mut self.history.records);
         let errors = records.into_iter().filter_map(|record| match record.ended {
             Ended::Refused(error) | Ended::Failed(error) => Some(error),

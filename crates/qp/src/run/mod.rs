@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use crate::certificate::{Bounding, EnergyNorm, Examination, Examined, at_rest};
 use crate::engine::{Engine, Hierarchical, Load, Task};
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::existence::Existence;
 use crate::linear::SymmetricMatrix;
 use crate::method::{Ending, Outcome, Start};
@@ -20,7 +20,7 @@ use crate::solution::{Certificate, Seconds, Solution, Why};
 use crate::transform::{Elimination, Scaling};
 
 /// The answer of `problem` from a start, by the ladder of `settings`.
-pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution, Error> {
+pub fn solved(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<Solution> {
     let (start, settings) = &checked(problem, start, settings)?;
     let ladder = Ladder::of(problem, 1, !start.is_unknown(), settings)?;
     answered(&mut Run::new(problem, &ladder, start, settings))
@@ -42,7 +42,7 @@ pub(crate) fn answered(run: &mut Run) -> Result<Solution, Error> {
 }
 
 /// Start and settings that fit a problem, with the clock running.
-fn checked(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<(Start, Settings), Error> {
+fn checked(problem: &ContactProblem, start: &Start, settings: &Settings) -> Result<(Start, Settings)> {
     let (settings, start) = (settings.started()?, start.of_all_rows(problem));
     start.check(problem.dofs(), problem.rows())?;
     problem.check_rows()?;
@@ -61,7 +61,7 @@ pub struct Workbench {
 pub struct KeptRest<'a> {
     pub elimination: &'a Elimination,
     pub norm: &'a Option<EnergyNorm>,
-    pub solve: &'a dyn Fn(&Start, &Settings) -> Result<Solution, Error>,
+    pub solve: &'a dyn Fn(&Start, &Settings) -> Result<Solution>,
 }
 
 pub struct Run<'a> {
@@ -101,13 +101,13 @@ impl<'a> Run<'a> {
     }
 
     /// Makes one step after the other, until the plan names none.
-    pub fn carry_out(&mut self, make: impl Fn(&mut Self, &mut Record) -> Result<Ended, Error>) {
+    pub fn carry_out(&mut self, make: impl Fn(&mut Self, &mut Record) -> Result<Ended>) {
         while let Some(step) = self.ladder.next(&self.history) {
             self.record(step, &make);
         }
     }
 
-    fn record(&mut self, mut step: Record, make: impl FnOnce(&mut Self, &mut Record) -> Result<Ended, Error>) {
+    fn record(&mut self, mut step: Record, make: impl FnOnce(&mut Self, &mut Record) -> Result<Ended>) {
         let clock = Instant::now();
         step.ended = match make(self, &mut step) {
             Ok(ended) => ended,
@@ -132,7 +132,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn asked(&mut self, step: &mut Record) -> Result<Ended, Error> {
+    fn asked(&mut self, step: &mut Record) -> Result<Ended> {
         match step.step {
             Step::Existence => self.looked_at_existence(),
             Step::Proximal => self.by_proximal_steps(step),
@@ -142,7 +142,7 @@ impl<'a> Run<'a> {
     }
 
     /// The prepared data of an attempt, `None` for a question; others are freed first, unless the caller keeps them.
-    pub fn prepared(&mut self, step: &mut Record) -> Result<Option<Workbench>, Error> {
+    pub fn prepared(&mut self, step: &mut Record) -> Result<Option<Workbench>> {
         if step.means == Means::Problem || step.step == Step::Existence {
             return Ok(None);
         }
@@ -163,7 +163,7 @@ impl<'a> Run<'a> {
     }
 
     /// What a step finds by the prepared data: they scale, start the method, and expand.
-    fn found(&self, bench: &Workbench, record: &mut Record) -> Result<Option<Outcome>, Error> {
+    fn found(&self, bench: &Workbench, record: &mut Record) -> Result<Option<Outcome>> {
         let attempt = &self.ladder.attempts[record.attempt];
         let settings = &attempt.settings(self.settings);
         let tried = bench.engine.tried(attempt.method);
@@ -227,7 +227,7 @@ impl<'a> Run<'a> {
         Best { ending, tried: step.tried, ..Best::of(solution, attempt) }
     }
 
-    fn examined(&mut self, answer: Best, bench: &Workbench, step: &mut Record) -> Result<Ended, Error> {
+    fn examined(&mut self, answer: Best, bench: &Workbench, step: &mut Record) -> Result<Ended> {
         self.settings.watch.step("certificate", 0);
         let is_unsettled = step.step == Step::Method && answer.ending == Ending::Unsettled;
         let by = match is_unsettled && answer.tried.is_some_and(|tried| self.history.wanders_by(tried.method)) {
@@ -238,7 +238,7 @@ impl<'a> Run<'a> {
     }
 
     /// Judges an answer, and the same with the parts at rest that may rest; the best so far is kept.
-    pub fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered, Error> {
+    pub fn judged(&mut self, answer: Best, by: &Bounding, record: &mut Record) -> Result<Answered> {
         let clock = Instant::now();
         let Solution { displacement, multiplier, .. } = &answer.solution;
         let examination = Examination::of(self.problem, [displacement, multiplier], by)?;
@@ -262,7 +262,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn looked_at_existence(&mut self) -> Result<Ended, Error> {
+    fn looked_at_existence(&mut self) -> Result<Ended> {
         let Some(existence) = Existence::of(self.problem, self.settings)? else { return Ok(Ended::Empty) };
         if let Some(unbounded) = existence.unbounded() {
             check_rows(self.problem, self.settings)?;
@@ -272,7 +272,7 @@ impl<'a> Run<'a> {
         Ok(Ended::MayExist)
     }
 
-    fn looked_at_uniqueness(&mut self) -> Result<Ended, Error> {
+    fn looked_at_uniqueness(&mut self) -> Result<Ended> {
         let (Some(existence), Some(best)) = (&self.existence, &self.history.best) else { return Ok(Ended::Empty) };
         existence.check_unique(self.problem, &best.solution, self.history.sure_tolerance())?;
         Ok(Ended::MayExist)
@@ -308,7 +308,7 @@ pub fn without_certificate(outcome: Outcome, tried: Option<&Tried>) -> Solution 
 ///
 /// # Errors
 /// [`Error::Infeasible`] for contact rows that contradict each other; if that is not decided, they count as met.
-pub fn check_rows(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+pub fn check_rows(problem: &ContactProblem, settings: &Settings) -> Result<()> {
     problem.check_rows()?;
     let (contact, rest) = (problem.contact().clone(), vec![0.0; problem.dofs()]);
     let stiffness = SymmetricMatrix::of_diagonal(Scaling::of(problem.stiffness(), &contact)?.identity(0));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Run, Workbench, answered};
 use crate::certificate::Bounding;
 use crate::engine::Load;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::SymmetricMatrix;
 use crate::method::Start;
 use crate::plan::{Answered, Best, Ended, Ladder, Record};
@@ -30,7 +30,7 @@ const FEWEST_STEPS: usize = 3;
 const MOST_STEPS: usize = 12;
 
 impl Run<'_> {
-    pub fn by_proximal_steps(&mut self, record: &mut Record) -> Result<Ended, Error> {
+    pub fn by_proximal_steps(&mut self, record: &mut Record) -> Result<Ended> {
         let Some(existence) = &self.existence else { return Ok(Ended::Empty) };
         let before = self.history.records.iter().rev().find(|record| record.answer.is_some());
         let because = before.map_or_else(String::new, |record| record.shortfall(self.settings.goal()));
@@ -59,7 +59,7 @@ impl Run<'_> {
 ///
 /// # Source
 /// R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control Optim. 14 (1976) 877-898.
-fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>, Error> {
+fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>> {
     let added = scaling.identity(STEP);
     let (load, gap) = (problem.load(), problem.gap().to_vec());
     let stiffness = problem.stiffness().combined(1.0, 1.0, &SymmetricMatrix::of_diagonal(added.clone()))?;

@@ -256,9 +256,10 @@ impl Certificate {
 
     /// Returns `true` if this falls short by less than `share` of what `before` does. A bound is better than none.
     pub(crate) fn improves_on(&self, before: &Certificate, share: f64) -> bool {
-        match self.has_bound() == before.has_bound() {
-            true => self.worst().1 < share * before.worst().1,
-            false => self.has_bound(),
+        if self.has_bound() == before.has_bound() {
+            self.worst().1 < share * before.worst().1
+        } else {
+            self.has_bound()
         }
     }
 
@@ -273,14 +274,11 @@ impl Certificate {
 
     /// Returns `true` if this certificate is better than `before` by the factor `share`.
     pub(crate) fn gains_on(&self, before: &Certificate, goal: Goal, share: f64) -> bool {
-        match goal.is_met_by(before) {
-            true => {
-                let is_balanced =
-                    self.stationarity < share * before.stationarity && before.stationarity > goal.required();
-                goal.is_met_by(self) && (is_balanced || self.complementarity < share * before.complementarity)
-            }
-            false => self.improves_on(before, share),
+        if !goal.is_met_by(before) {
+            return self.improves_on(before, share);
         }
+        let is_balanced = self.stationarity < share * before.stationarity && before.stationarity > goal.required();
+        goal.is_met_by(self) && (is_balanced || self.complementarity < share * before.complementarity)
     }
 
     /// The same numbers, with the statement that they meet `goal`, and in which way.

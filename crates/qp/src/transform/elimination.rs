@@ -12,7 +12,7 @@
 //! A long equality, as a mean value over all dofs, would fill `Z'K Z`. It is cut: the sum over some dofs becomes an
 //! unknown in the place of one of them, and the sum over some of these sums, until a short equality of sums is left.
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::equations::{FOLLOWS, PIVOT, Pivot, Pivots, Remainder, Solved, Sparse, Sums, largest};
 use crate::linear::twice::Sum;
 use crate::linear::{SparseMatrix, Twice, exponent, ldexp};
@@ -51,7 +51,7 @@ pub struct Elimination {
 
 impl Elimination {
     /// The elimination of all equalities; `None` if it fills the stiffness, or rounding hides whether some follow.
-    pub fn of(problem: &ContactProblem) -> Result<Option<Self>, Error> {
+    pub fn of(problem: &ContactProblem) -> Result<Option<Self>> {
         let mut found = Self::cut(problem, usize::MAX);
         if let Err(None) = found {
             found = Self::cut(problem, LONG);
@@ -125,7 +125,7 @@ impl Elimination {
         Ok(Elimination { equalities, solved, sums: all_sums, rows })
     }
 
-    pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
+    pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem> {
         let (stiffness, load) = (self.solved.congruent(problem.stiffness())?, self.load(problem));
         let (by_row, mut sums) = (problem.contact().transposed(), Sums::default());
         let mut entries = Vec::with_capacity(by_row.entries());

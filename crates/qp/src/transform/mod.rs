@@ -6,7 +6,7 @@ pub use elimination::Elimination;
 
 use std::sync::OnceLock;
 
-use crate::error::{Error, LinearError};
+use crate::error::{LinearError, Result};
 use crate::linear::{
     Analysis, Cholesky, Equilibration, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, exponent, ldexp,
 };
@@ -87,7 +87,7 @@ impl Pieces {
         self.dofs.len()
     }
 
-    pub fn problem(&self, problem: &ContactProblem, piece: usize) -> Result<ContactProblem, Error> {
+    pub fn problem(&self, problem: &ContactProblem, piece: usize) -> Result<ContactProblem> {
         let (dofs, rows) = (&self.dofs[piece], &self.rows[piece]);
         let columns = |matrix: &SparseMatrix, of: &[usize], place: &[usize], count: usize| {
             matrix.select(count, |row| (of[row] == piece).then_some(place[row]), dofs.iter().copied())
@@ -175,7 +175,7 @@ fn largest_exponents(contact: &SparseMatrix, d: &[i32]) -> Vec<i32> {
 }
 
 impl Scaling {
-    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Self, Error> {
+    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Self> {
         let equilibration = Equilibration::of(stiffness);
         let d = &equilibration.diagonal;
         let row_exponents: Vec<i32> = largest_exponents(contact, d).into_iter().map(|e| -e).collect();
@@ -275,12 +275,7 @@ impl Condensation {
 
     /// Condenses by a factor of K, or of K + B'B if it `holds_rows`, which are then subtracted, with `contact_dofs`
     /// last.
-    pub fn new(
-        cholesky: Cholesky,
-        holds_rows: bool,
-        contact_dofs: Vec<usize>,
-        contact: &SparseMatrix,
-    ) -> Result<Self, Error> {
+    pub fn new(cholesky: Cholesky, holds_rows: bool, contact_dofs: Vec<usize>, contact: &SparseMatrix) -> Result<Self> {
         let contact = contact.select(contact.rows(), Some, contact_dofs.iter().copied());
         let trailing = cholesky.trailing_block();
         let mut schur = trailing.times_transpose();
@@ -345,7 +340,7 @@ fn subtract_rows(schur: &mut [f64], contact: &SparseMatrix) {
 }
 
 /// The lower triangle of a dense matrix (n x n, column by column), zeros included.
-fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix, Error> {
+fn dense_triangle(matrix: &[f64], size: usize) -> Result<SparseMatrix> {
     let places = || (0..size).flat_map(|column| (column..size).map(move |row| (row, column)));
     let values: Vec<f64> = places().map(|(row, column)| matrix[column * size + row]).collect();
     if let Some(&value) = values.iter().find(|value| !value.is_finite()) {

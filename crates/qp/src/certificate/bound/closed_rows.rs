@@ -199,18 +199,16 @@ fn moved_to_gaps(rows: &ClosedRows, u: &[f64]) -> [Vec<f64>; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::SymmetricMatrix;
 
     /// Rounding of a sum over a few dofs.
     const ROUNDING: f64 = 1e-14;
 
     /// Dofs of these stiffnesses, which nothing couples, and rows with gaps.
     fn problem(stiffness: &[f64], rows: &[&[f64]], gap: &[f64]) -> ContactProblem {
-        let diagonal: Vec<_> = stiffness.iter().enumerate().map(|(dof, &value)| (dof, dof, value)).collect();
-        let entries: Vec<_> = (rows.iter().enumerate())
-            .flat_map(|(row, of_row)| of_row.iter().enumerate().map(move |(dof, &b)| (row, dof, b)))
-            .filter(|entry| entry.2 != 0.0)
-            .collect();
-        ContactProblem::of_entries(&diagonal, &vec![0.0; stiffness.len()], &entries, gap)
+        let contact = SparseMatrix::from_table(rows.len(), stiffness.len(), &rows.concat()).unwrap();
+        let (stiffness, load) = (SymmetricMatrix::of_diagonal(stiffness.to_vec()), vec![0.0; stiffness.len()]);
+        ContactProblem::new(stiffness, load, contact, gap.to_vec()).unwrap()
     }
 
     fn placed(problem: &ContactProblem, u: &[f64], closed: &[bool]) -> Option<Placed> {

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use super::{Bound, Bounds, LeftOut, Side, are_equal, length, no_bound};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::multigrid::{Direction, Units};
 use crate::linear::{SparseMatrix, ldexp};
 
@@ -43,7 +43,7 @@ impl Bounds {
         (order, needed): (&[usize], usize),
         units: &Units,
         travels: Vec<usize>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self> {
         let by_row = &contact.transposed();
         let mut means = means((by_row, gap), &units.groups, &travels);
         let is_unscaled = units.exponents.iter().all(|&unit| unit == 0);
@@ -148,7 +148,7 @@ fn means((by_row, gap): (&SparseMatrix, &[f64]), groups: &[u32], travels: &[usiz
 
 impl Making<'_> {
     /// The length of a row in the units of the dofs, its unit vector after the reflections, and its travel.
-    fn turned(&self, row: usize) -> Result<(f64, Direction, Direction), Error> {
+    fn turned(&self, row: usize) -> Result<(f64, Direction, Direction)> {
         let is_travel = |entry: &(usize, f64)| self.all.travels.binary_search(&entry.0).is_ok();
         let entries = entries(self.by_row, row).map(|(dof, b)| (dof, ldexp(b, self.all.units[dof])));
         let (mut moving, mut entries): (Direction, Direction) = entries.partition(is_travel);
@@ -165,7 +165,7 @@ impl Making<'_> {
     }
 
     /// Turns a row into a bound, if at least the share `least` of it is beyond the rows before it.
-    fn turn(&mut self, row: usize, least: f64) -> Result<(), Error> {
+    fn turn(&mut self, row: usize, least: f64) -> Result<()> {
         let (length, turned, moving) = self.turned(row)?;
         let (shared, mut own): (Direction, Direction) =
             turned.into_iter().partition(|entry| self.bound_of[entry.0].is_some());
@@ -205,7 +205,7 @@ impl Making<'_> {
     }
 
     /// Makes a mean a bound on its pivot, the direction at one node of what no other row has, if there is one.
-    fn pivot(&mut self, row: usize) -> Result<bool, Error> {
+    fn pivot(&mut self, row: usize) -> Result<bool> {
         let (length, turned, moving) = self.turned(row)?;
         let Some(group) = self.group_of_pivot(&turned) else { return Ok(false) };
         let (mut own, mut shears): (Direction, Direction) =

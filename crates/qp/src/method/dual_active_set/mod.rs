@@ -23,7 +23,7 @@ mod polyhedron;
 use std::collections::HashSet;
 
 use super::{Ending, Outcome, ScaledProblem};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::watch::Watch;
 use crate::linear::{Augmented, dot, largest, norm};
 use crate::problem::ContactProblem;
@@ -68,7 +68,7 @@ const NO_WEIGHT: f64 = 1e-24;
 const WEIGHT_CORRECTIONS: usize = 3;
 
 /// As [`ContactProblem::dual_active_set`].
-pub fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Outcome, Error> {
+pub fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Outcome> {
     let augmented = Augmented::new(problem.stiffness(), problem.contact(), None, 1);
     let scaled = ScaledProblem::new(problem, &augmented, is_definite, None, Watch::default());
     solve(&scaled)?.ok_or(Error::NotCondensed { step: "the dual active set" })
@@ -77,7 +77,7 @@ pub fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Ou
 /// Solves a scaled problem, or finds a contradiction. `None` without a factor, or if a dense basis would be too large.
 ///
 /// The answer is not settled if the method was cut short, or its corrections do not converge: it makes no claim.
-pub fn solve(scaled: &ScaledProblem) -> Result<Option<Outcome>, Error> {
+pub fn solve(scaled: &ScaledProblem) -> Result<Option<Outcome>> {
     let Some(polyhedron) = Polyhedron::of(scaled)? else { return Ok(None) };
     let [pressures, rests, carried, distances] = [(); 4].map(|()| vec![0.0; scaled.problem.rows()]);
     let [displacement, point, target, change] = [(); 4].map(|()| vec![0.0; scaled.problem.dofs()]);

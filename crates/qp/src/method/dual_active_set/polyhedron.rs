@@ -6,7 +6,7 @@
 
 use std::cell::Cell;
 
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::{
     Accumulator, AugmentedMatrix, Cholesky, Equilibration, SparseMatrix, UpperTriangle, dot, exponent, if_definite,
     largest, ldexp, norm, subtract, turned,
@@ -44,7 +44,7 @@ pub struct Polyhedron {
 
 impl Polyhedron {
     /// The polyhedron of a problem; `None` if its factorisation fails or would take too many sweeps.
-    pub fn of(scaled: &ScaledProblem) -> Result<Option<Self>, Error> {
+    pub fn of(scaled: &ScaledProblem) -> Result<Option<Self>> {
         let of = scaled.problem;
         let equilibration = Equilibration::of(of.stiffness());
         let stiffness = equilibration.apply(of.stiffness());

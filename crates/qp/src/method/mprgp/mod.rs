@@ -23,7 +23,7 @@ mod iterate;
 
 use super::bounds::Bounds;
 use super::{Ending, Outcome, Start};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::SparseMatrix;
 use crate::linear::multigrid::{Face, Interval, Multigrid};
 use crate::linear::watch::Watch;
@@ -100,7 +100,7 @@ impl Mprgp<'_> {
     ///
     /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations
     /// together do not halve the residual; those that change the face count only beyond one for each row.
-    pub fn solve(&self, start: Start) -> Result<Outcome, Error> {
+    pub fn solve(&self, start: Start) -> Result<Outcome> {
         let Mprgp { problem, multigrid, limits, .. } = *self;
         let (rows, units, mut start) = ((problem.contact(), problem.gap()), multigrid.units(), start);
         let mut before: Option<Outcome> = None;
@@ -126,7 +126,7 @@ impl Mprgp<'_> {
         }
     }
 
-    fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome, Error> {
+    fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome> {
         let (limits, watch, rows) = (self.limits, self.watch, self.problem.rows());
         let mut steps = Steps::of(self, self.started(bounds, start));
         let mut history = vec![steps.iterate.step()];
@@ -312,7 +312,7 @@ impl<'a> Steps<'a> {
     }
 
     /// Takes one of the steps. Returns `false` at a direction along which nothing is held, or the energy is negative.
-    fn take_one(&mut self) -> Result<bool, Error> {
+    fn take_one(&mut self) -> Result<bool> {
         let iterate = &mut self.iterate;
         if iterate.is_disproportionate() {
             iterate.proportion();
