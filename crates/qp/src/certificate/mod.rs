@@ -43,12 +43,8 @@ pub struct Examination<'a> {
 }
 
 impl<'a> Examination<'a> {
-    pub fn of(
-        problem: &'a ContactProblem,
-        [displacement, multiplier]: [&'a [f64]; 2],
-        by: &'a Bounding<'a>,
-    ) -> Result<Self> {
-        let multiplier = problem.of_all_rows(multiplier);
+    pub fn of(problem: &'a ContactProblem, answer: [&'a [f64]; 2], by: &'a Bounding<'a>) -> Result<Self> {
+        let (displacement, multiplier) = (answer[0], problem.of_all_rows(answer[1]));
         problem.check_answer(displacement, &multiplier)?;
         // A hierarchy of one level is a factor already, of so few dofs that another one costs nothing.
         let is_factor = matches!(by, Bounding::Cycles(multigrid, _) if multigrid.unknowns().len() <= 1);

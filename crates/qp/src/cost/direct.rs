@@ -44,7 +44,9 @@ impl BodyFactor {
             Some(MODES_IN_SPACE..) => |dofs| [10.0 * dofs.powi(2), 23.0 * dofs.powf(4.0 / 3.0)],
             _ => |dofs| [34.0 * dofs.powf(1.5), 6.0 * dofs * dofs.max(2.0).log2()],
         };
-        let bodies = problem.parts().dofs_of_bodies().into_iter().map(|dofs| law(dofs as f64));
+        let (parts, mut dofs) = (problem.parts(), vec![0_usize; problem.parts().bodies()]);
+        (0..problem.dofs()).for_each(|dof| dofs[parts.body_of_dof(dof)] += 1);
+        let bodies = dofs.into_iter().map(|dofs| law(dofs as f64));
         let [multiplications, entries] = bodies.fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
         let seconds = factor_seconds(multiplications, entries);
         BodyFactor { entries, seconds, ordering_seconds: seconds::ordering(problem) }

@@ -38,7 +38,7 @@ pub fn rows_of(
     problem.check_answer(answer[0], answer[1])?;
     let proven = match &solution.proven {
         Some(proven) => Some(proven.clone()),
-        None => proven_here(problem, engine, answer.map(Vec::as_slice), watch)?,
+        None => proven(problem, engine, answer.map(Vec::as_slice), watch)?,
     };
     let Some(ProvenSet { open, closed }) = proven else {
         return Ok(Err(match problem.free_motions() > 0 {
@@ -63,20 +63,14 @@ pub fn rows_of(
 }
 
 /// The proof by the data of the engine, or by a factor of the certificate.
-fn proven_here(
-    problem: &ContactProblem,
-    engine: &Engine,
-    [displacement, multiplier]: [&[f64]; 2],
-    watch: &Watch,
-) -> Result<Option<ProvenSet>> {
-    let answer = [displacement, multiplier];
+fn proven(problem: &ContactProblem, engine: &Engine, answer: [&[f64]; 2], watch: &Watch) -> Result<Option<ProvenSet>> {
     // Travels have no bound by the data of an engine.
     if engine.hierarchy().is_none() && !problem.without_stiffness().is_empty() {
         return Examination::of(problem, answer, &Bounding::OwnFactor)?.proof(None);
     }
     let by = engine.bounding(watch);
-    let (two_sided, of_rows) = problem.two_sided(multiplier);
-    let evidence = Examination::of(&two_sided, [displacement, &of_rows], &by)?.certificate()?.evidence;
+    let (two_sided, of_rows) = problem.two_sided(answer[1]);
+    let evidence = Examination::of(&two_sided, [answer[0], &of_rows], &by)?.certificate()?.evidence;
     // Without a norm at hand there is no factor of the stiffness alone.
     let by_engine = !matches!(by, Bounding::OwnFactor);
     let proven = if by_engine { Examination::of(problem, answer, &by)?.proof(evidence)? } else { None };
@@ -94,18 +88,16 @@ fn exact_answer(
     problem: &ContactProblem,
     engine: &Engine,
     set: &ContactSet,
-    [displacement, multiplier]: [&Vec<f64>; 2],
+    answer: [&Vec<f64>; 2],
     watch: &Watch,
 ) -> Option<RowStates> {
     if engine.hierarchy().is_some() {
         return None;
     }
     // An equality has one row here.
-    let (mut u, mut lambda) = (displacement.clone(), problem.split(multiplier.clone()).concat());
+    let (mut u, mut lambda) = (answer[0].clone(), problem.split(answer[1].clone()).concat());
     lambda.resize(problem.rows(), 0.0);
-    for row in (0..problem.rows()).filter(|&row| !set.contains(row)) {
-        lambda[row] = 0.0;
-    }
+    ((0..problem.rows()).filter(|&row| !set.contains(row))).for_each(|row| lambda[row] = 0.0);
     let size = largest(&problem.contact().mul_transposed(&lambda)).max(largest(problem.load()));
     for _ in 0..MOST_CORRECTIONS {
         let rest = problem.accurate_residual(&u, &lambda);

@@ -74,11 +74,6 @@ impl Factored {
         }
     }
 
-    /// Values of the factor; zero if the methods factorise by themselves.
-    pub fn factor_entries(&self) -> usize {
-        self.condensation.as_ref().map_or(0, Condensation::factor_entries)
-    }
-
     pub fn is_definite(&self) -> bool {
         !matches!(self.norm, Norm::Missing)
     }

@@ -42,8 +42,7 @@ fn outcome(
         Step::Method => by_method(scaled, (method, start), most_iterations, goal).map(Some),
         Step::InteriorPoint => {
             let found = by_method(scaled, (Method::qp(), None), most_iterations, None)?;
-            let variant = if found.is_settled() { "-interior-point" } else { found.variant };
-            Ok(Some(Outcome { variant, ..found }))
+            Ok(Some(named(found, "-interior-point")))
         }
         Step::Continuation => continued(scaled, start, most_iterations).map(Some),
         Step::Dual => dual_active_set::solve(scaled),
@@ -60,10 +59,7 @@ fn by_method(
     let Some(cold) = scaled.start()? else { return Ok(Outcome::at_rest(scaled.problem, Ending::Unheld)) };
     let by_sets = |start: ContactSet| active_set::solve(scaled, start, most_iterations.min(PATIENCE));
     match (method, start) {
-        (Method::Qp(InteriorPoint { polish: true, .. }), Some(start)) => {
-            let outcome = by_sets(start)?;
-            Ok(Outcome { variant: if outcome.is_settled() { "-warm" } else { outcome.variant }, ..outcome })
-        }
+        (Method::Qp(InteriorPoint { polish: true, .. }), Some(start)) => Ok(named(by_sets(start)?, "-warm")),
         (Method::Qp(InteriorPoint { polish, tolerance }), _) => {
             let found = interior_point::solve(scaled, tolerance)?;
             match polish {
@@ -98,8 +94,12 @@ fn continued(scaled: &ScaledProblem, start: Option<ContactSet>, most_iterations:
     }
     let most_iterations = most_iterations.saturating_sub(approach.iterations).max(1);
     let second = active_set::solve(scaled, approach.contact_set.clone(), most_iterations)?;
-    let variant = if second.is_settled() { "-continuation" } else { second.variant };
-    Ok(Outcome { variant, ..second.after(approach) })
+    Ok(named(second, "-continuation").after(approach))
+}
+
+/// An outcome with this variant, if it has settled.
+fn named(outcome: Outcome, variant: &'static str) -> Outcome {
+    Outcome { variant: if outcome.is_settled() { variant } else { outcome.variant }, ..outcome }
 }
 
 /// The result of a method on the unknowns of the engine, with its load and gaps.
@@ -144,7 +144,9 @@ fn find_under(engine: &Factored, loading: Arc<Loading>, gap: &[f64], task: &Task
 }
 
 fn scaled_problem<'a>(engine: &'a Factored, problem: &'a ContactProblem, watch: Watch) -> ScaledProblem<'a> {
-    ScaledProblem::new(problem, &engine.augmented, engine.is_definite(), engine.compliance(), watch)
+    let (augmented, is_definite, compliance) = (&engine.augmented, engine.is_definite(), engine.compliance());
+    let (swept_load, factor_seconds) = Default::default();
+    ScaledProblem { problem, is_definite, augmented, compliance, swept_load, factor_seconds, watch }
 }
 
 /// The problem that the methods work on, and the exponent of its reference displacement.

@@ -16,7 +16,7 @@ use crate::linear::threads_of_machine;
 use crate::linear::watch::Watch;
 use crate::method::mprgp::{Limits, Mprgp, takes_travels};
 use crate::method::{Outcome, Start};
-use crate::plan::{Means, Step, Tried};
+use crate::plan::{Step, Tried};
 use crate::problem::ContactProblem;
 use crate::settings::{Method, Settings};
 use crate::solution::{ContactSet, Seconds};
@@ -31,22 +31,6 @@ pub enum Engine {
 }
 
 impl Engine {
-    /// The engine with these means, under the settings of an attempt; `None` for the problem alone.
-    pub fn new(means: Means, problem: &ContactProblem, settings: &Settings) -> Result<Option<Self>> {
-        Ok(match means {
-            Means::Problem => None,
-            Means::Multigrid => Some(Engine::Levels(Arc::new(Hierarchical::new(problem, settings)?))),
-            Means::Factor => Some(Engine::Factor(Arc::new(factored(problem, settings)?))),
-        })
-    }
-
-    pub fn means(&self) -> Means {
-        match self {
-            Engine::Factor(_) => Means::Factor,
-            Engine::Levels(_) => Means::Multigrid,
-        }
-    }
-
     pub fn factor(&self) -> Option<&Arc<Factored>> {
         if let Engine::Factor(factored) = self { Some(factored) } else { None }
     }

@@ -119,29 +119,18 @@ pub struct ScaledProblem<'a> {
     pub problem: &'a ContactProblem,
     /// `true` if the stiffness is definite by itself: it has no modes without energy.
     pub is_definite: bool,
-    augmented: &'a Augmented,
+    /// The pattern of its K + B'B.
+    pub augmented: &'a Augmented,
     /// The compliance of the rows, to balance forces by; `None` if factors of the augmented matrix cost less.
     pub compliance: Option<&'a Compliance>,
-    swept_load: OnceCell<Vec<f64>>,
+    pub swept_load: OnceCell<Vec<f64>>,
     /// Seconds spent in factorisations so far.
     pub factor_seconds: Cell<f64>,
     /// The watch to which the loops report: they end with the answer so far when it says so.
     pub watch: Watch,
 }
 
-impl<'a> ScaledProblem<'a> {
-    /// The problem with the pattern of its K + B'B.
-    pub fn new(
-        problem: &'a ContactProblem,
-        augmented: &'a Augmented,
-        is_definite: bool,
-        compliance: Option<&'a Compliance>,
-        watch: Watch,
-    ) -> Self {
-        let (swept_load, factor_seconds) = (OnceCell::new(), Cell::new(0.0));
-        ScaledProblem { problem, is_definite, augmented, compliance, swept_load, factor_seconds, watch }
-    }
-
+impl ScaledProblem<'_> {
     /// The load, swept through the factor of a compliance once for all sets.
     pub fn swept_load(&self, compliance: &Compliance) -> Vec<f64> {
         self.swept_load.get_or_init(|| compliance.swept(self.problem.load())).clone()

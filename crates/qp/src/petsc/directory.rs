@@ -27,7 +27,9 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
         let message = format!("the stiffness is {size} x {columns}; it must have as many columns as rows");
         return Err(stiffness.wrong_shape(message).into());
     }
-    let places = Places::of(indices(&directory.join(FREE), size)?, size);
+    let (free, mut dof) = (indices(&directory.join(FREE), size)?, vec![SUPPORTED; size]);
+    free.iter().enumerate().for_each(|(number, &place)| dof[place as usize] = number as u32);
+    let places = Places { free, dof };
     let load = places.load(&directory.join(LOAD))?;
     let contact = places.rows(RowReader::open(&directory.join(CONTACT))?)?;
     let gap = gap(&directory.join(GAP), (CONTACT, contact.rows()))?;
@@ -65,12 +67,6 @@ struct Places {
 }
 
 impl Places {
-    fn of(free: Vec<u32>, size: usize) -> Self {
-        let mut dof = vec![SUPPORTED; size];
-        free.iter().enumerate().for_each(|(number, &place)| dof[place as usize] = number as u32);
-        Places { free, dof }
-    }
-
     fn load(&self, file: &Path) -> Result<Vec<f64>, LinearError> {
         let load = vector(file, f64::is_finite, "finite")?;
         if load.len() != self.dof.len() {

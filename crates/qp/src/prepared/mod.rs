@@ -13,12 +13,12 @@ use crate::engine::{Engine, Factored, Load, Task};
 use crate::error::{Error, Result};
 use crate::linear::multigrid::Multigrid;
 use crate::method::Start;
-use crate::plan::{Attempt, Ended, Ladder, Record, Step, Tried};
+use crate::plan::{Attempt, Ended, Ladder, Means, Record, Step, Tried};
 use crate::problem::ContactProblem;
 use crate::run::{KeptRest, Run, Workbench, answered, solved};
 use crate::settings::{Method, Settings};
 use crate::solution::{Seconds, Solution};
-use crate::transform::Elimination;
+use crate::transform::{Condensation, Elimination};
 
 /// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid
 /// hierarchy is built for it, depending on the method.
@@ -138,7 +138,8 @@ impl Prepared {
             Some(ladder) => (bench.attempt, ladder),
             None => {
                 let ladder = Ladder::of(&self.problem, MANY_GAPS, true, settings)?;
-                let serves = |attempt: &Attempt| bench.engine.means() == attempt.means;
+                let means = if bench.engine.factor().is_some() { Means::Factor } else { Means::Multigrid };
+                let serves = |attempt: &Attempt| attempt.means == means;
                 let Some(attempt) = ladder.attempts.iter().position(serves) else { return anew() };
                 (attempt, ladder)
             }
@@ -257,7 +258,7 @@ impl Prepared {
 
     /// Number of values of the factor of the stiffness; zero if the methods factorise by themselves or not at all.
     pub fn factor_entries(&self) -> usize {
-        self.factored().map_or(0, |factored| factored.factor_entries())
+        self.factored().and_then(|factored| factored.condensation.as_ref()).map_or(0, Condensation::factor_entries)
     }
 
     /// Memory of the values of the factor, in bytes.

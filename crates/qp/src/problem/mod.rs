@@ -242,7 +242,10 @@ impl ContactProblem {
     }
 
     pub(crate) fn diagonal(&self) -> &Diagonal {
-        self.diagonal.get_or_init(|| Diagonal::of(&self.stiffness))
+        self.diagonal.get_or_init(|| {
+            let values = self.stiffness.diagonal();
+            Diagonal { roots: values.iter().map(|value| value.sqrt()).collect(), values }
+        })
     }
 
     /// Returns `true` if K is positive semidefinite, to rounding. One factorisation, at the first use.
@@ -338,11 +341,7 @@ impl ContactProblem {
     /// The violation B u - g of each row, length m, in m: positive is penetration; `-inf` without an obstacle. The
     /// displacement u has length n, in m.
     pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
-        let mut violation = self.contact.mul(displacement);
-        for (value, gap) in violation.iter_mut().zip(&self.gap) {
-            *value -= gap;
-        }
-        violation
+        self.contact.mul(displacement).iter().zip(&self.gap).map(|(moved, gap)| moved - gap).collect()
     }
 
     /// The work f'd of the load on a mode d, as a share of its terms `|f|'|d|`, between -1 and 1.

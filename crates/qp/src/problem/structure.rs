@@ -16,13 +16,6 @@ pub struct Diagonal {
     pub roots: Vec<f64>,
 }
 
-impl Diagonal {
-    pub fn of(stiffness: &SymmetricMatrix) -> Self {
-        let values = stiffness.diagonal();
-        Diagonal { roots: values.iter().map(|value| value.sqrt()).collect(), values }
-    }
-}
-
 /// The connected components of K and B, which share almost no energy: a coupling or a row with an obstacle joins dofs.
 ///
 /// An answer may be right for a stiff part and wrong for a soft one beside it, because the energy of the soft part is
@@ -87,12 +80,6 @@ impl Parts {
     /// The body of a dof: K alone joins its dofs.
     pub fn body_of_dof(&self, dof: usize) -> usize {
         self.bodies.0.get(dof).copied().unwrap_or(0)
-    }
-
-    pub fn dofs_of_bodies(&self) -> Vec<usize> {
-        let mut dofs = vec![0; self.bodies()];
-        (0..self.of_dof.len()).for_each(|dof| dofs[self.body_of_dof(dof)] += 1);
-        dofs
     }
 
     /// The sum of `term(dof)` over the dofs of each part.

@@ -16,9 +16,10 @@ impl Run<'_> {
         let (problem, kept) = (self.problem, self.rest);
         let made = if kept.is_some() { None } else { Elimination::of(problem)? };
         let Some(elimination) = kept.map(|kept| kept.elimination).or(made.as_ref()) else { return Ok(Ended::Empty) };
+        let staying = |set: &ContactSet| elimination.rows.iter().map(|&row| set.contains(row)).collect();
         let start = &Start {
             displacement: self.start.displacement.as_deref().map(|u| elimination.staying(u)),
-            contact_set: self.start.contact_set.as_ref().map(|set| elimination.staying_rows(set)),
+            contact_set: self.start.contact_set.as_ref().map(staying),
         };
         // What is exact enough for the rest may be far from that for a whole that moves almost without energy.
         let exact = Settings { tolerance: Some(f64::MIN_POSITIVE), accuracy: None, ..self.settings.clone() };

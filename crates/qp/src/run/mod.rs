@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::certificate::{Bounding, EnergyNorm, Examination, Examined, at_rest};
-use crate::engine::{Engine, Hierarchical, Load, Task};
+use crate::engine::{Engine, Hierarchical, Load, Task, factored};
 use crate::error::{Error, LinearError, Result};
 use crate::existence::Existence;
 use crate::linear::SymmetricMatrix;
@@ -155,7 +155,11 @@ impl<'a> Run<'a> {
         let kept_bytes = self.kept.map_or(0.0, |kept| kept.engine.bytes());
         let memory = self.settings.memory.map(|most| (most - kept_bytes).max(0.0));
         let settings = Settings { memory, ..self.ladder.attempts[attempt].settings(self.settings) };
-        let Some(engine) = Engine::new(step.means, self.problem, &settings)? else { return Ok(None) };
+        let engine = match step.means {
+            Means::Problem => return Ok(None),
+            Means::Multigrid => Engine::Levels(Arc::new(Hierarchical::new(self.problem, &settings)?)),
+            Means::Factor => Engine::Factor(Arc::new(factored(self.problem, &settings)?)),
+        };
         step.stages.factor += engine.seconds().factor;
         let load = Arc::new(Load::new(self.problem.load().to_vec()));
         self.made = Some(Workbench { attempt, engine, load });

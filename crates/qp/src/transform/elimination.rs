@@ -196,10 +196,6 @@ impl Elimination {
         self.solved.stays.iter().map(|&dof| all[dof]).collect()
     }
 
-    pub fn staying_rows(&self, set: &ContactSet) -> ContactSet {
-        self.rows.iter().map(|&row| set.contains(row)).collect()
-    }
-
     pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
         self.of_dofs(y, 1.0).map(Twice::rounded).collect()
     }

@@ -42,9 +42,7 @@ impl RowSelection {
     /// Multipliers of all rows from those of the selected ones: a row that cannot close carries none.
     pub fn expand_multiplier(&self, multiplier: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.rows];
-        for (&row, &value) in self.kept.iter().zip(multiplier) {
-            all[row] = value;
-        }
+        self.kept.iter().zip(multiplier).for_each(|(&row, &value)| all[row] = value);
         all
     }
 

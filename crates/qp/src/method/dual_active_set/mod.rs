@@ -69,8 +69,9 @@ const WEIGHT_CORRECTIONS: usize = 3;
 
 /// As [`ContactProblem::dual_active_set`].
 pub fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Outcome> {
-    let augmented = Augmented::new(problem.stiffness(), problem.contact(), None, 1);
-    let scaled = ScaledProblem::new(problem, &augmented, is_definite, None, Watch::default());
+    let (augmented, compliance) = (&Augmented::new(problem.stiffness(), problem.contact(), None, 1), None);
+    let (swept_load, factor_seconds, watch) = Default::default();
+    let scaled = ScaledProblem { problem, is_definite, augmented, compliance, swept_load, factor_seconds, watch };
     solve(&scaled)?.ok_or(Error::NotCondensed { step: "the dual active set" })
 }
 
@@ -301,7 +302,10 @@ impl Search<'_> {
             }
             let Some(place) = first else {
                 self.check_contradiction(row, &split.weights)?;
-                self.restore(&before);
+                // Back to the set that was closed before.
+                self.pressures.fill(0.0);
+                self.basis = of_rows(self.polyhedron, &before);
+                self.balance();
                 return Ok(false);
             };
             for (&closed, weight) in self.basis.rows.iter().zip(&split.weights) {
@@ -325,12 +329,6 @@ impl Search<'_> {
             }
         }
         first
-    }
-
-    fn restore(&mut self, rows: &[usize]) {
-        self.pressures.fill(0.0);
-        self.basis = of_rows(self.polyhedron, rows);
-        self.balance();
     }
 
     /// Checks that `row` does not contradict the closed rows. It does if, under the weights y (1 for it, -r for them),

@@ -224,8 +224,6 @@ impl Basis {
     }
 
     fn take_out(&self, shares: &[f64], x: &mut [f64]) {
-        for (direction, &share) in self.directions.iter().zip(shares) {
-            subtract(x, share, direction);
-        }
+        self.directions.iter().zip(shares).for_each(|(direction, &share)| subtract(x, share, direction));
     }
 }

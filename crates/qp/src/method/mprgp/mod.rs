@@ -128,7 +128,24 @@ impl Mprgp<'_> {
 
     fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome> {
         let (limits, watch, rows) = (self.limits, self.watch, self.problem.rows());
-        let mut steps = Steps::of(self, self.started(bounds, start));
+        let (iterate, best) = (self.started(bounds, start), f64::INFINITY);
+        let mut steps = Steps {
+            multigrid: self.multigrid,
+            watch,
+            iterate,
+            face: None,
+            travels: Vec::new(),
+            is_old: false,
+            last: None,
+            cycles: 0,
+            of_faces: 0,
+            on_face: (0, best),
+            best,
+            since_best: 0,
+            changes: 0,
+            is_fresh: true,
+            last_checked: best,
+        };
         let mut history = vec![steps.iterate.step()];
         let mut ending = Ending::Unsettled;
         while steps.cycles < limits.most_cycles
@@ -255,29 +272,7 @@ struct Steps<'a> {
     last_checked: f64,
 }
 
-impl<'a> Steps<'a> {
-    fn of(&Mprgp { multigrid, watch, .. }: &Mprgp<'a>, iterate: BoundedIterate<'a>) -> Self {
-        let (face, travels, last, best) = (None, Vec::new(), None, f64::INFINITY);
-        let (cycles, of_faces, on_face, since_best, changes) = (0, 0, (0, best), 0, 0);
-        Steps {
-            multigrid,
-            watch,
-            iterate,
-            face,
-            travels,
-            is_old: false,
-            last,
-            cycles,
-            of_faces,
-            on_face,
-            best,
-            since_best,
-            changes,
-            is_fresh: true,
-            last_checked: best,
-        }
-    }
-
+impl Steps<'_> {
     /// Notes a residual above the tolerance.
     fn note(&mut self, residual: f64) {
         self.is_fresh = false;
