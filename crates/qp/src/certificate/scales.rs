@@ -147,7 +147,9 @@ pub fn energies(problem: &ContactProblem, by_parts: bool, w: &[f64]) -> (Vec<f64
     let mut sums = Accumulator::new(&vec![0.0; w.len()]);
     let terms = sums.add_matrix_product(within, w);
     let mut magnitudes = vec![0.0; count];
-    terms.iter().zip(w).enumerate().for_each(|(dof, (terms, w))| magnitudes[group(dof)] += terms * w.abs());
+    for (dof, (terms, w)) in terms.iter().zip(w).enumerate() {
+        magnitudes[group(dof)] += terms * w.abs();
+    }
     (sums.products_by(w, group, count), magnitudes)
 }
 

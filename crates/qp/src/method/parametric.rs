@@ -110,7 +110,9 @@ impl ParametricLcp {
     fn part(&self, factor: &UpperTriangle, list: &[usize], b: &[f64]) -> Vec<f64> {
         let multiplier = factor.solve_normal(list.iter().map(|&row| -b[row]).collect());
         let mut part = b.to_vec();
-        list.iter().zip(&multiplier).for_each(|(&row, &value)| subtract(&mut part, -value, self.column(row)));
+        for (&row, &value) in list.iter().zip(&multiplier) {
+            subtract(&mut part, -value, self.column(row));
+        }
         list.iter().zip(multiplier).for_each(|(&row, value)| part[row] = value);
         part
     }

@@ -42,7 +42,9 @@ impl RowSelection {
     /// Multipliers of all rows from those of the selected ones: a row that cannot close carries none.
     pub fn expand_multiplier(&self, multiplier: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.rows];
-        self.kept.iter().zip(multiplier).for_each(|(&row, &value)| all[row] = value);
+        for (&row, &value) in self.kept.iter().zip(multiplier) {
+            all[row] = value;
+        }
         all
     }
 

@@ -159,7 +159,9 @@ pub fn balancing(watched: &WatchedRows, closed: &[bool], residual: &[f64]) -> Op
     let rows = ClosedRows::new(watched, closed)?;
     let found = rows.solve(rows.along(&rows.shift(residual.to_vec())));
     let mut forces = vec![0.0; closed.len()];
-    rows.rows.iter().zip(&rows.scale).zip(found).for_each(|((&row, scale), x)| forces[row] = -scale * x);
+    for ((&row, scale), x) in rows.rows.iter().zip(&rows.scale).zip(found) {
+        forces[row] = -scale * x;
+    }
     Some(forces)
 }
 

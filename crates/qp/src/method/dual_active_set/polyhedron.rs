@@ -224,6 +224,8 @@ impl Basis {
     }
 
     fn take_out(&self, shares: &[f64], x: &mut [f64]) {
-        self.directions.iter().zip(shares).for_each(|(direction, &share)| subtract(x, share, direction));
+        for (direction, &share) in self.directions.iter().zip(shares) {
+            subtract(x, share, direction);
+        }
     }
 }

@@ -69,7 +69,9 @@ pub fn order(problem: &ContactProblem, start: &Start, exchange: Option<&Exchange
         let leaves = exchange.and_then(|exchange| exchange.leaving.get(&row));
         preference[row] = (1, leaves.copied().unwrap_or(f64::NEG_INFINITY));
     }
-    exchange.iter().flat_map(|exchange| &exchange.entering).for_each(|&row| preference[row].0 = 0);
+    for &row in exchange.iter().flat_map(|exchange| &exchange.entering) {
+        preference[row].0 = 0;
+    }
     let needed = preference.iter().filter(|of_row| of_row.0 < 2).count();
     let mut rows: Vec<usize> = (0..problem.rows()).collect();
     rows.sort_by(|&a, &b| preference[a].0.cmp(&preference[b].0).then(preference[a].1.total_cmp(&preference[b].1)));
