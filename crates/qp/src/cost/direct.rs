@@ -154,16 +154,14 @@ impl Smooth {
         // One vector: of a diffusion it can only be the constants.
         let of_diffusion =
             if given.is_some_and(|count| count > 1) { None } else { Some(Self::of_stiffness(stiffness)) };
-        match of_diffusion.filter(|&found| given.is_none() || found != Smooth::Unknown) {
-            Some(found) => found,
-            None => {
-                let share = outweighed(stiffness);
-                match share(STIFF) > 0.5 {
-                    true => Smooth::GivenStiff,
-                    false if share(HEAVY) > HEAVY_SHARE => Smooth::GivenHeavy,
-                    false => Smooth::Given,
-                }
-            }
+        if let Some(found) = of_diffusion.filter(|&found| given.is_none() || found != Smooth::Unknown) {
+            return found;
+        }
+        let share = outweighed(stiffness);
+        match share(STIFF) > 0.5 {
+            true => Smooth::GivenStiff,
+            false if share(HEAVY) > HEAVY_SHARE => Smooth::GivenHeavy,
+            false => Smooth::Given,
         }
     }
 

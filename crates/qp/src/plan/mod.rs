@@ -147,13 +147,12 @@ impl Attempt {
         let method = self.method.name();
         match self.means {
             Means::Problem => {
-                return match door.filter(|_| self.steps.is_empty()) {
-                    Some(Door::Equalities) => {
-                        "the equalities eliminated, and the rest by a plan of its own".to_string()
-                    }
-                    Some(Door::Pieces(_)) => "each piece by a plan of its own".to_string(),
-                    None => "existence and uniqueness of the answer".to_string(),
+                let words = match door.filter(|_| self.steps.is_empty()) {
+                    Some(Door::Equalities) => "the equalities eliminated, and the rest by a plan of its own",
+                    Some(Door::Pieces(_)) => "each piece by a plan of its own",
+                    None => "existence and uniqueness of the answer",
                 };
+                return words.to_string();
             }
             Means::Multigrid => return format!("{method} with a multigrid hierarchy"),
             Means::Factor => {}

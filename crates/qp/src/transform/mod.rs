@@ -62,11 +62,9 @@ impl RowSelection {
 /// Pieces of a problem that no entry of K and no row with an obstacle couples.
 #[derive(Debug)]
 pub struct Pieces {
-    of_dof: Vec<usize>,
-    of_row: Vec<usize>,
-    /// Number of each dof, and of each row, within its piece.
-    place_of_dof: Vec<usize>,
-    place_of_row: Vec<usize>,
+    /// The piece of each dof, and of each row, with its number there.
+    of_dof: Vec<(usize, usize)>,
+    of_row: Vec<(usize, usize)>,
     /// The dofs, and the rows, of each piece, in increasing order.
     pub dofs: Vec<Vec<usize>>,
     pub rows: Vec<Vec<usize>>,
@@ -76,11 +74,9 @@ impl Pieces {
     /// The pieces of `problem`, given by the piece of each of its parts, from 0 to `count - 1`.
     pub fn of(problem: &ContactProblem, of_part: &[usize], count: usize) -> Self {
         let parts = problem.parts();
-        let of_dof: Vec<usize> = parts.of_dof.iter().map(|&part| of_part[part]).collect();
-        let of_row: Vec<usize> = (0..problem.rows()).map(|row| of_part[parts.of_row[row]]).collect();
-        let (place_of_dof, dofs) = members(&of_dof, count);
-        let (place_of_row, rows) = members(&of_row, count);
-        Pieces { of_dof, of_row, place_of_dof, place_of_row, dofs, rows }
+        let (of_dof, dofs) = members(parts.of_dof.iter().map(|&part| of_part[part]), count);
+        let (of_row, rows) = members((0..problem.rows()).map(|row| of_part[parts.of_row[row]]), count);
+        Pieces { of_dof, of_row, dofs, rows }
     }
 
     pub fn count(&self) -> usize {
@@ -89,11 +85,11 @@ impl Pieces {
 
     pub fn problem(&self, problem: &ContactProblem, piece: usize) -> Result<ContactProblem> {
         let (dofs, rows) = (&self.dofs[piece], &self.rows[piece]);
-        let columns = |matrix: &SparseMatrix, of: &[usize], place: &[usize], count: usize| {
-            matrix.select(count, |row| (of[row] == piece).then_some(place[row]), dofs.iter().copied())
+        let columns = |matrix: &SparseMatrix, of: &[(usize, usize)], count: usize| {
+            matrix.select(count, |row| (of[row].0 == piece).then_some(of[row].1), dofs.iter().copied())
         };
-        let lower = columns(problem.stiffness().lower(), &self.of_dof, &self.place_of_dof, dofs.len());
-        let contact = columns(problem.contact(), &self.of_row, &self.place_of_row, rows.len());
+        let lower = columns(problem.stiffness().lower(), &self.of_dof, dofs.len());
+        let contact = columns(problem.contact(), &self.of_row, rows.len());
         let load = dofs.iter().map(|&dof| problem.load()[dof]).collect();
         let gap = rows.iter().map(|&row| problem.gap()[row]).collect();
         let own = ContactProblem::computed(SymmetricMatrix::from_lower(lower)?, load, contact, gap)?;
@@ -103,19 +99,19 @@ impl Pieces {
     /// The set of all rows, from those of the pieces; a piece without a set has none.
     pub fn join_sets<'a>(&self, of_pieces: impl Iterator<Item = Option<&'a ContactSet>>) -> ContactSet {
         let of_pieces: Vec<_> = of_pieces.collect();
-        let is_in = |row: usize| of_pieces[self.of_row[row]].is_some_and(|set| set.contains(self.place_of_row[row]));
-        ContactSet::from_fn(self.of_row.len(), is_in)
+        let is_in = |&(piece, place): &(usize, usize)| of_pieces[piece].is_some_and(|set| set.contains(place));
+        self.of_row.iter().map(is_in).collect()
     }
 }
 
 /// The number of each member within its piece, and the members of each piece.
-fn members(of_member: &[usize], count: usize) -> (Vec<usize>, Vec<Vec<usize>>) {
+fn members(of_member: impl Iterator<Item = usize>, count: usize) -> (Vec<(usize, usize)>, Vec<Vec<usize>>) {
     let mut members = vec![Vec::new(); count];
-    let mut places = Vec::with_capacity(of_member.len());
-    for (member, &piece) in of_member.iter().enumerate() {
-        places.push(members[piece].len());
+    let place = |(member, piece): (usize, usize)| {
         members[piece].push(member);
-    }
+        (piece, members[piece].len() - 1)
+    };
+    let places = of_member.enumerate().map(place).collect();
     (places, members)
 }
 
