@@ -385,8 +385,11 @@ mod tests {
                 assert!((swept / exact - 1.0).abs() < 1e-14, "row {row} of {dofs}");
             }
             let all: Vec<usize> = (0..dofs).collect();
+            // Each column may be off by its rounding; a column of length one has at most two in the inverse.
+            let rounding = 2.0 * dofs as f64 * norm.rounding_of_column();
             for length in compliance.moved_together(&all) {
-                assert!((length / norm.rounding() / (0.75_f64).sqrt() - 1.0).abs() < 1e-13, "{length} of {dofs}");
+                let share = length / norm.rounding() / (0.75_f64).sqrt() - 1.0;
+                assert!((-1e-13..1e-13 + rounding).contains(&share), "{length} of {dofs}");
             }
         }
     }
