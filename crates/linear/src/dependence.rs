@@ -118,9 +118,13 @@ const CANCELLED_VECTOR: f64 = 64.0 * f64::EPSILON;
 /// `sqrt((Z'Z)^-1_ii)` of each column i of Z: one over its distance from the span of the others, if it is independent.
 /// It is infinite for columns that take part in a dependence to rounding. `None` if it `is_over` before.
 ///
+/// Each column may be off by `rounding` times its length: by E in all, and `Z + E = (1 + E Z+) Z`. The rows of the
+/// pseudoinverse Z+ have these lengths, so no distance is smaller by more than the share `|E Z+|`, at most the sum of
+/// `rounding` times each length times that of its column.
+///
 /// # Source
 /// Å. Björck, *Numerics of Gram-Schmidt orthogonalization*, Linear Algebra Appl. 197/198 (1994) 297-316.
-pub fn inverse_lengths(columns: Vec<Vec<f64>>, is_over: impl Fn() -> bool) -> Option<Vec<f64>> {
+pub fn inverse_lengths(columns: Vec<Vec<f64>>, rounding: f64, is_over: impl Fn() -> bool) -> Option<Vec<f64>> {
     let sizes: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
     if sizes.iter().any(|size| !size.is_normal()) {
         return Some(vec![f64::INFINITY; sizes.len()]);
@@ -131,9 +135,17 @@ pub fn inverse_lengths(columns: Vec<Vec<f64>>, is_over: impl Fn() -> bool) -> Op
         if is_over() {
             return None;
         }
-        lengths[column] = inverse_length(&triangle, place) / sizes[column];
+        lengths[column] = inverse_length(&triangle, place);
     }
-    Some(lengths)
+    Some(widened(lengths, &sizes, rounding))
+}
+
+/// The `lengths` for columns of length one as those for columns of these `sizes`, with the rounding of the columns.
+fn widened(mut lengths: Vec<f64>, sizes: &[f64], rounding: f64) -> Vec<f64> {
+    let share = rounding * lengths.iter().filter(|length| length.is_finite()).sum::<f64>();
+    let kept = (1.0 - share).max(0.0);
+    lengths.iter_mut().zip(sizes).for_each(|(length, size)| *length /= size * kept);
+    lengths
 }
 
 /// The largest number of lengths of a column that one over its distance from the span of the others may be, so that
@@ -142,7 +154,7 @@ const CLEAR: f64 = 1e3;
 
 /// As [`inverse_lengths`], from the lower triangle of the products of this number of columns (column by column); `None`
 /// if they are not clearly independent.
-pub fn inverse_lengths_by_products(count: usize, mut products: Vec<f64>) -> Option<Vec<f64>> {
+pub fn inverse_lengths_by_products(count: usize, mut products: Vec<f64>, rounding: f64) -> Option<Vec<f64>> {
     let sizes: Vec<f64> = (0..count).map(|place| products[place * count + place].sqrt()).collect();
     if sizes.iter().any(|size| !(size * size).is_normal()) {
         return None;
@@ -156,7 +168,7 @@ pub fn inverse_lengths_by_products(count: usize, mut products: Vec<f64>) -> Opti
     let inverse = factor::forward_all(&triangle, units);
     let lengths: Vec<f64> = inverse.chunks(count.max(1)).map(|column| wide_dot(column, column).sqrt()).collect();
     let is_clear = lengths.iter().all(|&length| length <= CLEAR);
-    is_clear.then(|| lengths.iter().zip(&sizes).map(|(length, size)| length / size).collect())
+    is_clear.then(|| widened(lengths, &sizes, rounding))
 }
 
 /// The columns ordered so that the farthest from the span of those before it comes first, and R of them in that order,
@@ -250,7 +262,8 @@ mod tests {
 
     #[test]
     fn a_length_is_known_beyond_half_the_digits() {
-        let lengths = inverse_lengths(vec![vec![1e9, 1e-3, 0.0], vec![1e9, 0.0, 0.0], vec![0.0, 0.0, 4.0]], || false);
+        let lengths =
+            inverse_lengths(vec![vec![1e9, 1e-3, 0.0], vec![1e9, 0.0, 0.0], vec![0.0, 0.0, 4.0]], 0.0, || false);
         let close = |found: f64, exact: f64| (found / exact - 1.0).abs() < 1e-3;
         let lengths = lengths.unwrap();
         assert!(close(lengths[0], 1e3) && close(lengths[1], 1e3) && close(lengths[2], 0.25), "{lengths:?}");
@@ -260,9 +273,9 @@ mod tests {
     fn products_give_the_lengths_of_clearly_independent_columns_and_of_no_others() {
         let columns =
             |off: f64| vec![vec![2.0, 1.0, 0.0, 0.5], vec![2.0, 1.0 + off, 0.0, 0.5], vec![0.0, 1.0, 4.0, 0.0]];
-        let by_products = |off: f64| inverse_lengths_by_products(3, factor::products(4, &columns(off).concat()));
+        let by_products = |off: f64| inverse_lengths_by_products(3, factor::products(4, &columns(off).concat()), 0.0);
         for off in [1.0, 0.1] {
-            let exact = inverse_lengths(columns(off), || false).unwrap();
+            let exact = inverse_lengths(columns(off), 0.0, || false).unwrap();
             for (found, exact) in by_products(off).unwrap().iter().zip(exact) {
                 assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
             }
@@ -273,8 +286,18 @@ mod tests {
     }
 
     #[test]
+    fn lengths_are_above_those_of_all_columns_within_the_rounding() {
+        let columns = |off: f64| vec![vec![1.0, 0.0], vec![1.0, 1e-3 - off]];
+        let lengths = |off: f64, rounding: f64| inverse_lengths(columns(off), rounding, || false).unwrap();
+        for off in [1e-6, 1e-4, 4e-4] {
+            assert!(lengths(0.0, off).iter().zip(lengths(off, 0.0)).all(|(wide, moved)| *wide > moved), "{off}");
+        }
+        assert_eq!(lengths(0.0, 1e-3), [f64::INFINITY; 2]);
+    }
+
+    #[test]
     fn what_rounding_cannot_tell_from_a_dependence_has_no_length() {
         let columns = vec![vec![1e20, 1.0, 0.0], vec![1e20, 0.0, 0.0], vec![0.0, 0.0, 4.0]];
-        assert_eq!(inverse_lengths(columns, || false).unwrap(), [f64::INFINITY, f64::INFINITY, 0.25]);
+        assert_eq!(inverse_lengths(columns, 0.0, || false).unwrap(), [f64::INFINITY, f64::INFINITY, 0.25]);
     }
 }

@@ -5,6 +5,8 @@ use crate::linear::FactorError;
 use crate::linear::memory::in_words as memory;
 use crate::solution::{Cancellation, Solution};
 
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
 /// The step that fails at a dof without stiffness.
 const HIERARCHY: &str = "multigrid hierarchy";
 
@@ -232,8 +234,7 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
     }
 }
 
-/// The sentence for an answer that is not certified: the limit that cut the search short, or the condition that
-/// decides.
+/// The sentence for an answer that is not certified: the limit that cut it short, or the condition that decides.
 fn not_certified(solution: &Solution, condition: &str, value: f64, tolerance: f64) -> String {
     let (method, iterations) = (&solution.method, solution.iterations);
     let falls_short = match value.is_finite() {
@@ -256,8 +257,7 @@ fn not_certified(solution: &Solution, condition: &str, value: f64, tolerance: f6
     }
 }
 
-/// The tolerance that the answer does meet, and the forces that cancel each other if these are why it meets no smaller
-/// one.
+/// The tolerance that the answer does meet, and the forces that cancel if these are why it meets no smaller one.
 fn cancelled(solution: &Solution, tolerance: f64) -> String {
     let certificate = &solution.certificate;
     let reached = certificate.reached();

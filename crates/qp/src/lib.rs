@@ -87,8 +87,7 @@ const NO_PROBLEM: &str = "the folder has neither K.mtx nor K.petsc; a problem di
 ///
 /// // A spring of stiffness 2 at rest, a wall that starts 0.5 inside: g = -0.5.
 /// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
-/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
-/// let problem = ContactProblem::new(stiffness, vec![0.0], one(1.0)?, vec![-0.5])?;
+/// let problem = ContactProblem::new(SymmetricMatrix::of_diagonal(vec![2.0]), vec![0.0], one(1.0)?, vec![-0.5])?;
 ///
 /// let solution = solve(&problem, &Settings::with_method(Method::ActiveSet))?;
 /// assert_eq!(solution.displacement, [-0.5]);
@@ -120,7 +119,7 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
 ///
 /// // Springs of stiffness 2, each before a wall at 1, pushed with forces of 1 and 3.
 /// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
-/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let stiffness = SymmetricMatrix::of_diagonal(vec![2.0]);
 /// let pushed = |force| ContactProblem::new(stiffness.clone(), vec![force], one(1.0)?, vec![1.0]);
 /// let answers = solve_many(&[pushed(1.0)?, pushed(3.0)?], &Settings::default());
 ///
@@ -142,8 +141,8 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 }
 
 impl Settings {
-    /// The results of `solved` for each number below `count`, as [`solve_many`] shares problems out: for problems that
-    /// are made one by one.
+    /// The results of `solved` for each number below `count`, shared out as by [`solve_many`]: for problems made one by
+    /// one.
     #[doc(hidden)]
     pub fn each_of_many<T: Send>(&self, count: usize, solved: impl Fn(usize, &Settings) -> T + Sync) -> Vec<T> {
         let of_one = Settings { threads: Some(1), ..self.clone() };

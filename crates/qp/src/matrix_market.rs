@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::SymmetricMatrix;
 use crate::linear::file::Streamed;
 use crate::linear::matrix_market::{
@@ -21,8 +21,7 @@ use crate::solution::Solution;
 /// The file that makes a directory one of Matrix Market files.
 pub const STIFFNESS: &str = "K.mtx";
 
-/// Reads the problem of a directory.
-pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
+pub fn read_problem(directory: &Path) -> Result<ContactProblem> {
     let (is_symmetric, stiffness) = matrix(&directory.join(STIFFNESS), None)?;
     let stiffness =
         if is_symmetric { SymmetricMatrix::from_lower(stiffness) } else { SymmetricMatrix::from_full(&stiffness) }?;
@@ -37,7 +36,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
 }
 
 /// The problem with the equality rows of `E.mtx` and `e.mtx`, if there are these files.
-fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactProblem, Error> {
+fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactProblem> {
     let [rows, values] = ["E.mtx", "e.mtx"].map(|name| directory.join(name));
     let missing = |file: PathBuf, sentence: &str| Err(fault(file, format!("it is missing, but {sentence}")));
     match (rows.exists(), values.exists()) {
@@ -50,8 +49,7 @@ fn with_equalities(directory: &Path, problem: ContactProblem) -> Result<ContactP
     problem.with_equalities(&rows, read_vector(&values)?)
 }
 
-/// Reads the gaps in `g1.mtx` and the load in `f1.mtx` of a directory, as [`ContactProblem::read_other_end`] describes.
-pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem, Error> {
+pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem> {
     let [gap_file, load_file] = ["g1.mtx", "f1.mtx"].map(|name| directory.join(name));
     if !gap_file.exists() && !load_file.exists() {
         let message =
@@ -86,44 +84,36 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
 
 /// The near-null space of the body: from `near_null.mtx`, one column for each vector, or from `coordinates.mtx`, one
 /// row for each node. The dofs of a node then follow each other and are all free.
-fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
-    let file = directory.join("near_null.mtx");
-    if file.exists() {
-        let content = Content::read(&file, FINITE)?;
-        if content.rows != dofs || content.columns == 0 {
-            let found = format!("it is {} x {}", content.rows, content.columns);
-            return Err(fault(
-                file,
-                format!("{found}, but it must have {dofs} rows, one per dof, and a column at least"),
-            ));
-        }
-        let near_null = NearNullSpace::new(content.columns(), dofs);
-        return near_null.map(Some).map_err(|error| fault(file, error.to_string()));
-    }
-    let file = directory.join("coordinates.mtx");
+fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>> {
+    let [given, of_nodes] = ["near_null.mtx", "coordinates.mtx"].map(|name| directory.join(name));
+    let is_given = given.exists();
+    let file = if is_given { given } else { of_nodes };
     if !file.exists() {
         return Ok(None);
     }
     let content = Content::read(&file, FINITE)?;
-    let (nodes, dimension) = (content.rows, content.columns);
-    if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
+    let (rows, columns) = (content.rows, content.columns);
+    let found = format!("it is {rows} x {columns}");
+    if is_given && (rows != dofs || columns == 0) {
+        return Err(fault(file, format!("{found}, but it must have {dofs} rows, one per dof, and a column at least")));
+    }
+    if !is_given && (!(1..=3).contains(&columns) || rows.checked_mul(columns) != Some(dofs)) {
         let message = format!(
-            "it is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; it must have a row for \
-             each node and a column for each coordinate, 1 to 3 (if supports have removed dofs, use \
-             near_null.mtx)",
-            nodes.saturating_mul(dimension)
+            "{found}, which makes {} dofs, but there are {dofs}; it must have a row for each node and a column for each \
+             coordinate, 1 to 3 (if supports have removed dofs, use near_null.mtx)",
+            rows.saturating_mul(columns)
         );
         return Err(fault(file, message));
     }
-    let of_nodes = NearNullSpace::of_nodes(&content.columns());
-    of_nodes.map(Some).map_err(|error| fault(file, error.to_string()))
+    let columns = content.columns();
+    let found = if is_given { NearNullSpace::new(columns, dofs) } else { NearNullSpace::of_nodes(&columns) };
+    found.map(Some).map_err(|error| fault(file, error.to_string()))
 }
 
 fn fault(file: PathBuf, message: String) -> Error {
     LinearError::FileSyntax { file, line: 1, message }.into()
 }
 
-/// The files of a problem, with its near-null space if it has one.
 pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
     let (contact, gap) = problem.inequalities_given();
     let mut files = vec![

@@ -13,7 +13,7 @@
 use std::borrow::Cow;
 use std::f64::consts::SQRT_2;
 
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::eigen::{Krylov, Pairs, negative_eigenvalues};
 use crate::linear::equations::Solved;
 use crate::linear::watch::Watch;
@@ -28,12 +28,10 @@ const DEPENDENT: f64 = 1e-12;
 /// A pivot of a matrix with a diagonal of order one below this is rounding: the matrix may be singular.
 const SINGULAR: f64 = 1e-12;
 
-/// Shift of a singular matrix, relative to the smallest ratio of diagonal entries: far above the rounding of its
-/// pivots, far below the eigenvalues that are not zero.
+/// Shift of a singular matrix, relative to the smallest ratio of diagonals: far above rounding, far below eigenvalues.
 const SHIFT: f64 = 1e-8;
 
-/// The largest ratio of the largest and the smallest eigenvalue of the operator: with more, the smallest have too few
-/// digits.
+/// The largest ratio of the extreme eigenvalues of the operator: with more, the smallest have too few digits.
 const SPREAD: f64 = 1e6;
 
 /// Pairs after the last wanted one among which a gap for the count is looked for.
@@ -88,7 +86,7 @@ pub fn modes(
     count: usize,
     threads: usize,
     watch: &Watch,
-) -> Result<Modes, Error> {
+) -> Result<Modes> {
     let equalities = problem.inequalities()..problem.inequalities() + problem.equality_rows();
     // Equalities that follow from the others are left out.
     let equalities = equalities.filter(|&row| problem.gap()[row].is_finite());
@@ -121,13 +119,7 @@ pub fn modes(
     Ok(found)
 }
 
-/// The lowest pairs of a stiffness and a mass, without multipliers.
-fn lowest(
-    [stiffness, mass]: [&SymmetricMatrix; 2],
-    count: usize,
-    threads: usize,
-    watch: &Watch,
-) -> Result<Modes, Error> {
+fn lowest([stiffness, mass]: [&SymmetricMatrix; 2], count: usize, threads: usize, watch: &Watch) -> Result<Modes> {
     // A diagonal of order one of the stiffness, by powers of two. Both matrices change alike: the eigenvalues stay.
     let scale = Equilibration::of(&stiffness.combined(1.0, 0.0, mass)?);
     let scaled = [stiffness, mass].map(|matrix| scale.apply(matrix));
@@ -164,7 +156,7 @@ struct Pencil<'a> {
 }
 
 impl<'a> Pencil<'a> {
-    fn of(matrices: &'a [SymmetricMatrix; 2], threads: usize, watch: &'a Watch) -> Result<Self, Error> {
+    fn of(matrices: &'a [SymmetricMatrix; 2], threads: usize, watch: &'a Watch) -> Result<Self> {
         let [stiffness, mass] = matrices;
         let analysis = Analysis::sparse_with_last(&stiffness.combined(1.0, 0.0, mass)?, &[])?.with_threads(threads);
         let ordered = mass.ordered(analysis.order())?;
@@ -172,13 +164,13 @@ impl<'a> Pencil<'a> {
     }
 
     /// The factor of `K + shift M`.
-    fn factor(&self, shift: f64) -> Result<Cholesky, Error> {
+    fn factor(&self, shift: f64) -> Result<Cholesky> {
         let [stiffness, mass] = self.matrices;
         Ok(self.analysis.factor_last(stiffness.combined(1.0, shift, mass)?)?)
     }
 
     /// The factor of K, or with a shift if K is singular.
-    fn shifted(&self) -> Result<Shifted<'_>, Error> {
+    fn shifted(&self) -> Result<Shifted<'_>> {
         let [stiffness, mass] = self.matrices;
         let own = if_definite(self.analysis.factor_last(stiffness.combined(1.0, 0.0, mass)?))?;
         if let Some(factor) = own.filter(|factor| factor.smallest_pivot() > SINGULAR) {
@@ -191,7 +183,7 @@ impl<'a> Pencil<'a> {
     }
 
     /// Number of eigenvalues below a number between these bounds; `None` if rounding hides it.
-    fn below(&self, [low, high]: [f64; 2]) -> Result<Option<usize>, Error> {
+    fn below(&self, [low, high]: [f64; 2]) -> Result<Option<usize>> {
         let [stiffness, mass] = self.matrices;
         for share in SHARES {
             let bound = low.max(0.0) + share * (high - low.max(0.0));
@@ -219,7 +211,7 @@ fn with_mass(pairs: &Pairs, count: usize) -> usize {
 
 impl Shifted<'_> {
     /// The space in which pairs are looked for the first time.
-    fn space(&self, count: usize) -> Result<Krylov<impl Fn(&[f64]) -> Vec<f64>>, Error> {
+    fn space(&self, count: usize) -> Result<Krylov<impl Fn(&[f64]) -> Vec<f64>>> {
         let Pencil { ordered, threads, watch, .. } = self.pencil;
         if watch.is_over() {
             return Err(Error::Interrupted);
@@ -229,15 +221,14 @@ impl Shifted<'_> {
         Ok(space)
     }
 
-    /// A shift with which the largest eigenvalue keeps its digits, if the smallest of the first `count` lie far below
-    /// it.
+    /// A shift with which the largest eigenvalue keeps its digits, if the first `count` reach far below it.
     fn better_shift(&self, pairs: &Pairs, count: usize) -> Option<f64> {
         let (first, last) = (pairs.values.first()?, pairs.values[..with_mass(pairs, count)].last()?);
         (first / last > SPREAD).then(|| (1.0 / last - self.shift) / SPREAD.sqrt())
     }
 
     /// The lowest pairs, with the space extended until they have converged.
-    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<Modes, Error> {
+    fn lowest(&self, mut space: Krylov<impl Fn(&[f64]) -> Vec<f64>>, count: usize) -> Result<Modes> {
         let Pencil { ordered, watch, .. } = self.pencil;
         let count = count.min(ordered.dim());
         let most = 24 * count + MOST_COLUMNS;
@@ -311,8 +302,7 @@ impl Shifted<'_> {
         })
     }
 
-    /// The ends of a gap of the eigenvalues w at or after the first `count` ones, and how many of the pairs lie below
-    /// it; `None` without a gap.
+    /// The ends of a gap of the eigenvalues w after the first `count`, and how many lie below it; `None` without a gap.
     fn gap_after(&self, pairs: &Pairs, count: usize) -> Option<([f64; 2], usize)> {
         let all = pairs.values.len();
         // Eigenvalues 1/(w + s), decreasing.

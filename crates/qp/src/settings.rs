@@ -2,15 +2,14 @@
 
 use std::time::Duration;
 
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::memory;
 use crate::linear::watch::Watch;
 use crate::method::interior_point::InteriorPoint;
 use crate::method::penalty::{BEST_PENALTY, Penalty};
 use crate::solution::Goal;
 
-/// Factor by which soft parts of the body may enlarge the relative penetration of the best penalty, which is one over
-/// that penalty.
+/// Factor by which soft parts may enlarge the relative penetration of the best penalty, one over that penalty.
 const PENETRATION: f64 = 100.0;
 
 /// The method that finds the contact set, with its own options; every method ends with the same certificate.
@@ -59,6 +58,37 @@ impl Method {
             Method::Mprgp => "mprgp",
         }
     }
+
+    /// Returns `true` if the best possible answer is wanted. An unpolished QP and a penalty are returned as they are.
+    pub(super) fn wants_best(self) -> bool {
+        match self {
+            Method::Qp(InteriorPoint { polish, .. }) => polish,
+            Method::Penalty(_) => false,
+            Method::Auto | Method::ActiveSet | Method::Mprgp => true,
+        }
+    }
+
+    /// Returns `true` if the last resort may replace an answer that misses the goal, in its worst condition, by
+    /// `value`. Answers of an unpolished QP and of a lower penalty are kept, and so is the penetration of the best
+    /// penalty.
+    pub(super) fn allows_last_resort(self, value: f64) -> bool {
+        let is_best_penalty = matches!(self, Method::Penalty(ladder) if ladder.last >= BEST_PENALTY);
+        self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)
+    }
+
+    fn check(self) -> Result<()> {
+        match self {
+            Method::Qp(InteriorPoint { tolerance, .. }) => positive("tolerance of the interior point", tolerance),
+            Method::Penalty(Penalty { first, last, penetration_threshold, .. }) => {
+                positive("first penalty", first)?;
+                positive("last penalty", last)?;
+                in_range("first penalty", first, first <= last, "at most the last")?;
+                let (name, value) = ("penetration threshold", penetration_threshold);
+                in_range(name, value, value >= 0.0, "zero or positive")
+            }
+            Method::Auto | Method::ActiveSet | Method::Mprgp => Ok(()),
+        }
+    }
 }
 
 /// The rule for condensing the problem onto the dofs of its contact rows.
@@ -82,8 +112,7 @@ const ANY_FINITE: f64 = f64::MAX;
 ///
 /// // A spring of stiffness 2, pushed with force 3 against a wall at distance 1, which takes 3 - 2 x 1.
 /// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
-/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
-/// let problem = ContactProblem::new(stiffness, vec![3.0], one(1.0)?, vec![1.0])?;
+/// let problem = ContactProblem::new(SymmetricMatrix::of_diagonal(vec![2.0]), vec![3.0], one(1.0)?, vec![1.0])?;
 ///
 /// // Two threads for the factorisation; the answer is the same, bit by bit, as with one.
 /// let settings = Settings::with_method(Method::ActiveSet).with_tolerance(1e-12).with_threads(2).with_proof();
@@ -193,8 +222,7 @@ impl Settings {
         Settings { tolerance: None, ..self }
     }
 
-    /// The same for a regular problem that a question about another one gives rise to: by sets of rows, without a
-    /// proof.
+    /// The same for a regular problem that a question about another one raises: by sets, without a proof.
     pub(crate) fn of_question(&self) -> Self {
         Settings { method: Method::ActiveSet, accuracy: None, prove: false, ..self.clone() }
     }
@@ -278,71 +306,22 @@ impl Settings {
         Goal { tolerance: self.tolerance.unwrap_or(ANY_FINITE), accuracy: self.accuracy }
     }
 
-    fn check(&self) -> Result<(), Error> {
+    fn check(&self) -> Result<()> {
         for (name, value) in [("tolerance", self.tolerance), ("accuracy", self.accuracy)] {
             value.map_or(Ok(()), |value| positive(name, value))?;
         }
-        if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory <= 0.0) {
-            return Err(LinearError::Setting { name: "memory", value: memory, allowed: "positive" }.into());
-        }
+        let memory = self.memory.unwrap_or(f64::INFINITY);
+        in_range("memory", memory, memory > 0.0, "positive")?;
         self.method.check()?;
-        if self.threads == Some(0) {
-            return Err(LinearError::Setting { name: "threads", value: 0.0, allowed: "at least 1" }.into());
-        }
-        if self.max_iterations == 0 {
-            return Err(LinearError::Setting { name: "max_iterations", value: 0.0, allowed: "at least 1" }.into());
-        }
-        Ok(())
+        in_range("threads", 0.0, self.threads != Some(0), "at least 1")?;
+        in_range("max_iterations", 0.0, self.max_iterations > 0, "at least 1")
     }
 }
 
-impl Method {
-    /// Returns `true` if the best possible answer is wanted. An unpolished QP and a penalty are returned as they are.
-    pub(super) fn wants_best(self) -> bool {
-        match self {
-            Method::Qp(InteriorPoint { polish, .. }) => polish,
-            Method::Penalty(_) => false,
-            Method::Auto | Method::ActiveSet | Method::Mprgp => true,
-        }
-    }
-
-    /// Returns `true` if the last resort may replace an answer that misses the goal, in its worst condition, by
-    /// `value`. The answers of an unpolished QP and of a penalty below its best value are kept, and so is the
-    /// penetration that the best penalty leaves.
-    pub(super) fn allows_last_resort(self, value: f64) -> bool {
-        let is_best_penalty = matches!(self, Method::Penalty(ladder) if ladder.last >= BEST_PENALTY);
-        self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)
-    }
-
-    fn check(self) -> Result<(), Error> {
-        match self {
-            Method::Qp(InteriorPoint { tolerance, .. }) => positive("tolerance of the interior point", tolerance),
-            Method::Penalty(Penalty { first, last, penetration_threshold, .. }) => {
-                positive("first penalty", first)?;
-                positive("last penalty", last)?;
-                if first > last {
-                    return Err(LinearError::Setting {
-                        name: "first penalty",
-                        value: first,
-                        allowed: "at most the last",
-                    }
-                    .into());
-                }
-                if penetration_threshold.is_nan() || penetration_threshold < 0.0 {
-                    let (name, value) = ("penetration threshold", penetration_threshold);
-                    return Err(LinearError::Setting { name, value, allowed: "zero or positive" }.into());
-                }
-                Ok(())
-            }
-            Method::Auto | Method::ActiveSet | Method::Mprgp => Ok(()),
-        }
-    }
+fn positive(name: &'static str, value: f64) -> Result<()> {
+    in_range(name, value, value.is_finite() && value > 0.0, "positive and finite")
 }
 
-/// Checks that a setting is positive and finite.
-fn positive(name: &'static str, value: f64) -> Result<(), Error> {
-    match value.is_finite() && value > 0.0 {
-        true => Ok(()),
-        false => Err(LinearError::Setting { name, value, allowed: "positive and finite" }.into()),
-    }
+fn in_range(name: &'static str, value: f64, is_allowed: bool, allowed: &'static str) -> Result<()> {
+    if is_allowed { Ok(()) } else { Err(LinearError::Setting { name, value, allowed }.into()) }
 }

@@ -1,24 +1,24 @@
-//! The certificate: every condition of the solution recomputed from the original problem.
+//! The certificate: every condition of the solution recomputed from the original problem, and the numbers that decide,
+//! from a bound on the error: relative to the energy norm of each part, or to the forces on a part that rests.
 
 use std::borrow::Cow;
 
 use super::bound::boundary::energy_error_bound;
-use super::bound::cycles::energy_error_bound_by;
+use super::bound::general::energy_error_bound_by;
 use super::bound::{Answer, ErrorBound, Measured};
 use super::energy_norm::{EnergyNorm, norm_of_answer};
 use super::scales::{OfPart, Scales, balanced_forces, coupled_lengths, larger, relative};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::multigrid::Multigrid;
 use crate::linear::watch::Watch;
 use crate::problem::{Balance, ContactProblem};
 use crate::solution::{Cancellation, Certificate};
 
-/// Rounding moves an entry of u or lambda by half a unit in the last place: once for the rounding and once for the
-/// arithmetic that made the entry, their sum is excused.
+/// Rounding moves an entry of u or lambda by half a last bit, and so may the arithmetic that made it: both are excused.
 const ENTRY_ROUNDING: f64 = f64::EPSILON;
 
 /// The means by which the error is bounded in energy.
-pub(crate) enum Bounding<'a> {
+pub enum Bounding<'a> {
     /// None: the conditions are recomputed, and no bound is known.
     Nothing,
     /// A factor that is made for this certificate alone.
@@ -33,7 +33,7 @@ pub(crate) enum Bounding<'a> {
 }
 
 /// A certificate and the evidence that it was computed from; an answer in far units has no evidence.
-pub(crate) struct Examined {
+pub struct Examined {
     pub certificate: Certificate,
     pub evidence: Option<Evidence>,
     /// The parts that move in the answer, but may rest in the exact one: their error is too large to exclude it.
@@ -42,15 +42,14 @@ pub(crate) struct Examined {
 
 /// Evidence that a certificate has found for an answer, used to prove its contact set.
 #[derive(Debug)]
-pub(crate) struct Evidence {
+pub struct Evidence {
     /// `f + B' lambda - K u` of the answer, one entry per dof.
     pub residual: Vec<f64>,
     /// `B u - g`.
     pub violation: Vec<f64>,
     /// An upper bound on `|u - u*|_K`; infinite if none is known.
     pub error: f64,
-    /// Numbers that cycles have measured, if the bound comes from cycles.
-    pub(super) measured: Option<Measured>,
+    pub measured: Option<Measured>,
     /// The norm of a factor that was made for the certificate, if the proof needs it and it is that of K itself.
     pub norm: Option<EnergyNorm>,
 }
@@ -67,7 +66,6 @@ pub fn with_rounding(problem: &ContactProblem, certificate: Certificate, displac
     Certificate { energy_error, part_error_bound, ..certificate }
 }
 
-/// The scales of a displacement, without forces.
 pub fn energy_of(problem: &ContactProblem, displacement: &[f64]) -> OfPart {
     let Balance { strain, terms, .. } = problem.accurate_balance(displacement, &[]);
     let moves = displacement.iter().any(|&u| u != 0.0);
@@ -78,13 +76,13 @@ pub fn energy_of(problem: &ContactProblem, displacement: &[f64]) -> OfPart {
 /// The displacement u with those parts at rest that may rest, which is an answer too; `None` if no part may. A
 /// method leaves the rounding of forces as a displacement of a part at rest, which is wrong by all of it.
 pub fn at_rest(problem: &ContactProblem, u: &[f64], may_rest: &[usize]) -> Option<Vec<f64>> {
-    let rests = |dof: usize| may_rest.contains(&problem.parts().of_dof(dof));
+    let rests = |dof: usize| may_rest.contains(&problem.parts().of_dof[dof]);
     let at_rest = || u.iter().enumerate().map(|(dof, &u)| if rests(dof) { 0.0 } else { u }).collect();
     (!may_rest.is_empty()).then(at_rest)
 }
 
 /// The certificate of an answer, with a factor that is made here if there is none.
-pub fn examined(problem: &ContactProblem, by: &Bounding, [u, lambda]: [&[f64]; 2]) -> Result<Examined, Error> {
+pub fn examined(problem: &ContactProblem, by: &Bounding, [u, lambda]: [&[f64]; 2]) -> Result<Examined> {
     let (two_sided, of_rows) = problem.two_sided(lambda);
     let own = if matches!(by, Bounding::OwnFactor) { norm_of_answer(&two_sided, u, &of_rows)? } else { None };
     let norm = if let Bounding::Factor(norm) = by { Some(norm) } else { own.as_ref() };
@@ -107,7 +105,7 @@ pub fn examined(problem: &ContactProblem, by: &Bounding, [u, lambda]: [&[f64]; 2
         });
     }
     let own_length = |row: usize| {
-        let of_part = scales.of_parts[problem.parts().of_row(row)].strain.max(0.0).sqrt() * scales.reach[row];
+        let of_part = scales.of_parts[problem.parts().of_row[row]].strain.max(0.0).sqrt() * scales.reach[row];
         let gap = if problem.gap[row].is_finite() { problem.gap[row].abs() } else { 0.0 };
         larger(lengths[row], larger(gap, of_part))
     };
@@ -119,7 +117,7 @@ pub fn examined(problem: &ContactProblem, by: &Bounding, [u, lambda]: [&[f64]; 2
     let stationarity = worst((0..u.len()).map(|dof| share(dof, residual[dof])));
     // Rounding of u moves a row, and a part that rests is known only to the rounding of its forces.
     let is_rounding = |row: usize| {
-        let rest = scales.rest_of_row(row, problem.parts().of_row(row));
+        let rest = scales.rest_of_row(row, problem.parts().of_row[row]);
         violation[row].abs() <= ENTRY_ROUNDING * lengths[row] + rest
     };
     let distance = |row: usize| if is_rounding(row) { 0.0 } else { relative(violation[row], length(row)) };
@@ -161,18 +159,17 @@ pub fn examined(problem: &ContactProblem, by: &Bounding, [u, lambda]: [&[f64]; 2
     let has_bound = norm.is_some() || matches!(by, Bounding::Cycles(..));
     let (may_rest, error) = (scales.may_rest(&bound), bound.whole);
     // Only the proof of a problem with equalities has no factor of its own.
-    let norm = own.filter(|norm| !problem.equalities().is_empty() && norm.is_of_stiffness_alone());
+    let norm = own.filter(|norm| !problem.equalities().is_empty() && norm.springs.is_none() && norm.loose.is_none());
     let evidence = has_bound.then_some(Evidence { residual, violation, error, measured, norm });
     Ok(Examined { certificate, evidence, may_rest })
 }
 
-/// The largest imbalance of forces above rounding, relative to the largest of the forces that balance on the part;
-/// on a dof without stiffness, to those on the dof.
+/// The largest imbalance above rounding, relative to the largest force on the part; without stiffness, on the dof.
 fn imbalance(problem: &ContactProblem, residual: &[f64], terms: impl Fn(usize) -> f64) -> f64 {
     let (parts, roots) = (problem.parts(), &problem.diagonal().roots);
     let (mut left, mut largest, mut without_stiffness) = (vec![0.0; parts.count()], vec![0.0; parts.count()], 0.0);
     for (dof, &root) in roots.iter().enumerate() {
-        let (part, terms) = (parts.of_dof(dof), terms(dof));
+        let (part, terms) = (parts.of_dof[dof], terms(dof));
         let excess = if residual[dof].abs() <= ENTRY_ROUNDING * terms { 0.0 } else { residual[dof].abs() };
         if root > 0.0 {
             left[part] = larger(excess / root, left[part]);
@@ -187,10 +184,147 @@ fn imbalance(problem: &ContactProblem, residual: &[f64], terms: impl Fn(usize) -
 
 /// The dof of a part, or of all, at which the `forces` lose most digits to what is left as elastic force.
 fn cancellation(problem: &ContactProblem, forces: &[f64], elastic: &[f64], part: Option<usize>) -> Cancellation {
-    let is_in = |dof: &usize| part.is_none_or(|part| problem.parts().of_dof(*dof) == part);
+    let is_in = |dof: &usize| part.is_none_or(|part| problem.parts().of_dof[*dof] == part);
     let all = (0..forces.len()).filter(is_in).map(|dof| Cancellation { dof, forces: forces[dof], left: elastic[dof] });
     let fewer = |a: Cancellation, b: Cancellation| if b.forces * a.left > a.forces * b.left { b } else { a };
     all.filter(|at| at.forces > 0.0).reduce(fewer).unwrap_or(Cancellation { dof: 0, forces: 0.0, left: 0.0 })
+}
+
+/// An error up to this multiple of `eps sqrt(|u|'|K||u|)` is what rounding u to doubles does: half a unit in the last
+/// place of each entry, once for the rounding of u and once for the rounding of the bound.
+const AS_ROUNDED: f64 = f64::EPSILON;
+
+/// An error of a part at rest is rounding up to this multiple of its forces and of the loss of the factor.
+const FORCES_ROUNDED: f64 = f64::EPSILON;
+
+/// The same for forces that cancel to the last bit: far above the rounding of twice the working precision.
+const CANCELLED: f64 = 1e-26;
+
+/// Relative error of sums with twice the working precision stays below this share of their terms: no bound is smaller.
+const LEAST: f64 = 1e-28;
+
+/// Rounding of an energy computed with twice the working precision, as a share of its terms.
+const OF_ENERGY: f64 = 1e-31;
+
+impl OfPart {
+    /// The certain part of the energy norm: a body that moves far and does not bend has only energy from rounding.
+    pub fn certain_norm(&self) -> f64 {
+        (self.strain - OF_ENERGY * self.terms).max(0.0).sqrt()
+    }
+
+    /// What rounding the displacement to doubles does to its energy norm.
+    pub fn rounding(&self) -> f64 {
+        AS_ROUNDED * self.terms.sqrt()
+    }
+
+    /// The bound with the rounding of sums in twice the working precision.
+    fn widened(&self, error: f64) -> f64 {
+        error + LEAST * self.terms.sqrt()
+    }
+
+    /// The energy norm that rounding gives a part at rest, from the squares of the forces that it leaves and of all.
+    pub fn rest(&self, rounded: f64, all: f64) -> f64 {
+        FORCES_ROUNDED * rounded.sqrt() + CANCELLED * all.sqrt()
+    }
+}
+
+#[derive(Default)]
+struct Worst {
+    relative: f64,
+    excess: f64,
+    part: Option<usize>,
+    resting: usize,
+    of_rest: f64,
+}
+
+impl Worst {
+    fn moving(&mut self, error: f64, of: &OfPart, part: Option<usize>) {
+        let share = relative(error, of.certain_norm());
+        self.relative = larger(share, self.relative);
+        let excess = if error <= of.rounding() { 0.0 } else { share };
+        if self.part.is_none() || excess.is_nan() || excess > self.excess {
+            self.part = part;
+        }
+        self.excess = larger(excess, self.excess);
+    }
+}
+
+impl Certificate {
+    /// Sets the numbers that follow from a bound on the error, in a norm whose factor amplifies rounding by `loss`.
+    /// Returns the part that is farthest from its goal, or `None` if that is the whole.
+    pub(super) fn set_bounds(&mut self, bound: &ErrorBound, scales: &Scales, loss: f64) -> Option<usize> {
+        let Scales { of_parts: parts, whole, .. } = scales;
+        let mut worst = Worst::default();
+        let of_parts = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
+        let each = if of_parts.len() == parts.len() { &parts[..] } else { std::slice::from_ref(whole) };
+        for (number, (of, &error)) in each.iter().zip(of_parts).enumerate().filter(|(_, (of, _))| of.is_stiff) {
+            let error = of.widened(error);
+            // Rounding of the forces on a part at rest, which a factor amplifies by `loss`.
+            if !of.moves && error <= loss * of.rest(of.squares[1][0], of.squares[0][0]) {
+                worst.resting += 1;
+                worst.of_rest = larger(relative(error, of.force), worst.of_rest);
+            } else {
+                worst.moving(error, of, Some(number));
+            }
+        }
+        let error = whole.widened(bound.whole);
+        self.energy_error = error;
+        self.energy_error_bound = relative(error, whole.certain_norm());
+        if whole.moves {
+            worst.moving(error, whole, None);
+        }
+        (self.part_error_bound, self.energy_error_excess) = (worst.relative, worst.excess);
+        (self.parts_at_rest, self.rest_error) = (worst.resting, worst.of_rest);
+        self.at_rest = worst.resting > 0 && worst.resting == each.iter().filter(|of| of.is_stiff).count();
+        self.met_tolerance = self.reached_without_excuse();
+        worst.part
+    }
+
+    /// The certificate with the bounds of pieces without coupling, which are these scales of the `whole`.
+    pub(super) fn with_bounds_of(self, pieces: &[Certificate], whole: &OfPart) -> Self {
+        let largest = |of: fn(&Certificate) -> f64| pieces.iter().fold(0.0, |worst, piece| larger(of(piece), worst));
+        let energy_error = pieces.iter().map(|piece| piece.energy_error.powi(2)).sum::<f64>().sqrt();
+        let mut worst = Worst::default();
+        if whole.moves {
+            worst.moving(energy_error, whole, None);
+        }
+        let farthest = |a: &&Certificate, b: &&Certificate| a.energy_error_excess.total_cmp(&b.energy_error_excess);
+        let mut whole = Certificate {
+            energy_error,
+            energy_error_bound: relative(energy_error, whole.certain_norm()),
+            part_error_bound: larger(worst.relative, largest(|piece| piece.part_error_bound)),
+            energy_error_excess: larger(worst.excess, largest(|piece| piece.energy_error_excess)),
+            at_rest: !pieces.is_empty() && pieces.iter().all(|piece| piece.at_rest),
+            parts_at_rest: pieces.iter().map(|piece| piece.parts_at_rest).sum(),
+            rest_error: largest(|piece| piece.rest_error),
+            bound_is_measured: pieces.iter().any(|piece| piece.bound_is_measured),
+            cancellation: pieces.iter().max_by(farthest).map_or(self.cancellation, |piece| piece.cancellation),
+            ..self
+        };
+        whole.met_tolerance = whole.reached_without_excuse();
+        whole
+    }
+
+    /// The tolerance that is met without the excuse of rounding or, if none is, with it.
+    fn reached_without_excuse(&self) -> f64 {
+        match self.imbalance.max(self.penetration).max(self.open_force).max(self.part_error_bound) {
+            _ if self.adhesion != 0.0 => f64::INFINITY,
+            met if met.is_finite() => met,
+            _ => self.reached(),
+        }
+    }
+}
+
+impl Scales {
+    /// The parts that move in the answer, but whose error is so large that they may rest in the exact one, increasing.
+    pub fn may_rest(&self, bound: &ErrorBound) -> Vec<usize> {
+        let errors = bound.of_parts.as_deref().unwrap_or(std::slice::from_ref(&bound.whole));
+        let may_rest = |of: &OfPart, error: f64| {
+            of.moves && error.is_finite() && error >= of.certain_norm() && error > of.rounding()
+        };
+        let each = self.of_parts.iter().zip(errors).enumerate();
+        each.filter(|(_, (of, error))| may_rest(of, **error)).map(|(part, _)| part).collect()
+    }
 }
 
 #[cfg(test)]
@@ -301,8 +435,7 @@ mod tests {
         assert!(right.meets(1e-12), "{right:?}");
         let off = problem.certify(&[0.75, 0.0], &[-5.0, 0.0, 0.0]).unwrap();
         assert!((off.energy_error / 0.5 - 1.0).abs() < ROUNDED, "{off:?}");
-        // A force on the loose dof that no row takes has no bound, and neither has one that rows take with another
-        // force.
+        // A force on the loose dof that no row takes has no bound, nor has one that rows take with another force.
         assert!(!problem.certify(&[1.0, 0.0], &[-4.0, -1e-30, 0.0]).unwrap().has_bound());
         // Without clearance the walls are an equality, which holds the dof by any force.
         let held = problem.with_gap(vec![1.0, 0.0, 0.0]).unwrap();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::scales::{compliance_of_rows, energies};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::watch::Watch;
 use crate::linear::{
     Analysis, Cholesky, Compliance, Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, exponent,
@@ -14,8 +14,7 @@ use crate::problem::ContactProblem;
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
 const LARGEST_SHARE: f64 = 0.25;
 
-/// Up to this number, contact dofs are ordered last whatever their share: their dense matrices cost less than a
-/// millisecond.
+/// Up to this number, contact dofs are ordered last whatever their share: dense matrices then cost a millisecond.
 const FEW_DOFS: usize = 100;
 
 /// Rounding of a sweep, relative, over the smallest pivot.
@@ -25,33 +24,30 @@ const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
 const LOST: f64 = 1e3;
 
 /// A bound is multiplied with this, because its own sums are rounded too.
-pub(super) const ROUNDED_BOUND: f64 = 1.0 + 1e-6;
+pub const ROUNDED_BOUND: f64 = 1.0 + 1e-6;
 
 /// Values of a dense matrix on the boundary that are not worth counting.
 const FEW_VALUES: usize = 1_000_000;
 
 /// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with a diagonal near one.
 #[derive(Clone, Debug)]
-pub(crate) struct EnergyNorm {
+pub struct EnergyNorm {
     /// The factor of `c D K D`.
-    pub(super) cholesky: Cholesky,
+    pub cholesky: Cholesky,
     /// D and c, as exponents of two: `K^-1 = c D (c D K D)^-1 D`.
-    pub(super) equilibration: Equilibration,
-    pub(super) boundary: Option<Arc<Boundary>>,
+    pub equilibration: Equilibration,
+    pub boundary: Option<Arc<Boundary>>,
     /// A contact matrix whose compliance is kept for many answers.
     kept: Option<Arc<(SparseMatrix, RowsOnBoundary)>>,
-    /// The springs that made a singular K definite.
-    pub(super) springs: Option<Arc<Springs>>,
+    pub springs: Option<Arc<Springs>>,
     /// The dofs without stiffness, in which the matrix has a stiffness of one, if these made K singular.
-    pub(super) loose: Option<Arc<Loose>>,
-    /// Time limit of the bounds in this norm.
-    pub(super) watch: Watch,
+    pub loose: Option<Arc<Loose>>,
+    pub watch: Watch,
 }
 
-/// Dofs without stiffness, load and contact force. The energy does not see them: in the norm they have a stiffness of
-/// one, on which no force may act.
+/// Dofs without stiffness, load and contact force: in the norm they have a stiffness of one, on which no force may act.
 #[derive(Clone, Debug)]
-pub(super) struct Loose {
+pub struct Loose {
     pub dofs: Vec<usize>,
     /// `true` for each row that acts on one of them.
     pub rows: Vec<bool>,
@@ -59,7 +55,7 @@ pub(super) struct Loose {
 
 /// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
 #[derive(Clone, Debug)]
-pub(super) struct Boundary {
+pub struct Boundary {
     pub dofs: Vec<usize>,
     /// L_tt, t x t.
     pub block: LowerTriangle,
@@ -67,7 +63,7 @@ pub(super) struct Boundary {
 
 /// Rows on the contact boundary or in the whole body, normalised by powers of two.
 #[derive(Clone, Debug)]
-pub(super) struct RowsOnBoundary {
+pub struct RowsOnBoundary {
     /// W of the rows, each with the coefficients times D; the largest is near one.
     pub compliance: Arc<Compliance>,
     /// Exponent by which each row was multiplied.
@@ -77,7 +73,7 @@ pub(super) struct RowsOnBoundary {
 impl EnergyNorm {
     /// The energy norm of `stiffness`, with the boundary of the dofs in the rows `contact`; `None` if the stiffness is
     /// not positive definite to working precision.
-    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>, Error> {
+    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>> {
         if stiffness.diagonal().iter().any(|&value| value <= 0.0) {
             return Ok(None);
         }
@@ -89,16 +85,14 @@ impl EnergyNorm {
         Ok(definite.map(|cholesky| Self::new(cholesky, equilibration, dofs)))
     }
 
-    /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or
-    /// none if that is most of the body and the factor is not a whole triangle anyway.
+    /// The dofs to eliminate last, those in the rows `contact`; none if that is most of a body with a sparse factor.
     pub fn last_dofs(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Vec<usize> {
         let dofs = contact.columns_with_entries();
         let most = FEW_DOFS.max((LARGEST_SHARE * contact.columns() as f64) as usize);
         if dofs.len() > most && !Analysis::is_dense_for(stiffness) { Vec::new() } else { dofs }
     }
 
-    /// The energy norm from an available factor of the equilibrated stiffness `c D K D`, with `last` as its last
-    /// columns.
+    /// The energy norm from a factor of the equilibrated stiffness `c D K D`, with `last` as its last columns.
     pub fn new(cholesky: Cholesky, equilibration: Equilibration, last: Vec<usize>) -> Self {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
@@ -120,7 +114,6 @@ impl EnergyNorm {
         if Compliance::pays(&self.cholesky, contact) { self.keeping(contact) } else { self }
     }
 
-    /// The compliance of the normalised rows, if it is kept.
     pub fn compliance(&self) -> Option<&Compliance> {
         self.kept.as_ref().map(|kept| &*kept.1.compliance)
     }
@@ -142,53 +135,52 @@ impl EnergyNorm {
         EnergyNorm { watch: watch.clone(), ..self.clone() }
     }
 
-    /// Returns `true` if no spring and no stiffness on a loose dof was added.
-    pub(super) fn is_of_stiffness_alone(&self) -> bool {
-        self.springs.is_none() && self.loose.is_none()
-    }
-
     /// The length in the springs alone of a displacement that moves their rows by `moves`, with its rounding.
-    pub(super) fn length_of_springs(&self, moves: &[f64]) -> f64 {
+    pub fn length_of_springs(&self, moves: &[f64]) -> f64 {
         let springs = self.springs.iter().flat_map(|springs| &springs.stiffness).zip(moves);
         let square: f64 = springs.filter(|(d, _)| **d > 0.0).map(|(d, moved)| d * moved * moved).sum();
         ROUNDED_BOUND * square.sqrt()
     }
 
-    /// Returns `true` if the time for a bound is over.
-    pub(super) fn is_over(&self) -> bool {
+    pub fn is_over(&self) -> bool {
         self.watch.is_over()
     }
 
-    /// Relative rounding of a norm that comes from sweeps through the factor: some units in the last place over the
-    /// smallest pivot, on a diagonal of order one.
-    pub(super) fn rounding(&self) -> f64 {
+    /// Relative rounding of a norm that comes from sweeps through the factor: some last bits over the smallest pivot.
+    pub fn rounding(&self) -> f64 {
         let share = SWEEP_ROUNDING * self.loss();
         if share < LOST { ROUNDED_BOUND + share } else { f64::INFINITY }
     }
 
     /// Returns `true` if the rounding of a sweep is no more than what every bound is widened by anyway.
-    pub(super) fn is_sharp(&self) -> bool {
+    pub fn is_sharp(&self) -> bool {
         SWEEP_ROUNDING * self.loss() <= ROUNDED_BOUND - 1.0
     }
 
-    /// Amplification of the rounding of a force by a sweep, on a diagonal of order one: one over the smallest pivot, at
-    /// least one.
-    pub(super) fn loss(&self) -> f64 {
+    /// The same of a single sweep `L^-1 r`, beside another with the same factor: over the smallest diagonal entry of L.
+    pub fn rounding_of_column(&self) -> f64 {
+        SWEEP_ROUNDING * self.loss().sqrt()
+    }
+
+    /// Amplification of rounding by a sweep, on a diagonal of order one: one over the smallest pivot, at least one.
+    pub fn loss(&self) -> f64 {
         1.0 / self.cholesky.smallest_pivot().min(1.0)
     }
 
     /// The same norm with the stiffness in another unit, `2^unit`.
-    pub(super) fn with_unit(&self, unit: i32) -> Self {
+    pub fn with_unit(&self, unit: i32) -> Self {
         let mut norm = self.clone();
         norm.equilibration.factor += unit;
-        norm.springs = norm.springs.map(|springs| Arc::new(springs.in_unit(unit)));
+        if let Some(springs) = norm.springs.as_mut().map(Arc::make_mut) {
+            springs.stiffness.iter_mut().for_each(|value| *value = ldexp(*value, -unit));
+        }
         norm
     }
 
     /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
     ///
     /// Infinite if the force acts on a dof without stiffness.
-    pub(super) fn of_force(&self, force: &[f64]) -> f64 {
+    pub fn of_force(&self, force: &[f64]) -> f64 {
         if self.loose.as_ref().is_some_and(|loose| loose.dofs.iter().any(|&dof| force[dof] != 0.0)) {
             return f64::INFINITY;
         }
@@ -203,19 +195,17 @@ impl EnergyNorm {
         scaled.iter().zip(exponents).map(|(&value, exponent)| ldexp(value, exponent)).collect()
     }
 
-    /// Number of dofs without stiffness that the energy does not see.
-    pub(super) fn loose_dofs(&self) -> usize {
+    pub fn loose_dofs(&self) -> usize {
         self.loose.as_ref().map_or(0, |loose| loose.dofs.len())
     }
 
-    /// Returns `true` if a row acts on a dof without stiffness.
-    pub(super) fn is_on_loose_dof(&self, row: usize) -> bool {
+    pub fn is_on_loose_dof(&self, row: usize) -> bool {
         self.loose.as_ref().is_some_and(|loose| loose.rows[row])
     }
 
     /// `L^-1 D r`, of which the [`length`](Self::length) is the energy norm of the displacement that the force r
     /// causes: the squares of the interior added up, and the entries of the boundary.
-    pub(super) fn sweep(&self, force: &[f64]) -> (f64, Vec<f64>) {
+    pub fn sweep(&self, force: &[f64]) -> (f64, Vec<f64>) {
         let swept = self.cholesky.forward(&self.scaled(force));
         let size = self.boundary.as_ref().map_or(0, |boundary| boundary.dofs.len());
         let (interior, last) = swept.split_at(swept.len() - size.min(swept.len()));
@@ -223,17 +213,13 @@ impl EnergyNorm {
     }
 
     /// The length of a sweep, from its square, as an energy norm.
-    pub(super) fn length(&self, square: f64) -> f64 {
+    pub fn length(&self, square: f64) -> f64 {
         ldexp(square, self.equilibration.factor).sqrt()
     }
 
     /// The rows of `contact` that `counts`, on the boundary, and no entry of the others; `None` if the boundary is not
     /// known, or if such a row reaches beyond it.
-    pub(super) fn rows_on_boundary(
-        &self,
-        contact: &SparseMatrix,
-        counts: impl Fn(usize) -> bool,
-    ) -> Option<RowsOnBoundary> {
+    pub fn rows_on_boundary(&self, contact: &SparseMatrix, counts: impl Fn(usize) -> bool) -> Option<RowsOnBoundary> {
         let boundary = self.boundary.as_ref()?;
         if let Some(kept) = self.kept.as_ref().filter(|kept| kept.0.is_shared_with(contact)) {
             return Some(kept.1.clone());
@@ -245,18 +231,13 @@ impl EnergyNorm {
         is_whole.then(|| self.normalised(&rows, Some(&boundary.block)))
     }
 
-    /// The rows of `contact` in the whole body.
-    pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> RowsOnBoundary {
-        self.normalised(&self.scaled_rows(contact), None)
-    }
-
     /// The rows of `contact` in the whole body, each a column: dof, coefficient times D.
-    pub(super) fn scaled_rows(&self, contact: &SparseMatrix) -> SparseMatrix {
+    pub fn scaled_rows(&self, contact: &SparseMatrix) -> SparseMatrix {
         self.rows_at(&(0..contact.columns()).collect::<Vec<_>>(), contact, |entry| entry.1 != 0.0)
     }
 
     /// Rows, each a column, on the block that they are in.
-    fn normalised(&self, by_row: &SparseMatrix, block: Option<&LowerTriangle>) -> RowsOnBoundary {
+    pub fn normalised(&self, by_row: &SparseMatrix, block: Option<&LowerTriangle>) -> RowsOnBoundary {
         let largest = |row: usize| by_row.column(row).fold(0.0, |largest: f64, (_, b)| largest.max(b.abs()));
         let shift: Vec<i32> = (0..by_row.columns()).map(|row| -exponent(largest(row))).collect();
         let of_row = |row: usize| by_row.column(row).map(move |(_, b)| (b, row));
@@ -300,7 +281,7 @@ pub fn ldexp_root(x: f64, stiffness: i32, length: i32) -> f64 {
 
 /// Springs D on rows C that press, or that are equalities: with them a singular K becomes `K_D = K + B_C' D B_C`.
 #[derive(Clone, Debug)]
-pub(super) struct Springs {
+pub struct Springs {
     /// D of each row, zero on rows without a spring.
     pub stiffness: Vec<f64>,
     /// The rows that are equalities: at their gaps they stay there, whatever their force.
@@ -309,11 +290,7 @@ pub(super) struct Springs {
 
 impl Springs {
     /// `K + B_C' D B_C`; `None` if no row presses.
-    pub fn added_to(
-        &self,
-        stiffness: &SymmetricMatrix,
-        contact: &SparseMatrix,
-    ) -> Result<Option<SymmetricMatrix>, Error> {
+    pub fn added_to(&self, stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<SymmetricMatrix>> {
         let closed: Vec<usize> = (0..contact.rows()).filter(|&row| self.stiffness[row] > 0.0).collect();
         if closed.is_empty() {
             return Ok(None);
@@ -330,8 +307,7 @@ impl Springs {
         residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
     }
 
-    /// Returns `true` if every row with a spring is `closed`, and its certain force exceeds twice the force that
-    /// `left(row)`, the dual norm of the forces left over on its part, could take off.
+    /// `true` if each row with a spring is `closed`, and its force twice what `left(row)`, a dual norm, takes off.
     pub fn hold(&self, closed: &[bool], certain_force: impl Fn(usize) -> f64, left: impl Fn(usize) -> f64) -> bool {
         let springs = self.stiffness.iter().enumerate().filter(|spring| *spring.1 != 0.0);
         let presses = |row: usize, stiffness: f64| certain_force(row) > 2.0 * stiffness.sqrt() * left(row);
@@ -339,16 +315,10 @@ impl Springs {
             .into_iter()
             .all(|(row, &stiffness)| closed[row] && (self.are_equalities[row] || presses(row, stiffness)))
     }
-
-    /// The same springs in other units of stiffness, `2^unit`.
-    pub fn in_unit(&self, unit: i32) -> Self {
-        let stiffness = self.stiffness.iter().map(|&value| ldexp(value, -unit)).collect();
-        Springs { stiffness, are_equalities: self.are_equalities.clone() }
-    }
 }
 
 /// A row presses if its force could do more than this share of the energy norm of its part.
-pub(super) const PRESSING: f64 = 1e-8;
+pub const PRESSING: f64 = 1e-8;
 
 /// The energy norm of K; if K is semidefinite, that of K with springs on the rows that press, without the dofs that
 /// have neither stiffness nor a force. `None` if the springs do not hold the body, or if K has a negative
@@ -357,7 +327,7 @@ pub fn norm_of_answer(
     problem: &ContactProblem,
     displacement: &[f64],
     multiplier: &[f64],
-) -> Result<Option<EnergyNorm>, Error> {
+) -> Result<Option<EnergyNorm>> {
     if let Some(norm) = EnergyNorm::of(&problem.stiffness, &problem.contact)? {
         return Ok(Some(norm));
     }
@@ -380,7 +350,7 @@ pub fn norm_of_answer(
 
 /// The energy norm of a stiffness that is definite by itself, or with springs on equalities alone: it serves every
 /// answer. `None` if there is none.
-pub fn norm_on_equalities(problem: &ContactProblem) -> Result<Option<EnergyNorm>, Error> {
+pub fn norm_on_equalities(problem: &ContactProblem) -> Result<Option<EnergyNorm>> {
     let (at_rest, forces) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
     let norm = norm_of_answer(&problem.two_sided(&forces).0, &at_rest, &forces)?;
     Ok(norm.filter(|norm| norm.loose_dofs() == 0))
@@ -388,13 +358,8 @@ pub fn norm_on_equalities(problem: &ContactProblem) -> Result<Option<EnergyNorm>
 
 /// The dofs without stiffness on which neither a load nor a row acts, if there are some.
 fn loose_dofs(problem: &ContactProblem, multiplier: &[f64]) -> Option<Loose> {
-    let mut is_loose: Vec<bool> = problem
-        .diagonal()
-        .values
-        .iter()
-        .zip(&problem.load)
-        .map(|(&stiffness, &f)| stiffness == 0.0 && f == 0.0)
-        .collect();
+    let dofs = problem.diagonal().values.iter().zip(&problem.load);
+    let mut is_loose: Vec<bool> = dofs.map(|(&stiffness, &f)| stiffness == 0.0 && f == 0.0).collect();
     // A coupling on a diagonal of zero has negative energy.
     for (row, column, _) in problem.stiffness.lower().triplets().filter(|entry| entry.2 != 0.0) {
         (is_loose[row], is_loose[column]) = (false, false);
@@ -416,7 +381,7 @@ pub fn springs_on(problem: &ContactProblem, displacement: &[f64], multiplier: &[
     let sizes: Vec<f64> = energies(problem, true, displacement).0.iter().map(|energy| energy.max(0.0).sqrt()).collect();
     let violation = problem.accurate_violation(displacement);
     let spring = |row: usize| {
-        let (force, size) = (-multiplier[row], sizes[parts.of_row(row)]);
+        let (force, size) = (-multiplier[row], sizes[parts.of_row[row]]);
         // A row that acts only on dofs without stiffness has no stiffness of its own: its force sets the scale.
         let stiffness = match compliance[row] {
             0.0 if size > 0.0 && force != 0.0 => (force / size).powi(2),

@@ -10,7 +10,6 @@ mod mode;
 mod proof;
 mod reach;
 mod scales;
-mod verdict;
 
 pub(crate) use bound::boundary::repaired;
 pub(crate) use conditions::{Bounding, Evidence, Examined, at_rest, with_rounding};
@@ -23,7 +22,7 @@ use conditions::{energy_of, examined};
 use energy_norm::ldexp_root;
 use proof::{proven_by_cycles, proven_in, proven_pressed};
 
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::{SymmetricMatrix, exponent, largest, ldexp};
 use crate::problem::{ContactProblem, Equality};
 use crate::solution::{Cancellation, Certificate, ProvenSet};
@@ -35,7 +34,7 @@ const FAR: i32 = 800;
 const NOTHING: i32 = -200;
 
 /// An answer (u, lambda) of a problem, to be examined by these means.
-pub(crate) struct Examination<'a> {
+pub struct Examination<'a> {
     problem: &'a ContactProblem,
     displacement: &'a [f64],
     /// Of all rows.
@@ -44,21 +43,15 @@ pub(crate) struct Examination<'a> {
 }
 
 impl<'a> Examination<'a> {
-    pub fn of(
-        problem: &'a ContactProblem,
-        [displacement, multiplier]: [&'a [f64]; 2],
-        by: &'a Bounding<'a>,
-    ) -> Result<Self, Error> {
-        let multiplier = problem.of_all_rows(multiplier);
+    pub fn of(problem: &'a ContactProblem, answer: [&'a [f64]; 2], by: &'a Bounding<'a>) -> Result<Self> {
+        let (displacement, multiplier) = (answer[0], problem.of_all_rows(answer[1]));
         problem.check_answer(displacement, &multiplier)?;
-        // A hierarchy of one level is already a factor, with so few dofs that another one in double precision costs
-        // nothing.
+        // A hierarchy of one level is a factor already, of so few dofs that another one costs nothing.
         let is_factor = matches!(by, Bounding::Cycles(multigrid, _) if multigrid.unknowns().len() <= 1);
         Ok(Examination { problem, displacement, multiplier, by: if is_factor { &Bounding::OwnFactor } else { by } })
     }
 
-    /// The certificate, with the evidence that a proof may take.
-    pub fn certificate(&self) -> Result<Examined, Error> {
+    pub fn certificate(&self) -> Result<Examined> {
         let (u, lambda) = (self.displacement, &*self.multiplier);
         let mut found = match self.in_far_units()? {
             None => examined(self.problem, self.by, [u, lambda])?,
@@ -73,10 +66,9 @@ impl<'a> Examination<'a> {
         Ok(found)
     }
 
-    /// The rows that the answer proves open or closed, from the evidence of its certificate if there is any; `None` if
-    /// K is not positive definite by itself, except for travels that forces drive against rows, and if no bound is
-    /// known.
-    pub fn proof(&self, evidence: Option<Evidence>) -> Result<Option<ProvenSet>, Error> {
+    /// The rows that the answer proves open or closed, by the evidence of its certificate if any; `None` if K is not
+    /// positive definite by itself, except for travels that forces drive against rows, and if no bound is known.
+    pub fn proof(&self, evidence: Option<Evidence>) -> Result<Option<ProvenSet>> {
         let mut proven = self.proven(evidence)?;
         // The rows of equalities are closed in every answer.
         for Equality { row, opposed, .. } in self.problem.equalities() {
@@ -85,7 +77,7 @@ impl<'a> Examination<'a> {
         Ok(proven)
     }
 
-    fn proven(&self, mut evidence: Option<Evidence>) -> Result<Option<ProvenSet>, Error> {
+    fn proven(&self, mut evidence: Option<Evidence>) -> Result<Option<ProvenSet>> {
         let (problem, answer, far) = (self.problem, [self.displacement, &*self.multiplier], self.in_far_units()?);
         let norm = match self.by {
             Bounding::Nothing | Bounding::Pieces(_) => None,
@@ -111,9 +103,9 @@ impl<'a> Examination<'a> {
         }))
     }
 
-    /// The units in which the answer is of order one, if forces or energies would over- or underflow in its own, with
-    /// the problem and the means in these units.
-    fn in_far_units(&self) -> Result<Option<(UnitExponents, ContactProblem, Bounding<'static>)>, Error> {
+    /// The units in which the answer is of order one, if its own would over- or underflow, with problem and means in
+    /// them.
+    fn in_far_units(&self) -> Result<Option<(UnitExponents, ContactProblem, Bounding<'static>)>> {
         let Some(units) = far_units(self.problem, self.displacement) else { return Ok(None) };
         let by = match self.by {
             Bounding::OwnFactor => Bounding::OwnFactor,
@@ -124,8 +116,7 @@ impl<'a> Examination<'a> {
     }
 }
 
-/// Other units of stiffness and of length for data at the ends of double precision: exponents of two, so that only the
-/// range changes.
+/// Other units of stiffness and length for data at the ends of double precision: exponents of two.
 #[derive(Clone, Copy, Debug)]
 struct UnitExponents {
     stiffness: i32,
@@ -141,7 +132,6 @@ impl UnitExponents {
         force.iter().map(|&value| ldexp(value, -self.stiffness - self.length)).collect()
     }
 
-    /// A certificate that was computed in these units, in those of the problem.
     fn in_own(&self, certificate: Certificate) -> Certificate {
         // An energy norm has the unit of sqrt(stiffness) times length.
         let norm = |value: f64| ldexp_root(value, self.stiffness, self.length);
@@ -155,7 +145,6 @@ impl UnitExponents {
     }
 }
 
-/// The units in which an answer is of order one, if forces or energies would over- or underflow in its own units.
 fn far_units(problem: &ContactProblem, displacement: &[f64]) -> Option<UnitExponents> {
     let stiffness = exponent(largest(&problem.diagonal().values));
     let (moved, load) = (largest(displacement), largest(&problem.load));
@@ -171,7 +160,7 @@ fn far_units(problem: &ContactProblem, displacement: &[f64]) -> Option<UnitExpon
     far.then_some(UnitExponents { stiffness, length })
 }
 
-fn in_units(problem: &ContactProblem, units: &UnitExponents) -> Result<ContactProblem, Error> {
+fn in_units(problem: &ContactProblem, units: &UnitExponents) -> Result<ContactProblem> {
     let lower = problem.stiffness.lower();
     let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();
     let stiffness = SymmetricMatrix::from_lower(lower.with_values(values))?;

@@ -8,13 +8,12 @@ use crate::problem::ContactProblem;
 /// A load drives a mode if its work is beyond this share of its terms.
 const DRIVES: f64 = 1e-9;
 
-/// The work of a load vanishes below this share of its terms, however the direction was found: if a load is out of
-/// balance by its last bit, some row holds it.
+/// The work of a load vanishes below this share of its terms: a row holds a load out of balance by its last bit.
 const IDLE: f64 = 1e-29;
 
 /// Rounding of sums over a direction, as shares of their terms.
 #[derive(Clone, Copy)]
-pub(crate) struct Rounding {
+pub struct Rounding {
     /// Entries below this share of the largest are rounded zeros.
     entry: f64,
     /// Forces `K d` up to this count as zero, and so do the coordinates of a row.
@@ -29,8 +28,7 @@ impl Rounding {
     /// For a direction in twice the working precision on which the stiffness does exactly no work.
     const OF_EXACT: Rounding = Rounding { entry: 1e-24, vanishes: 1e-28, zero: 1e-28, sure: 1e-28 };
 
-    /// For a rigid-body mode that the problem declares, which is known only as precisely as rounded entries of the
-    /// stiffness.
+    /// For a rigid-body mode that the problem declares: known as precisely as rounded entries of the stiffness.
     const OF_ROUNDED: Rounding = Rounding { entry: 1e-9, vanishes: 1e-10, zero: 1e-15, sure: 1e-8 };
 
     pub fn of(null: &NullSpace) -> Self {
@@ -43,7 +41,7 @@ const NEGATIVE: f64 = 1e-12;
 
 /// A direction without energy, with the approach of the rows and the work of the load along it.
 #[derive(Clone, Debug)]
-pub(crate) struct NullMode {
+pub struct NullMode {
     /// The direction d, one entry per dof, largest entry one.
     pub direction: Vec<f64>,
     /// `B d` of each row, zero if it vanishes, positive if the mode closes the row.
@@ -60,12 +58,10 @@ impl NullMode {
         self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
     }
 
-    /// Returns `true` if the load does exactly no work on the mode.
     pub fn is_idle(&self) -> bool {
         self.work == 0.0
     }
 
-    /// A sentence on the recheck of the mode, with its largest entries.
     pub fn in_words(&self) -> String {
         let mut entries: Vec<(usize, f64)> = self.direction.iter().copied().enumerate().collect();
         entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));

@@ -18,12 +18,12 @@
 //! that of the body alone, with rows that this uncertainty brings nearer.
 
 use super::bound::Answer;
-use super::bound::row_by_row::negligible;
+use super::bound::general::negligible;
 use super::conditions::{Bounding, Evidence, examined};
 use super::energy_norm::{EnergyNorm, ROUNDED_BOUND};
 use super::reach::{ComplianceFactor, measured_reach, monotone_reach, within_reach};
 use super::scales::least_reach;
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::SymmetricMatrix;
 use crate::linear::multigrid::Multigrid;
 use crate::linear::watch::Watch;
@@ -173,7 +173,7 @@ pub fn proven_pressed(
     problem: &ContactProblem,
     [displacement, multiplier]: [&[f64]; 2],
     evidence: Evidence,
-) -> Result<Option<ProvenSet>, Error> {
+) -> Result<Option<ProvenSet>> {
     let Some(travels) = travels(problem).filter(|_| evidence.error.is_finite()) else { return Ok(None) };
     let is_body = |dof: &usize| travels.iter().all(|travel| travel.dof != *dof);
     let dofs: Vec<usize> = (0..problem.dofs()).filter(is_body).collect();

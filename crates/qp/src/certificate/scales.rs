@@ -4,7 +4,7 @@ use crate::linear::Accumulator;
 use crate::problem::{Balance, ContactProblem};
 
 /// The scales that the errors of an answer are measured against.
-pub(super) struct Scales {
+pub struct Scales {
     /// The least reach of each row: the distance by which a shift of unit energy norm of a single dof moves it.
     pub reach: Vec<f64>,
     pub of_parts: Vec<OfPart>,
@@ -12,7 +12,7 @@ pub(super) struct Scales {
 }
 
 #[derive(Clone, Copy, Default)]
-pub(super) struct OfPart {
+pub struct OfPart {
     /// `true` if the part has stiffness. The error of a part without stiffness has no energy, and rows alone judge it.
     pub is_stiff: bool,
     /// `true` if a dof with stiffness moves.
@@ -21,35 +21,12 @@ pub(super) struct OfPart {
     pub strain: f64,
     /// The sum of `|u_i| (|K| |u|)_i`, the terms of the strain.
     pub terms: f64,
-    /// `max |F_i| / sqrt(K_ii)` over loads, contact forces and couplings to other parts F: the energy norm that they
-    /// could give a single dof.
+    /// `max |F_i| / sqrt(K_ii)` over loads, contact forces and couplings to other parts F.
     pub force: f64,
-    /// The sum of the squares `F_i^2 / K_ii`.
-    pub force_squares: f64,
-    /// The same sum of the dofs at which couplings act, or rounding leaves forces out of balance that no row on this
-    /// dof alone takes: the size of a load on a wall says nothing of the error beside it.
-    pub rounded_squares: f64,
-    /// The same sum of loads and elastic forces alone: contact forces that cancel each other may be of any size.
-    pub given_squares: f64,
-    /// The same sum of the dofs of `rounded_squares`.
-    pub rounded_given_squares: f64,
-}
-
-impl OfPart {
-    /// The scales of all `parts` as one, without their strain.
-    fn together(parts: &[OfPart]) -> Self {
-        OfPart {
-            is_stiff: true,
-            moves: parts.iter().any(|part| part.moves),
-            strain: 0.0,
-            terms: parts.iter().map(|part| part.terms).sum(),
-            force: parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
-            force_squares: parts.iter().map(|part| part.force_squares).sum(),
-            rounded_squares: parts.iter().map(|part| part.rounded_squares).sum(),
-            given_squares: parts.iter().map(|part| part.given_squares).sum(),
-            rounded_given_squares: parts.iter().map(|part| part.rounded_given_squares).sum(),
-        }
-    }
+    /// Sums of the squares `F_i^2 / K_ii`, of all dofs, and of those at which couplings act, or rounding leaves forces
+    /// out of balance that no row on this dof alone takes: a load on a wall says nothing of the error beside it. Each
+    /// is that of all F, and of loads and elastic forces alone: contact forces that cancel may be of any size.
+    pub squares: [[f64; 2]; 2],
 }
 
 /// The larger of two numbers; NaN is larger than all.
@@ -63,15 +40,14 @@ pub fn relative(value: f64, scale: f64) -> f64 {
 }
 
 impl Scales {
-    /// The scales of an answer (u, lambda) of `problem` in this balance, under the loads and contact forces `applied`,
-    /// `|f| + |B' lambda|`.
+    /// The scales of an answer (u, lambda) in this balance, under the forces `applied`, `|f| + |B' lambda|`.
     pub fn of(problem: &ContactProblem, [u, multiplier]: [&[f64]; 2], balance: &Balance, applied: &[f64]) -> Self {
         let (parts, diagonal) = (problem.parts(), problem.diagonal());
         let strains = if parts.count() == 1 { vec![balance.strain] } else { energies(problem, true, u).0 };
         let mut of_parts = vec![OfPart::default(); parts.count()];
         let (couplings, is_taken) = (couplings(problem, u, applied), taken_alone(problem, multiplier));
         for (dof, &root) in diagonal.roots.iter().enumerate() {
-            let part = &mut of_parts[parts.of_dof(dof)];
+            let part = &mut of_parts[parts.of_dof[dof]];
             part.terms += u[dof].abs() * balance.terms[dof];
             if root > 0.0 {
                 part.is_stiff = true;
@@ -80,26 +56,31 @@ impl Scales {
                 let force = larger(applied[dof], coupling) / root;
                 part.force = larger(force, part.force);
                 let given = (larger(problem.load[dof].abs(), balance.elastic[dof]) / root).powi(2);
-                part.force_squares += force * force;
-                part.given_squares += given;
-                if coupling > 0.0 || balance.residual[dof] != 0.0 && !is_taken[dof] {
-                    part.rounded_squares += force * force;
-                    part.rounded_given_squares += given;
+                let is_rounded = coupling > 0.0 || balance.residual[dof] != 0.0 && !is_taken[dof];
+                for squares in &mut part.squares[..=usize::from(is_rounded)] {
+                    *squares = [squares[0] + force * force, squares[1] + given];
                 }
             }
         }
         of_parts.iter_mut().zip(&strains).for_each(|(part, &strain)| part.strain = strain);
-        let whole = OfPart { strain: balance.strain, ..OfPart::together(&of_parts) };
+        let square = |at: usize, of: usize| of_parts.iter().map(|part| part.squares[at][of]).sum();
+        let whole = OfPart {
+            is_stiff: true,
+            moves: of_parts.iter().any(|part| part.moves),
+            strain: balance.strain,
+            terms: of_parts.iter().map(|part| part.terms).sum(),
+            force: of_parts.iter().fold(0.0, |largest, part| larger(part.force, largest)),
+            squares: [0, 1].map(|at| [0, 1].map(|of| square(at, of))),
+        };
         Scales { reach: least_reach(problem), of_parts, whole }
     }
 
-    /// The distance by which rounding of the forces on its `part`, if that rests, could move a single dof of a row, of
-    /// its loads and elastic forces at most; zero for a part that moves.
+    /// The distance by which rounding of the forces on a `part` at rest could move a dof of a row; zero if it moves.
     pub fn rest_of_row(&self, row: usize, part: usize) -> f64 {
         let part = &self.of_parts[part];
         let rests = part.is_stiff && !part.moves;
-        let rounded = part.rounded_squares.min(part.rounded_given_squares);
-        if rests { self.reach[row] * part.rest(rounded, part.force_squares.min(part.given_squares)) } else { 0.0 }
+        let [all, rounded] = part.squares.map(|[forces, given]| forces.min(given));
+        if rests { self.reach[row] * part.rest(rounded, all) } else { 0.0 }
     }
 }
 
@@ -111,17 +92,11 @@ pub fn coupled_lengths(problem: &ContactProblem, own: Vec<f64>) -> Vec<f64> {
     if roots.iter().all(|&root| root > 0.0) {
         return own;
     }
-    let entries = || {
-        let counts =
-            |&(row, dof, b): &(usize, usize, f64)| b != 0.0 && roots[dof] == 0.0 && problem.gap[row].is_finite();
-        problem.contact.triplets().filter(counts)
-    };
+    let counts = |&(row, dof, b): &(usize, usize, f64)| b != 0.0 && roots[dof] == 0.0 && problem.gap[row].is_finite();
+    let entries = || problem.contact.triplets().filter(counts);
     let mut is_stiff = vec![false; problem.rows()];
-    problem
-        .contact
-        .triplets()
-        .filter(|&(_, dof, b)| b != 0.0 && roots[dof] > 0.0)
-        .for_each(|(row, ..)| is_stiff[row] = true);
+    let stiff = problem.contact.triplets().filter(|&(_, dof, b)| b != 0.0 && roots[dof] > 0.0);
+    stiff.for_each(|(row, ..)| is_stiff[row] = true);
     let mut of_dofs = vec![0.0; problem.dofs()];
     let known = entries().filter(|entry| is_stiff[entry.0]);
     known.for_each(|(row, dof, b)| of_dofs[dof] = larger(own[row] / b.abs(), of_dofs[dof]));
@@ -131,8 +106,7 @@ pub fn coupled_lengths(problem: &ContactProblem, own: Vec<f64>) -> Vec<f64> {
     coupled
 }
 
-/// The forces that balance on each dof; on one without stiffness and load at least those that its rows pass on from
-/// dofs with stiffness.
+/// The forces that balance on each dof; without stiffness and load at least those that rows pass on from stiff dofs.
 pub fn balanced_forces(problem: &ContactProblem, own: Vec<f64>) -> Vec<f64> {
     let roots = &problem.diagonal().roots;
     if roots.iter().all(|&root| root > 0.0) {
@@ -167,7 +141,7 @@ fn taken_alone(problem: &ContactProblem, multiplier: &[f64]) -> Vec<bool> {
 pub fn energies(problem: &ContactProblem, by_parts: bool, w: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let parts = problem.parts();
     let (group, count) =
-        (|dof: usize| if by_parts { parts.of_dof(dof) } else { 0 }, if by_parts { parts.count() } else { 1 });
+        (|dof: usize| if by_parts { parts.of_dof[dof] } else { 0 }, if by_parts { parts.count() } else { 1 });
     let within =
         |column: usize| problem.stiffness.lower().column(column).filter(move |entry| group(entry.0) == group(column));
     let mut sums = Accumulator::new(&vec![0.0; w.len()]);
@@ -179,8 +153,8 @@ pub fn energies(problem: &ContactProblem, by_parts: bool, w: &[f64]) -> (Vec<f64
     (sums.products_by(w, group, count), magnitudes)
 }
 
-/// The forces on each dof by other parts: by their displacements u, and by those that `forces` could give each of
-/// their dofs alone. Empty if there is one part.
+/// The forces on each dof by other parts: by their displacements u, and those that `forces` could give each dof alone.
+/// Empty for one part.
 fn couplings(problem: &ContactProblem, u: &[f64], forces: &[f64]) -> Vec<f64> {
     let parts = problem.parts();
     if parts.count() == 1 {
@@ -190,7 +164,7 @@ fn couplings(problem: &ContactProblem, u: &[f64], forces: &[f64]) -> Vec<f64> {
     let moved = |dof: usize| u[dof].abs() + if diagonal[dof] > 0.0 { forces[dof] / diagonal[dof] } else { 0.0 };
     let mut couplings = vec![0.0; problem.dofs()];
     for (row, column, value) in problem.stiffness.lower().triplets() {
-        if parts.of_dof(row) != parts.of_dof(column) {
+        if parts.of_dof[row] != parts.of_dof[column] {
             couplings[row] += value.abs() * moved(column);
             couplings[column] += value.abs() * moved(row);
         }
@@ -198,8 +172,7 @@ fn couplings(problem: &ContactProblem, u: &[f64], forces: &[f64]) -> Vec<f64> {
     couplings
 }
 
-/// Lower bounds on `sqrt(G_ii)` of every row, `max |b_ij| / sqrt(K_jj)` over the dofs with stiffness: the distance
-/// by which unit energy norm of a single dof moves it.
+/// Lower bounds on `sqrt(G_ii)` of every row: `max |b_ij| / sqrt(K_jj)`, the move by unit energy norm of a single dof.
 pub fn least_reach(problem: &ContactProblem) -> Vec<f64> {
     let (roots, mut least) = (&problem.diagonal().roots, vec![0.0_f64; problem.rows()]);
     for (dof, &root) in roots.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
@@ -225,8 +198,7 @@ pub fn compliance_of_rows(problem: &ContactProblem, of_entry: impl Fn(f64, f64) 
 mod tests {
     use super::*;
 
-    /// A dof of stiffness 4 and one without, joined by a row with gap zero; the second has a row with gap zero, and one
-    /// with a gap of 6.
+    /// A dof of stiffness 4 and one without, joined by a row with gap zero; the second has rows with gaps of 0 and 6.
     fn joined(load: f64) -> ContactProblem {
         let rows = [(0, 0, 2.0), (0, 1, -0.5), (1, 1, -3.0), (2, 1, -3.0)];
         ContactProblem::of_entries(&[(0, 0, 4.0)], &[10.0, load], &rows, &[0.0, 0.0, 6.0])

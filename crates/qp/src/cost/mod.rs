@@ -3,29 +3,25 @@
 pub(crate) mod bytes;
 mod direct;
 pub(crate) mod seconds;
-mod smooth;
 
 use super::method::mprgp::takes_travels;
 use super::problem::ContactProblem;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::watch::Watch;
 use direct::{BodyFactor, Direct};
-pub(crate) use direct::{NEAR_CYCLES, is_everywhere, starts_near};
-pub(crate) use smooth::Smooth;
+pub(crate) use direct::{NEAR_CYCLES, Smooth, is_everywhere, starts_near};
 
 /// Rows that are bounds only after reflections take more cycles by this factor.
 const TURNED: f64 = 1.6;
 
-/// A singular stiffness takes this many times the seconds: factors for the start and for the sets of rows that hold the
-/// body.
+/// A singular stiffness takes this many times the seconds: factors for the start and for rows that hold the body.
 const SINGULAR: f64 = 4.0;
 
 /// If contact holds more motions of bodies than this one by the other, cycles do not settle the bound: the springs that
 /// hold them are in no level of the hierarchy. Measured on towers: 21 motions are bounded, 25 on unlike meshes are not.
 const MOST_MOTIONS: usize = 24;
 
-/// If a cube would take less than this many times the seconds of multigrid, a slender body may take less than
-/// multigrid: the order by minimum degree is then computed.
+/// Below this many times the seconds of multigrid for a cube, a slender body may take less: minimum degree then tells.
 const LOOK: f64 = 12.0;
 
 /// The hierarchy of a stiff volume takes this many times the bytes: patches, and a prolongator of several steps.
@@ -63,9 +59,7 @@ pub struct Estimate {
     pub hierarchy_seconds: f64,
     /// Seconds of the part of the direct path that serves all gaps: the first factorisation, with its order.
     pub(super) shared_seconds: f64,
-    /// The near-null space that a hierarchy is given.
     pub(super) smooth: Smooth,
-    /// `true` if cycles can bound the error.
     pub(super) has_bound: bool,
     /// Number of cycles in the seconds of multigrid.
     pub(super) cycles: f64,
@@ -141,7 +135,7 @@ fn multigrid_bytes(problem: &ContactProblem, smooth: Smooth) -> f64 {
 
 /// The data that a solve keeps beside the problem.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Kept {
+pub enum Kept {
     /// Nothing yet: the problem is being ordered.
     Nothing,
     /// The factor of the body, with `values` values, and dense matrices on `contact_dofs` contact dofs.
@@ -154,23 +148,11 @@ pub(crate) enum Kept {
     Multigrid,
 }
 
-impl Kept {
-    /// The least that a condensation onto this number of contact dofs keeps.
-    pub fn dense(contact_dofs: usize) -> Self {
-        Kept::Condensed { values: 0, contact_dofs, by_interior_point: false }
-    }
-
-    /// The least that factors with this number of contact dofs last keep.
-    pub fn boundary(last: usize) -> Self {
-        Kept::Factors { values: 0, last, by_interior_point: false }
-    }
-}
-
 /// Number of factors that exist at one time if every contact set has its own.
-pub(crate) const FACTORS: f64 = 2.0;
+pub const FACTORS: f64 = 2.0;
 
 /// Refuses a problem that would take more than these bytes, if there is a limit.
-pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f64>) -> Result<(), Error> {
+pub fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f64>) -> Result<()> {
     let Some(allowed) = most else { return Ok(()) };
     let (dofs, stiffness_entries) = (problem.dofs() as f64, problem.stiffness().entries() as f64);
     let of_interior_point = |values: f64, is_used| if is_used { bytes::OF_INTERIOR_POINT * values } else { 0.0 };
@@ -206,7 +188,7 @@ pub(crate) fn check_memory(problem: &ContactProblem, kept: Kept, most: Option<f6
 }
 
 /// Refuses work with this estimate in seconds if there is no time for it.
-pub(crate) fn check_time(watch: &Watch, estimate: f64) -> Result<(), Error> {
+pub fn check_time(watch: &Watch, estimate: f64) -> Result<()> {
     match watch.time_left() {
         Some(time) if !watch.allows(estimate) => Err(Error::OutOfTime { needed: watch.needed(estimate), time }),
         _ => Ok(()),

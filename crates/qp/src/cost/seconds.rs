@@ -16,97 +16,73 @@ const VALUE: f64 = 1.46e-8;
 /// About as many values stay in the cache of a processor, and take little.
 const IN_CACHE: f64 = 5e5;
 
-/// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
-const ORDERING: f64 = 1.3e-7;
-
-/// The same of minimum degree alone, the order that slender bodies keep.
-const MINIMUM_DEGREE: f64 = 1.3e-8;
-
-/// Seconds of a hierarchy for an unknown, and for an entry of the lower triangle
-/// (`cargo run --release --example studies -- kinds`).
-const HIERARCHY: [f64; 2] = [5e-7, 5.3e-8];
-
-/// The same of an iteration with one cycle.
-const CYCLE: [f64; 2] = [2.3e-7, 2.9e-9];
-
-/// Seconds of certificate and report for an entry of the lower triangle.
-const CERTIFICATE: f64 = 1e-7;
-
-/// Seconds of a multiplication in a sweep through a dense triangle.
-const PLAIN: f64 = 4e-10;
-
-/// Seconds of a multiplication in the interior-point method, which builds its factor entry by entry.
-const ENTRY_BY_ENTRY: f64 = 1.5e-9;
-
-/// Its order needs this many times the multiplications of ours.
-const MORE_FILL: f64 = 3.0;
-
 /// Cells along a side of the lattice; its matrix is factorised to measure the pace.
 const LATTICE: usize = 64;
 
-pub(crate) fn factor_seconds(multiplications: f64, values: f64) -> f64 {
+pub fn factor_seconds(multiplications: f64, values: f64) -> f64 {
     MULTIPLICATION * multiplications + VALUE * values * (values / (values + IN_CACHE))
 }
 
-/// Seconds of ordering and analysing the stiffness of `problem`.
-pub(crate) fn ordering(problem: &ContactProblem) -> f64 {
-    ORDERING * problem.stiffness().lower().entries() as f64
+/// Seconds of ordering and analysing the stiffness of `problem`, nested dissection included.
+pub fn ordering(problem: &ContactProblem) -> f64 {
+    1.3e-7 * problem.stiffness().lower().entries() as f64
 }
 
-/// The same if the order by minimum degree is kept without a search for a better one.
-pub(crate) fn minimum_degree(problem: &ContactProblem) -> f64 {
-    MINIMUM_DEGREE * problem.stiffness().lower().entries() as f64
+/// The same by minimum degree alone, the order that slender bodies keep.
+pub fn minimum_degree(problem: &ContactProblem) -> f64 {
+    1.3e-8 * problem.stiffness().lower().entries() as f64
 }
 
-/// Seconds of a hierarchy of this number of unknowns and entries of the lower triangle.
-pub(crate) fn hierarchy(dofs: f64, entries: f64) -> f64 {
-    HIERARCHY[0] * dofs + HIERARCHY[1] * entries
+/// Seconds of a hierarchy of this number of unknowns and entries of the lower triangle
+/// (`cargo run --release --example studies -- kinds`).
+pub fn hierarchy(dofs: f64, entries: f64) -> f64 {
+    5e-7 * dofs + 5.3e-8 * entries
 }
 
 /// Seconds of an iteration with one cycle of that hierarchy.
-pub(crate) fn cycle(dofs: f64, entries: f64) -> f64 {
-    CYCLE[0] * dofs + CYCLE[1] * entries
+pub fn cycle(dofs: f64, entries: f64) -> f64 {
+    2.3e-7 * dofs + 2.9e-9 * entries
 }
 
-/// Seconds of the work after the last step: the conditions of the certificate, which are summed with twice the working
-/// precision, and the sums of a report.
-pub(crate) fn certificate(problem: &ContactProblem) -> f64 {
-    CERTIFICATE * problem.stiffness().lower().entries() as f64
+/// Seconds of the work after the last step: the certificate, summed in twice the precision, and a report.
+pub fn certificate(problem: &ContactProblem) -> f64 {
+    1e-7 * problem.stiffness().lower().entries() as f64
 }
 
 /// Seconds of one factorisation in double precision.
-pub(crate) fn factorisation(analysis: &Analysis) -> f64 {
+pub fn factorisation(analysis: &Analysis) -> f64 {
     factor_seconds(analysis.multiplications(), analysis.factor_entries() as f64)
 }
 
 /// Seconds of one step of the interior-point method on a matrix with this analysis, with a row for each of its contact
 /// dofs.
-pub(crate) fn interior_point(analysis: &Analysis) -> f64 {
-    MORE_FILL * ENTRY_BY_ENTRY * analysis.multiplications()
+pub fn interior_point(analysis: &Analysis) -> f64 {
+    // Its factor is built entry by entry, and its order needs three times the multiplications of ours.
+    3.0 * 1.5e-9 * analysis.multiplications()
 }
 
 /// Seconds of the product of a dense triangle with its transpose, and of its use as a matrix.
-pub(crate) fn dense(size: usize) -> f64 {
+pub fn dense(size: usize) -> f64 {
     MULTIPLICATION * (size as f64).powi(3)
 }
 
 /// Seconds that this number of columns adds to a factorisation if they come last.
-pub(crate) fn last_block(size: usize) -> f64 {
+pub fn last_block(size: usize) -> f64 {
     MULTIPLICATION * (size as f64).powi(3) / 6.0
 }
 
-/// Seconds of `count` sweeps through this number of values.
-pub(crate) fn sweeps(count: usize, values: f64) -> f64 {
-    PLAIN * count as f64 * values
+/// Seconds of `count` sweeps through this number of values of a dense triangle.
+pub fn sweeps(count: usize, values: f64) -> f64 {
+    4e-10 * count as f64 * values
 }
 
 /// Seconds of the entries of the inverse in the pattern of the factor.
-pub(crate) fn selected_inverse(analysis: &Analysis) -> f64 {
+pub fn selected_inverse(analysis: &Analysis) -> f64 {
     FACTORISATIONS * factorisation(analysis)
 }
 
 /// Learns the pace from a small factorisation, if there is a deadline and nothing was timed before.
-pub(crate) fn learn(watch: &Watch) {
+pub fn learn(watch: &Watch) {
     if watch.time_left().is_none() || watch.pace().is_some() {
         return;
     }

@@ -33,7 +33,7 @@ use serde::{Serialize, Serializer};
 
 use crate::certificate::Examination;
 use crate::engine::{Engine, factored};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::watch::Watch;
 use crate::linear::{check_finite, largest};
 use crate::method::Start;
@@ -83,6 +83,21 @@ impl<T> Derivative<T> {
             Derivative::Unknown { why } => Derivative::Unknown { why: why.clone() },
         }
     }
+
+    /// Its value, if the exact answer is known to be smooth; otherwise `None`.
+    pub fn proven(&self) -> Option<&T> {
+        if let Derivative::Proven(value) = self { Some(value) } else { None }
+    }
+
+    /// `proven`, `one-sided`, `undecided` or `unknown`.
+    pub fn verdict(&self) -> &'static str {
+        match self {
+            Derivative::Proven(_) => "proven",
+            Derivative::OneSided { .. } => "one-sided",
+            Derivative::Undecided { .. } => "undecided",
+            Derivative::Unknown { .. } => "unknown",
+        }
+    }
 }
 
 impl<T> Derivative<Result<T, String>> {
@@ -100,23 +115,6 @@ impl<T> Derivative<Result<T, String>> {
             Derivative::Unknown { why } => Err(why),
         };
         found.unwrap_or_else(|why| Derivative::Unknown { why })
-    }
-}
-
-impl<T> Derivative<T> {
-    /// Its value, if the exact answer is known to be smooth; otherwise `None`.
-    pub fn proven(&self) -> Option<&T> {
-        if let Derivative::Proven(value) = self { Some(value) } else { None }
-    }
-
-    /// `proven`, `one-sided`, `undecided` or `unknown`.
-    pub fn verdict(&self) -> &'static str {
-        match self {
-            Derivative::Proven(_) => "proven",
-            Derivative::OneSided { .. } => "one-sided",
-            Derivative::Undecided { .. } => "undecided",
-            Derivative::Unknown { .. } => "unknown",
-        }
     }
 }
 
@@ -148,8 +146,7 @@ impl<T: Serialize> Serialize for Derivative<T> {
 ///
 /// // A spring of stiffness 2, pushed with force 3 towards a wall at 1: the wall takes 3 - 2 x 1 = 1.
 /// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
-/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
-/// let problem = ContactProblem::new(stiffness, vec![3.0], one(1.0)?, vec![1.0])?;
+/// let problem = ContactProblem::new(SymmetricMatrix::of_diagonal(vec![2.0]), vec![3.0], one(1.0)?, vec![1.0])?;
 /// let prepared = Prepared::new(&problem, &Settings::default())?;
 ///
 /// // The force on the wall, -lambda, falls by 2 for each unit of gap, grows with the load, and falls with the stiffness.
@@ -244,10 +241,7 @@ impl Derivatives {
     }
 
     /// What one linear system gives: at a kink, and for undecided rows, with all of them open, and with all closed.
-    fn by_linear_system<T>(
-        &self,
-        of: impl Fn(&ContactSet) -> Result<Option<T>, Error>,
-    ) -> Result<Derivative<T>, Error> {
+    fn by_linear_system<T>(&self, of: impl Fn(&ContactSet) -> Result<Option<T>>) -> Result<Derivative<T>> {
         let RowStates { closed, weak, .. } = match &self.rows {
             Ok(rows) => rows,
             Err(why) => return Ok(Derivative::Unknown { why: why.to_string() }),
@@ -255,7 +249,7 @@ impl Derivatives {
         let mut all = closed.clone();
         weak.iter().for_each(|&row| all.insert(row));
         let sets = if weak.is_empty() { vec![closed] } else { vec![closed, &all] };
-        let mut found = sets.into_iter().filter_map(|set| of(set).transpose()).collect::<Result<Vec<T>, Error>>()?;
+        let mut found = sets.into_iter().filter_map(|set| of(set).transpose()).collect::<Result<Vec<T>>>()?;
         Ok(match found.pop() {
             None => Derivative::Unknown { why: NOT_HELD.to_string() },
             Some(only) if weak.is_empty() => Derivative::Proven(only),
@@ -266,9 +260,8 @@ impl Derivatives {
         })
     }
 
-    /// The tangent for a growing parameter at a kink: a contact problem of the weak rows, with the pressing rows held.
-    /// `None` if its set is not confirmed.
-    fn one_sided(&self, rows: &RowStates, change: &Change) -> Result<Option<Tangent>, Error> {
+    /// The tangent at a kink: a contact problem of the weak rows, others held. `None` if its set is not confirmed.
+    fn one_sided(&self, rows: &RowStates, change: &Change) -> Result<Option<Tangent>> {
         let (problem, RowStates { closed, weak, .. }) = (&self.problem, rows);
         let distances = self.on_first_rows(&change.distance);
         let held: Vec<usize> = closed.iter().collect();
@@ -291,7 +284,7 @@ impl Derivatives {
 
     /// `K x - B_C' y = force`, `B_C x = distances` on the rows of `closed`: with a factor, corrected by residuals in
     /// twice the precision. `None` if the rows do not hold the body, or follow from each other.
-    fn held(&self, closed: &ContactSet, force: &[f64], distances: &[f64]) -> Result<Option<Tangent>, Error> {
+    fn held(&self, closed: &ContactSet, force: &[f64], distances: &[f64]) -> Result<Option<Tangent>> {
         let watch = &self.settings.watch;
         let is_exact = self.engine.hierarchy().is_none();
         // Open rows have no part in the system; their distances only must fit the pattern of infinite gaps.
@@ -332,13 +325,11 @@ impl Derivatives {
         Ok(Some(Tangent { displacement: x, multiplier: self.problem.split(y).concat(), error }))
     }
 
-    /// Number of rows as they were given: those of B and the equality rows.
     fn given_rows(&self) -> usize {
         self.problem.inequalities() + self.problem.equality_rows()
     }
 
-    /// Values of the rows as they were given, for all rows of the problem: an equality is held by the first of its two
-    /// rows.
+    /// Values of the rows as given, for all rows of the problem: an equality is held by the first of its two rows.
     fn on_first_rows(&self, given: &[f64]) -> Vec<f64> {
         let mut values = given.to_vec();
         values.resize(self.problem.rows(), 0.0);
@@ -383,8 +374,7 @@ impl Prepared {
     }
 }
 
-/// The derivatives of an answer of `problem`, with a factor or a hierarchy of their own.
-pub fn derivatives(problem: &ContactProblem, solution: &Solution, settings: &Settings) -> Result<Derivatives, Error> {
+pub fn derivatives(problem: &ContactProblem, solution: &Solution, settings: &Settings) -> Result<Derivatives> {
     // A derivative takes the method of its answer.
     let method = if solution.method.starts_with("mprgp") { Method::Mprgp } else { Method::ActiveSet };
     Prepared::new(problem, &settings.clone().by(method))?.derivatives(solution)

@@ -2,7 +2,7 @@
 
 use crate::certificate::{Bounding, Examination, norm_on_equalities};
 use crate::engine::Engine;
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::watch::Watch;
 use crate::linear::{Dependence, ExactSum, largest};
 use crate::problem::ContactProblem;
@@ -19,8 +19,7 @@ const DUST: f64 = 1e-20;
 
 /// The rows of the exact answer. Sets are those of all rows of the problem, one row of each equality included.
 #[derive(Clone, Debug)]
-pub(super) struct RowStates {
-    /// The rows that press.
+pub struct RowStates {
     pub closed: ContactSet,
     /// The rows that may be open or closed; all others that do not press have a gap.
     pub weak: Vec<usize>,
@@ -28,22 +27,21 @@ pub(super) struct RowStates {
     pub is_kink: bool,
 }
 
-/// The rows of the exact answer of `problem`, of which `solution` is the answer in doubles, with these multipliers of
-/// all rows; or why nothing is known.
-pub(super) fn rows_of(
+/// The rows of the exact answer, from one in doubles with these multipliers of all rows; or why nothing is known.
+pub fn rows_of(
     problem: &ContactProblem,
     engine: &Engine,
     solution: &Solution,
     answer: [&Vec<f64>; 2],
     watch: &Watch,
-) -> Result<Result<RowStates, &'static str>, Error> {
+) -> Result<Result<RowStates, &'static str>> {
     problem.check_answer(answer[0], answer[1])?;
     let proven = match &solution.proven {
         Some(proven) => Some(proven.clone()),
-        None => proven_here(problem, engine, answer.map(Vec::as_slice), watch)?,
+        None => proven(problem, engine, answer.map(Vec::as_slice), watch)?,
     };
     let Some(ProvenSet { open, closed }) = proven else {
-        return Ok(Err(match problem.has_free_mode() {
+        return Ok(Err(match problem.free_motions() > 0 {
             true => "contact alone holds the body: no row is proven",
             false => "no bound on the error of the answer is known: no row is proven",
         }));
@@ -65,20 +63,14 @@ pub(super) fn rows_of(
 }
 
 /// The proof by the data of the engine, or by a factor of the certificate.
-fn proven_here(
-    problem: &ContactProblem,
-    engine: &Engine,
-    [displacement, multiplier]: [&[f64]; 2],
-    watch: &Watch,
-) -> Result<Option<ProvenSet>, Error> {
-    let answer = [displacement, multiplier];
+fn proven(problem: &ContactProblem, engine: &Engine, answer: [&[f64]; 2], watch: &Watch) -> Result<Option<ProvenSet>> {
     // Travels have no bound by the data of an engine.
     if engine.hierarchy().is_none() && !problem.without_stiffness().is_empty() {
         return Examination::of(problem, answer, &Bounding::OwnFactor)?.proof(None);
     }
     let by = engine.bounding(watch);
-    let (two_sided, of_rows) = problem.two_sided(multiplier);
-    let evidence = Examination::of(&two_sided, [displacement, &of_rows], &by)?.certificate()?.evidence;
+    let (two_sided, of_rows) = problem.two_sided(answer[1]);
+    let evidence = Examination::of(&two_sided, [answer[0], &of_rows], &by)?.certificate()?.evidence;
     // Without a norm at hand there is no factor of the stiffness alone.
     let by_engine = !matches!(by, Bounding::OwnFactor);
     let proven = if by_engine { Examination::of(problem, answer, &by)?.proof(evidence)? } else { None };
@@ -90,25 +82,22 @@ fn proven_here(
     Examination::of(problem, answer, &Bounding::Factor(norm))?.proof(None)
 }
 
-/// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: every force is in
-/// balance, and every condition holds, without any rounding. The answer is unique, because a bound on its error is
-/// known.
+/// The closed and the weak rows, if the answer with the rows of `set` held is exact in doubles: all conditions hold
+/// without any rounding. The answer is unique, because its error has a bound.
 fn exact_answer(
     problem: &ContactProblem,
     engine: &Engine,
     set: &ContactSet,
-    [displacement, multiplier]: [&Vec<f64>; 2],
+    answer: [&Vec<f64>; 2],
     watch: &Watch,
 ) -> Option<RowStates> {
     if engine.hierarchy().is_some() {
         return None;
     }
     // An equality has one row here.
-    let (mut u, mut lambda) = (displacement.clone(), problem.split(multiplier.clone()).concat());
+    let (mut u, mut lambda) = (answer[0].clone(), problem.split(answer[1].clone()).concat());
     lambda.resize(problem.rows(), 0.0);
-    for row in (0..problem.rows()).filter(|&row| !set.contains(row)) {
-        lambda[row] = 0.0;
-    }
+    ((0..problem.rows()).filter(|&row| !set.contains(row))).for_each(|row| lambda[row] = 0.0);
     let size = largest(&problem.contact().mul_transposed(&lambda)).max(largest(problem.load()));
     for _ in 0..MOST_CORRECTIONS {
         let rest = problem.accurate_residual(&u, &lambda);
@@ -131,8 +120,7 @@ fn without_dust(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&value| if value.abs() <= least { 0.0 } else { value }).collect()
 }
 
-/// The closed and the weak rows of an answer in which an equality has a multiplier of either sign on its first row;
-/// `None` if it is not exact.
+/// The closed and the weak rows of an answer, an equality as its first row of either sign; `None` if it is not exact.
 fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<RowStates> {
     let mut sums = vec![ExactSum::default(); problem.dofs()];
     for (i, j, stiffness) in problem.stiffness().lower().triplets() {
@@ -164,16 +152,12 @@ fn exact_rows(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Option<Row
             }
             false => 1,
         };
-        if equalities.contains(&row) {
-            if sign != 0 {
-                return None;
-            }
-            continue;
-        }
+        let is_equality = equalities.contains(&row);
         match (sign, lambda[row]) {
+            (0, _) if is_equality => {}
             (0, 0.0) => weak.push(row),
             (0, force) if force < 0.0 => closed.insert(row),
-            (1, 0.0) => {}
+            (1, 0.0) if !is_equality => {}
             _ => return None,
         }
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::factored::{Factored, Norm};
 use crate::certificate::EnergyNorm;
 use crate::cost::{check_time, seconds};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::{Analysis, Augmented, AugmentedMatrix, Cholesky, FactorError, largest};
 use crate::plan::{Layout, Tried};
 use crate::problem::ContactProblem;
@@ -18,7 +18,7 @@ use crate::transform::{Condensation, RowSelection, Scaling};
 const LOST_PIVOT: f64 = 1e-10;
 
 /// Scales, condenses and factorises `problem`, for the method of an attempt.
-pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<Factored, Error> {
+pub fn factored(problem: &ContactProblem, settings: &Settings) -> Result<Factored> {
     let Settings { threads, watch, .. } = settings;
     let clock = Instant::now();
     watch.step("ordering", 0);
@@ -47,10 +47,7 @@ pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<
     }
     // If no columns come last, the contact sets have the order of the stiffness.
     let analysis = last.is_empty().then_some(analysis);
-    let condensation = match is_condensed {
-        true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
-        false => None,
-    };
+    let condensation = if is_condensed { condensed(cholesky.as_ref(), &scaling, &last, settings)? } else { None };
     let norm = match (cholesky, &analysis) {
         (None, _) => Norm::Missing,
         (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
@@ -91,14 +88,13 @@ pub(crate) fn factored(problem: &ContactProblem, settings: &Settings) -> Result<
     })
 }
 
-/// The factor of a stiffness with an analysed pattern, `None` if it is not definite to working precision, and its
-/// smallest pivot, zero without a factor. It may serve to condense the problem.
+/// The factor of an analysed stiffness, `None` if it is not definite, and its smallest pivot, zero without a factor.
 fn definite(
     problem: &ContactProblem,
     scaling: &Scaling,
     (analysis, is_condensed): (&Analysis, bool),
     settings: &Settings,
-) -> Result<(Option<Cholesky>, f64), Error> {
+) -> Result<(Option<Cholesky>, f64)> {
     if problem.stiffness().diagonal().contains(&0.0) {
         return Ok((None, 0.0));
     }
@@ -118,15 +114,13 @@ fn definite(
     }
 }
 
-/// The condensation onto the contact dofs `last`, from the factor of the stiffness or, without one, from that of the
-/// stiffness with its rows; `None` if even all rows together do not hold the body: the full problem then gives the
-/// reason.
+/// The condensation onto `last`, by the factor of K or of K with its rows; `None` if these do not hold the body.
 fn condensed(
     cholesky: Option<&Cholesky>,
     scaling: &Scaling,
     last: &[usize],
     settings: &Settings,
-) -> Result<Option<Condensation>, Error> {
+) -> Result<Option<Condensation>> {
     let factor = match cholesky {
         Some(cholesky) => Some(cholesky.clone()),
         None => factor_with_rows(scaling, last, settings)?,
@@ -157,7 +151,7 @@ fn augmented(
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` if it is not safely definite.
-fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
+fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>> {
     let augmented = AugmentedMatrix::with_last(scaling.stiffness(), &scaling.contact, contact_dofs)?;
     let augmented = augmented.with_threads(settings.threads.unwrap_or(1));
     check_time(&settings.watch, seconds::factorisation(augmented.analysis()))?;

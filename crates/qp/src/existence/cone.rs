@@ -22,7 +22,7 @@ const TURNS: usize = 2;
 
 /// A linear function of the coordinates.
 #[derive(Clone, Debug)]
-pub(super) struct Row {
+pub struct Row {
     pub values: Vec<Twice>,
     /// The sum of the magnitudes of all terms of the values, the scale of rounding.
     pub terms: f64,
@@ -35,7 +35,7 @@ impl Row {
 }
 
 /// The cone `{a: rows a <= 0, fixed a = 0}`.
-pub(super) struct Cone<'a> {
+pub struct Cone<'a> {
     pub rows: Vec<&'a Row>,
     pub fixed: Option<&'a Row>,
     /// Rounding of a sum, as a share of its terms.
@@ -79,8 +79,7 @@ impl Cone<'_> {
         }
     }
 
-    /// The same as the answer to a contact problem with K = I, in doubles. The fixed function may be negative: in
-    /// doubles two opposed rows would leave nothing.
+    /// The same by a contact problem with K = I. The fixed row may be negative: two opposed rows would leave nothing.
     fn nearest_in_doubles(&self, c: &[f64]) -> Option<Vec<f64>> {
         let (size, dofs) = (largest(c), c.len());
         if dofs == 0 || !(size > 0.0 && size.is_finite()) {
@@ -108,7 +107,7 @@ impl Cone<'_> {
 
 /// The coordinates at which some rows are zero: the orthogonal complement of their orthogonal directions.
 #[derive(Default)]
-pub(super) struct ConeFace {
+pub struct ConeFace {
     directions: Vec<Vec<Twice>>,
 }
 

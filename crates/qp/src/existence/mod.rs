@@ -20,7 +20,7 @@ use cone::{Cone, ConeFace, Row};
 use super::cost::{Kept, check_memory, check_time, seconds};
 use super::settings::Settings;
 use crate::certificate::{NullMode, Rounding, mode_along, not_convex_along};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::twice::Sum;
 use crate::linear::{Analysis, FactorError, NullSpace, Twice, across, extend, generic, largest, norm, subtract};
 use crate::problem::ContactProblem;
@@ -33,8 +33,7 @@ const BALANCED: f64 = 1e-9;
 /// A row presses if its force on a dof exceeds this share of the forces in balance there; smaller forces are rounding.
 const PRESSED: f64 = 1e-13;
 
-/// If an answer leaves forces out of balance that may move a row by more than this share of its displacement and gap,
-/// it does not show which rows touch.
+/// An answer whose imbalance may move a row by more than this share of its displacement and gap shows no touching rows.
 const SETTLED_FORCES: f64 = 1e-4;
 
 /// A row that is open by less than this share of its displacement and gap may touch.
@@ -46,16 +45,14 @@ const STRAINED: f64 = 1e-13;
 /// An answer is settled to this share of its largest displacement, in the units of equal stiffness.
 const SETTLED_TO: f64 = 1e-11;
 
-/// A body moves at most this many times as far as a dof that a force moves alone: enough for bodies that are not
-/// slender.
+/// A body moves at most this many times as far as a dof that a force moves alone, unless it is slender.
 const BENDS: f64 = 1e3;
 
-/// A direction is a rigid-body mode if it differs from one by less than this share of its length: null vectors of
-/// rounded entries have about ten digits.
+/// A direction within this share of its length is a rigid-body mode: null vectors of rounded entries have ten digits.
 const RIGID: f64 = 1e-6;
 
 /// The analysis of the stiffness, if memory and time allow its factorisation.
-fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, Error> {
+fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis> {
     check_memory(problem, Kept::Nothing, settings.memory)?;
     check_time(&settings.watch, seconds::ordering(problem))?;
     let analysis = Analysis::of(problem.stiffness())?;
@@ -66,13 +63,13 @@ fn analysed(problem: &ContactProblem, settings: &Settings) -> Result<Analysis, E
 }
 
 /// The problem in the units of `scaling`.
-fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem, Error> {
+fn scaled(problem: &ContactProblem, scaling: &Scaling) -> Result<ContactProblem> {
     let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
     ContactProblem::computed(scaling.stiffness().clone(), load, scaling.contact.clone(), gap)
 }
 
 /// A scaled problem with a basis of the null space of its stiffness.
-pub(super) struct Existence {
+pub struct Existence {
     scaled: ContactProblem,
     pub scaling: Scaling,
     null: NullSpace,
@@ -81,14 +78,13 @@ pub(super) struct Existence {
     rows: Vec<(usize, Row)>,
     /// `-f'N`: as a row, the load stops directions against it.
     against_load: Row,
-    /// The softest motion that the stiffness holds within the rounding of its entries, and the share of its terms with
-    /// which.
+    /// The softest motion that the stiffness holds within rounding, and the share of its terms with which.
     within_rounding: Option<(usize, f64)>,
 }
 
 impl Existence {
     /// The null space of the stiffness of `problem`; `None` if the range of doubles does not allow it.
-    pub fn of(problem: &ContactProblem, settings: &Settings) -> Result<Option<Self>, Error> {
+    pub fn of(problem: &ContactProblem, settings: &Settings) -> Result<Option<Self>> {
         let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
         let Ok(scaled) = scaled(problem, &scaling) else { return Ok(None) };
         let shifts = scaled.stiffness().shifts(analysed(&scaled, settings)?)?;
@@ -122,8 +118,7 @@ impl Existence {
         Existence { scaled, scaling, null, rounding, rows, against_load, within_rounding: None }
     }
 
-    /// Springs at as many dofs as there are motions without energy to rounding, which hold all of them: their entries
-    /// of a matrix.
+    /// Springs at as many dofs as there are motions without energy, which hold all: their entries of a matrix.
     pub fn springs(&self) -> Vec<(usize, usize, f64)> {
         let (kind, mut motions, mut springs) = (self.scaling.identity(0), self.null.found.clone(), Vec::new());
         while let Some(motion) = motions.pop() {
@@ -144,8 +139,7 @@ impl Existence {
         Some(Error::Unbounded { mode: mode.in_words(), direction: self.expanded(&mode) })
     }
 
-    /// The reason why existence is not decided, if the stiffness holds a motion by no more than the rounding of its
-    /// entries.
+    /// The reason why existence is not decided, if the stiffness holds a motion by rounding alone.
     pub fn doubt(&self) -> Option<String> {
         let (dof, share) = self.within_rounding?;
         Some(format!(
@@ -157,7 +151,7 @@ impl Existence {
 
     /// Checks that no mode leads from the best answer to others. A problem with a displacement that meets its rows, and
     /// without a mode that the load drives, has an answer.
-    pub fn check_unique(&self, problem: &ContactProblem, solution: &Solution, tolerance: f64) -> Result<(), Error> {
+    pub fn check_unique(&self, problem: &ContactProblem, solution: &Solution, tolerance: f64) -> Result<()> {
         let certificate = &solution.certificate;
         // No row stops such a mode from any start: with it, a problem has more than one answer if it has any.
         let drift = if certificate.penetration <= tolerance { self.idle(&|_| true) } else { None };
@@ -179,7 +173,7 @@ impl Existence {
     /// A mode without energy that leads from an answer to others.
     ///
     /// If a displacement differs from u by a d with `K d = 0` and `f'd = 0`, it has the same energy. It meets the rows
-    /// if d closes no row that touches.
+    /// if d closes no row that touches, also not on the way to where it has opened all rows that u violates.
     fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<NullMode> {
         let u = &solution.displacement;
         let violation = problem.accurate_violation(u);
@@ -207,7 +201,14 @@ impl Existence {
             let closed = TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row] + unbalanced[row];
             violation[row] >= -closed || solution.multiplier[row] != 0.0
         };
-        self.idle(&touches).filter(|mode| self.rows.iter().all(|&(row, _)| !presses(row) || mode.approach[row] == 0.0))
+        let violation = self.scaling.gap(&violation, 0);
+        let leads_on = |NullMode { approach, .. }: &NullMode| {
+            let leaving = self.rows.iter().filter(|(row, _)| approach[*row] < 0.0);
+            let way = leaving.fold(0.0, |way: f64, &(row, _)| way.max(violation[row] / -approach[row]));
+            let stays_open = |row: usize| approach[row] <= 0.0 || violation[row] + way * approach[row] < 0.0;
+            self.rows.iter().all(|&(row, _)| stays_open(row) && (!presses(row) || approach[row] == 0.0))
+        };
+        self.idle(&touches).filter(leads_on)
     }
 
     /// Returns `true` if these forces of the rows hold the load on all modes without energy: they do so to the digits
@@ -288,8 +289,7 @@ fn shares_of_forces(problem: &ContactProblem, solution: &Solution) -> Vec<f64> {
     shares
 }
 
-/// Returns `true` if a displacement, of one body, is one of the rigid-body modes that the problem declares. `bodies`
-/// gives the body of each dof.
+/// Returns `true` if a displacement of one of these bodies is a rigid-body mode that the problem declares.
 fn is_rigid(problem: &ContactProblem, displacement: &[f64], bodies: &[usize]) -> bool {
     let Some(modes) = problem.near_null() else { return false };
     let body = bodies[place_of_largest(displacement)];

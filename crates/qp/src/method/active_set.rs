@@ -18,7 +18,7 @@ use std::cell::{Cell, LazyCell};
 use std::collections::HashSet;
 
 use super::{Ending, Outcome, SIGN_TOLERANCE, ScaledProblem};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::{Cholesky, largest};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
@@ -45,16 +45,14 @@ const WEIGHT: f64 = 65536.0;
 /// Corrections of the multipliers; four or five suffice if the closed rows are consistent.
 const CORRECTIONS: usize = 25;
 
-/// A correction by the compliance below this is the last: a factor that is safely definite makes the next one its
-/// square, or less.
+/// A correction by the compliance below this is the last: the next one would be its square, or less.
 const SQUARED: f64 = 1e-9;
 
 /// Closed rows that still miss their gap by this, relative to the displacement, contradict each other.
 const CONTRADICTION: f64 = 1e-9;
 
-/// Runs the loop on a scaled problem from the contact set `closed`, over at most `most_iterations` sets, each with a
-/// factorisation.
-pub fn solve(scaled: &ScaledProblem, mut closed: ContactSet, most_iterations: usize) -> Result<Outcome, Error> {
+/// Runs the loop from the contact set `closed`, over at most `most_iterations` sets, each with a factorisation.
+pub fn solve(scaled: &ScaledProblem, mut closed: ContactSet, most_iterations: usize) -> Result<Outcome> {
     let (mut displacement, mut multiplier) = (vec![0.0; scaled.problem.dofs()], vec![0.0; scaled.problem.rows()]);
     let (mut history, mut seen) = (Vec::new(), HashSet::new());
     let (mut rule, mut ending) = (Rule::Exchange, Ending::Unsettled);
@@ -103,9 +101,8 @@ pub fn solve(scaled: &ScaledProblem, mut closed: ContactSet, most_iterations: us
     Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, ending, variant })
 }
 
-/// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free; `None` if
-/// they do not hold the body, or contradict each other.
-pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>, Error> {
+/// Balance of forces with the rows of `closed` held; `None` if they do not hold the body, or contradict each other.
+pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Option<Equilibrium>> {
     let balance = match by_compliance(scaled, closed, |_| true) {
         None => scaled.hold(closed, WEIGHT)?.map(|cholesky| equilibrium(scaled.problem, &cholesky, closed)),
         balance => balance,
@@ -138,8 +135,7 @@ impl Rule {
     }
 }
 
-/// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding and beyond a share of the
-/// largest displacement or multiplier.
+/// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding and a share of the largest.
 fn wrong_rows(
     scaled: &ScaledProblem,
     balance: &Equilibrium,
@@ -175,7 +171,6 @@ fn sum_of(values: &[f64]) -> f64 {
 /// Balance of forces with the rows of a set closed.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
-    /// Displacement, one entry per dof.
     pub displacement: Vec<f64>,
     /// Multiplier, one entry per row, zero on open rows, of either sign on closed ones.
     pub multiplier: Vec<f64>,
@@ -211,8 +206,7 @@ fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &ContactSe
 }
 
 /// The same by the compliance of the rows, which solves the saddle-point system itself; `None` if closed rows follow
-/// from others. A balance that is not the one sought, because it `is_near` no answer, is left as it is after the first
-/// correction.
+/// from others. A balance that `is_near` no answer is corrected but once.
 fn by_compliance(
     scaled: &ScaledProblem,
     closed: &ContactSet,

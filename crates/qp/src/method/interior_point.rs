@@ -4,7 +4,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT};
 
 use super::{Ending, Outcome, ScaledProblem};
-use crate::error::{Error, LinearError};
+use crate::error::{LinearError, Result};
 use crate::linear::guarded;
 use crate::linear::watch::Watch;
 use crate::linear::{SparseMatrix, exponent, largest, ldexp};
@@ -22,8 +22,7 @@ const NOTHING_EXPONENT: i32 = 60;
 
 const UNIT_CORRECTIONS: usize = 4;
 
-/// Number of steps after which more do not help: on ill-conditioned data the residuals stall while the barrier
-/// parameter falls.
+/// After these steps more do not help: on ill-conditioned data the residuals stall while the barrier falls.
 const MAX_STEPS: u32 = 50;
 
 /// Options of [`Method::Qp`](crate::Method::Qp): its tolerance, and whether the active-set loop settles its contact
@@ -58,26 +57,27 @@ impl Default for InteriorPoint {
 /// Solves the QP of a scaled problem to a tolerance that is relative to data of order one. The contact set is that of
 /// the rows with `z / z_scale > s / s_scale`, and `iterations` counts the steps over all units that were tried.
 ///
-/// Clarabel's report that a problem is unbounded or infeasible, or that it came no further, is not believed: the
-/// outcome is then unsettled, and at rest if there is no answer in it.
-pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<Outcome, Error> {
+/// Clarabel's claims of unbounded or infeasible problems are not believed: the outcome is then unsettled.
+pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<Outcome> {
     let (problem, watch) = (scaled.problem, &scaled.watch);
     if problem.rows() == 0 {
         return Ok(unpolished(Outcome::at_rest(problem, Ending::Settled)));
     }
-    let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
+    // Units in which the answer is of order one, as exponents of two: if a fine grid makes the stiffness large beside
+    // the forces, multipliers of order one in the scaled problem would need a displacement far beyond the gap.
+    let mut units = [0, exponent(largest(problem.load()))];
     let (mut iterations, mut corrections) = (0, 0);
     loop {
-        let found = solve_in_unit(problem, tolerance, unit, watch)?;
+        let found = solve_in_units(problem, tolerance, units, watch)?;
         iterations += found.iterations;
         let size = largest(&found.displacement);
-        let displacement = exponent(size) - unit.displacement;
-        let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
+        let next = [exponent(size), exponent(largest(&found.multiplier).max(largest(problem.load())))];
+        let [displacement, force] = [next[0] - units[0], next[1] - units[1]];
         let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT || size == 0.0;
         if fits || watch.is_over() || displacement < -NOTHING_EXPONENT || corrections == UNIT_CORRECTIONS {
             return Ok(Outcome { iterations, ..found });
         }
-        unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
+        units = next;
         corrections += 1;
     }
 }
@@ -88,20 +88,13 @@ fn unpolished(outcome: Outcome) -> Outcome {
     Outcome { history, variant: "-unpolished", ..outcome }
 }
 
-/// Units in which the answer is of order one, as exponents of two: if a fine mesh makes the stiffness large beside the
-/// forces, multipliers of order one in the scaled problem would need a displacement far beyond the gap.
-#[derive(Clone, Copy)]
-struct Unit {
-    displacement: i32,
-    force: i32,
-}
-
-/// Solves the QP of the rows within reach in a unit.
-fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &Watch) -> Result<Outcome, Error> {
-    let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit.displacement)).collect();
+/// Solves the QP of the rows within reach in these units of displacement and force.
+fn solve_in_units(problem: &ContactProblem, tolerance: f64, units: [i32; 2], watch: &Watch) -> Result<Outcome> {
+    let [length, force] = units;
+    let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -length)).collect();
     let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
     let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();
-    let q: Vec<f64> = problem.load().iter().map(|&f| -ldexp(f, -unit.force)).collect();
+    let q: Vec<f64> = problem.load().iter().map(|&f| -ldexp(f, -force)).collect();
     let settings = DefaultSettings::<f64> {
         verbose: false,
         tol_gap_abs: tolerance,
@@ -113,7 +106,7 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
     };
     let cones = [SupportedConeT::NonnegativeConeT(rows.len())];
     let (mut p, a) = (csc(&problem.stiffness().upper()), csc(&problem.contact().select_rows(&rows)));
-    p.nzval.iter_mut().for_each(|value| *value = ldexp(*value, unit.displacement - unit.force));
+    p.nzval.iter_mut().for_each(|value| *value = ldexp(*value, length - force));
     let watch = watch.clone();
     let solved = guarded(|| {
         let mut solver = DefaultSolver::new(&p, &q, &a, &near_gap, &cones, settings)?;
@@ -127,13 +120,13 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
     let failed = |reason: String| LinearError::Numerical { step: "Clarabel", reason };
     let answer = solved.map_err(failed)?.map_err(|error: SolverError| failed(error.to_string()))?;
     let iterations = answer.iterations as usize;
-    let displacement: Vec<f64> = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect();
+    let displacement: Vec<f64> = answer.x.iter().map(|&x| ldexp(x, length)).collect();
     let mut multiplier = vec![0.0; problem.rows()];
     let mut contact_set = ContactSet::open(problem.rows());
     let (z_scale, s_scale) = (largest(&answer.z), largest(&answer.s).min(1.0));
     for (near, &row) in rows.iter().enumerate() {
         let (z, s) = (answer.z[near], answer.s[near]);
-        multiplier[row] = -ldexp(z.max(0.0), unit.force);
+        multiplier[row] = -ldexp(z.max(0.0), force);
         if z * s_scale > s * z_scale {
             contact_set.insert(row);
         }

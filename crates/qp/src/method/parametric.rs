@@ -15,7 +15,7 @@
 //! pivoting).
 
 use super::SIGN_TOLERANCE;
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::watch::Watch;
 use crate::linear::{UpperTriangle, dot, largest, subtract};
 use crate::solution::ContactSet;
@@ -29,10 +29,11 @@ const CHANGES_PER_ROW: usize = 50;
 /// The compliance of the contact rows, with the violation of the free body as a function of t.
 #[derive(Clone, Debug)]
 pub struct ParametricLcp {
-    /// G, column by column.
-    matrix: Vec<f64>,
-    constant: Vec<f64>,
-    slope: Vec<f64>,
+    /// G (m x m), column by column.
+    pub matrix: Vec<f64>,
+    /// b(t) = `constant` + t `slope`.
+    pub constant: Vec<f64>,
+    pub slope: Vec<f64>,
 }
 
 /// A row that changes sides on the way between two gaps: it touches, or it releases.
@@ -67,11 +68,6 @@ impl Piece {
 }
 
 impl ParametricLcp {
-    /// From the symmetric matrix G (m x m, column by column) and b(t) = `constant` + t `slope`.
-    pub fn new(matrix: Vec<f64>, constant: Vec<f64>, slope: Vec<f64>) -> Self {
-        ParametricLcp { matrix, constant, slope }
-    }
-
     /// The violation of every row for a unit multiplier of one row.
     fn column(&self, row: usize) -> &[f64] {
         &self.matrix[row * self.rows()..][..self.rows()]
@@ -98,7 +94,7 @@ impl ParametricLcp {
     }
 
     /// Multipliers of the set `closed`, and violations of all other rows, as linear functions of t.
-    fn respond(&self, closed: &ContactSet) -> Result<Linear, Error> {
+    fn respond(&self, closed: &ContactSet) -> Result<Linear> {
         let (list, factor) = self.independent(closed);
         if list.len() < closed.count() {
             return Err(LinearError::Numerical {
@@ -122,7 +118,7 @@ impl ParametricLcp {
     }
 
     /// Walks from t = 0 to t = 1, from the set that holds at the beginning.
-    pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>), Error> {
+    pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>)> {
         let (mut pieces, mut events) = (Vec::new(), Vec::new());
         let mut closed = ContactSet::open(self.rows());
         self.independent(start).0.into_iter().for_each(|row| closed.insert(row));
@@ -166,9 +162,8 @@ impl ParametricLcp {
         Err(LinearError::Numerical { step: "the exact path", reason }.into())
     }
 
-    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found from
-    /// `next` by block pivoting on these rows, and by single pivots if that does not help.
-    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: [f64; 2]) -> Result<ContactSet, Error> {
+    /// The set that holds next, with slopes of right signs on `undecided` rows: by block, then by single pivots.
+    fn turn(&self, mut next: ContactSet, undecided: &[usize], scales: [f64; 2]) -> Result<ContactSet> {
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {
             let line = self.respond(&next)?;

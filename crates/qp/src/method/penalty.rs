@@ -13,7 +13,7 @@
 use std::collections::HashSet;
 
 use super::{Ending, Outcome, ScaledProblem};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::{Cholesky, largest};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
@@ -63,15 +63,14 @@ const FINAL_SOLVES: usize = 2;
 /// A relative error in the energy norm, and the bound on that of an answer (displacement, multiplier).
 pub type AccuracyGoal<'a> = (f64, &'a dyn Fn(&[f64], &[f64]) -> f64);
 
-/// Climbs the ladder on a scaled problem from the contact set `closed`, by at most `most_iterations` factorisations on
-/// all rungs together. It ends at its goal, if there is one.
+/// Climbs the ladder from the set `closed`, by at most `most_iterations` factorisations in all, or to its goal.
 pub fn solve(
     scaled: &ScaledProblem,
     ladder: Penalty,
     closed: ContactSet,
     most_iterations: usize,
     goal: Option<AccuracyGoal>,
-) -> Result<Outcome, Error> {
+) -> Result<Outcome> {
     let problem = scaled.problem;
     let (displacement, violation) = (vec![0.0; problem.dofs()], vec![f64::NEG_INFINITY; problem.rows()]);
     let mut climb = Climb { closed, displacement, violation, history: Vec::new(), ending: Ending::Unsettled };
@@ -115,7 +114,7 @@ struct Climb {
 
 impl Climb {
     /// One rung: exchanges the rows of the set until it returns, or until the loop must end.
-    fn settle(&mut self, scaled: &ScaledProblem, penalty: f64, most_iterations: usize) -> Result<(), Error> {
+    fn settle(&mut self, scaled: &ScaledProblem, penalty: f64, most_iterations: usize) -> Result<()> {
         let mut seen = HashSet::new();
         self.ending = Ending::Unsettled;
         while self.ending == Ending::Unsettled

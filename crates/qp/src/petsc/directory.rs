@@ -27,7 +27,9 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
         let message = format!("the stiffness is {size} x {columns}; it must have as many columns as rows");
         return Err(stiffness.wrong_shape(message).into());
     }
-    let places = Places::of(indices(&directory.join(FREE), size)?, size);
+    let (free, mut dof) = (indices(&directory.join(FREE), size)?, vec![SUPPORTED; size]);
+    free.iter().enumerate().for_each(|(number, &place)| dof[place as usize] = number as u32);
+    let places = Places { free, dof };
     let load = places.load(&directory.join(LOAD))?;
     let contact = places.rows(RowReader::open(&directory.join(CONTACT))?)?;
     let gap = gap(&directory.join(GAP), (CONTACT, contact.rows()))?;
@@ -57,7 +59,6 @@ fn fault(file: &Path, message: String) -> LinearError {
     LinearError::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
 }
 
-/// The places of the free dofs in the stiffness.
 struct Places {
     /// The place in the stiffness of each free dof, increasing.
     free: Vec<u32>,
@@ -66,12 +67,6 @@ struct Places {
 }
 
 impl Places {
-    fn of(free: Vec<u32>, size: usize) -> Self {
-        let mut dof = vec![SUPPORTED; size];
-        free.iter().enumerate().for_each(|(number, &place)| dof[place as usize] = number as u32);
-        Places { free, dof }
-    }
-
     fn load(&self, file: &Path) -> Result<Vec<f64>, LinearError> {
         let load = vector(file, f64::is_finite, "finite")?;
         if load.len() != self.dof.len() {
@@ -87,8 +82,7 @@ impl Places {
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }
 
-    /// Leaves out the entries of supported components, which must be zero, in the last row, of the stiffness that of
-    /// place `own`; what stands on its diagonal has no meaning.
+    /// Leaves out entries of supported components, which must be zero but on their diagonal, in the row of place `own`.
     fn leave_out(&self, rows: &mut RowReader, own: Option<usize>) -> Result<(), LinearError> {
         let (supported, mut kept) = (own.filter(|&own| self.dof[own] == SUPPORTED), 0);
         for entry in 0..rows.columns.len() {

@@ -13,8 +13,8 @@ use crate::linear::file::open_regular;
 const PIECE: usize = 1 << 20;
 
 /// Bytes of an integer and of a real.
-pub(super) const INTEGER: u64 = 4;
-pub(super) const REAL: u64 = 8;
+pub const INTEGER: u64 = 4;
+pub const REAL: u64 = 8;
 
 /// Bytes before the lengths of the rows of a sparse matrix, or the values of a dense one.
 const HEADER: u64 = 4 * INTEGER;
@@ -23,7 +23,7 @@ const HEADER: u64 = 4 * INTEGER;
 const ENTRIES: u64 = 3 * INTEGER;
 
 /// A file, read from some byte on.
-pub(super) struct Source {
+pub struct Source {
     path: PathBuf,
     reader: BufReader<File>,
     byte: u64,
@@ -114,7 +114,7 @@ impl Source {
 }
 
 /// Reads a vector with values that satisfy `is_allowed`; `allowed` says the same in words.
-pub(super) fn vector(path: &Path, is_allowed: fn(f64) -> bool, allowed: &str) -> Result<Vec<f64>, Error> {
+pub fn vector(path: &Path, is_allowed: fn(f64) -> bool, allowed: &str) -> Result<Vec<f64>, Error> {
     let mut source = Source::open(path, VECTOR)?;
     let length = source.count("values")?;
     source.ends_at(2 * INTEGER + REAL * length as u64, || format!("a vector of {length} values"))?;
@@ -127,7 +127,7 @@ pub(super) fn vector(path: &Path, is_allowed: fn(f64) -> bool, allowed: &str) ->
 }
 
 /// Reads a set of indices that increase and lie below `most`.
-pub(super) fn indices(path: &Path, most: usize) -> Result<Vec<u32>, Error> {
+pub fn indices(path: &Path, most: usize) -> Result<Vec<u32>, Error> {
     let mut source = Source::open(path, INDICES)?;
     let length = source.count("indices")?;
     source.ends_at(INTEGER * (2 + length as u64), || format!("an index set of {length}"))?;
@@ -153,7 +153,7 @@ fn read_header(path: &Path) -> Result<(Source, [usize; 2], i32), Error> {
 }
 
 /// A sparse matrix that is read row by row.
-pub(super) struct RowReader {
+pub struct RowReader {
     /// Rows and columns.
     pub shape: (usize, usize),
     pub entries: usize,
@@ -251,7 +251,7 @@ impl RowReader {
 }
 
 /// The columns of a matrix of `rows` rows that is stored with all its entries.
-pub(super) fn dense_columns(path: &Path, rows: usize) -> Result<Vec<Vec<f64>>, Error> {
+pub fn dense_columns(path: &Path, rows: usize) -> Result<Vec<Vec<f64>>, Error> {
     let (mut source, [found, count], announced) = read_header(path)?;
     if found != rows || count == 0 {
         let message = format!("it is {found} x {count}, but it must have {rows} rows, as the stiffness, and a column");

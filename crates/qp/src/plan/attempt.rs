@@ -9,11 +9,11 @@ use crate::settings::{Condense, Method, Settings};
 use crate::solution::Certificate;
 
 /// Iterations of the active-set loop after which its start counts as poor.
-pub(crate) const PATIENCE: usize = 16;
+pub const PATIENCE: usize = 16;
 
 /// The unknowns of a method with a factor, and the order of its elimination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Arrangement {
+pub enum Arrangement {
     /// The stiffness is condensed onto the contact dofs, if that pays.
     Condensed,
     /// All dofs, those of the rows last: the bound of the error takes less memory.
@@ -34,7 +34,7 @@ impl Arrangement {
 
 /// What must have happened before an attempt, or a step of it, is made; with the same in words.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct When {
+pub struct When {
     pub words: &'static str,
     pub holds: fn(&History) -> bool,
 }
@@ -43,28 +43,27 @@ const fn when(words: &'static str, holds: fn(&History) -> bool) -> When {
     When { words, holds }
 }
 
-pub(super) const ALWAYS: When = when("", |_| true);
+pub const ALWAYS: When = when("", |_| true);
 
 /// An attempt after others; an elimination has no refinement of its own.
-pub(super) const SHORT: When = when("if the answer falls short", |past| past.falls_short() || past.is_unbalanced());
+pub const SHORT: When = when("if the answer falls short", |past| past.falls_short() || past.is_unbalanced());
 
-pub(super) const REFUSED: When =
+pub const REFUSED: When =
     when("if memory or time do not allow the attempt before, or its sets cost too much", History::is_refused);
 
-pub(super) const SHORT_OF_MULTIGRID: When = when("if multigrid falls short", |past| {
+pub const SHORT_OF_MULTIGRID: When = when("if multigrid falls short", |past| {
     past.falls_short() && past.records.iter().any(|record| record.means == Means::Multigrid)
 });
 
-pub(super) const SHORT_OF_UNSETTLED: When =
+pub const SHORT_OF_UNSETTLED: When =
     when("if the method does not settle and its answer falls short", |past| past.falls_short() && past.is_unsettled());
 
-pub(super) const SHORT_OF_SHORTCUT: When = when("if a faster method falls short", |past| {
+pub const SHORT_OF_SHORTCUT: When = when("if a faster method falls short", |past| {
     past.falls_short() && past.last_tried().is_some_and(|tried| tried.is_shortcut)
 });
 
-/// An answer whose conditions hold, with an error bound that does not exceed the effect of rounding the displacement,
-/// can only miss an accuracy beyond that.
-pub(super) const SHORT_ON_CONDENSED: When = when("if the answer on condensed dofs falls short", |past| {
+/// An answer whose conditions hold, with a bound within rounding, can only miss an accuracy beyond that.
+pub const SHORT_ON_CONDENSED: When = when("if the answer on condensed dofs falls short", |past| {
     let is_condensed = past.last_tried().is_some_and(|tried| tried.condensed_dofs.is_some());
     let is_exact =
         |best: &Certificate| best.conditions_hold(past.settings.goal().tolerance) && best.energy_error_excess == 0.0;
@@ -73,7 +72,7 @@ pub(super) const SHORT_ON_CONDENSED: When = when("if the answer on condensed dof
 
 /// A step of an attempt, its condition and its reason.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rung {
+pub struct Rung {
     pub step: Step,
     pub when: When,
     pub because: &'static str,
@@ -101,7 +100,7 @@ const REPAIRABLE: When = when("if the answer falls short", |past| {
     })
 });
 
-pub(super) const WITH_FACTOR: &[Rung] = &[
+pub const WITH_FACTOR: &[Rung] = &[
     rung(Step::Method, ALWAYS, ""),
     FREE_MOTION,
     rung(
@@ -144,9 +143,9 @@ pub(super) const WITH_FACTOR: &[Rung] = &[
     rung(Step::Repair, REPAIRABLE, "the same for the answer of the dual method"),
 ];
 
-pub(super) const WITH_MULTIGRID: &[Rung] = &[rung(Step::Method, ALWAYS, ""), FREE_MOTION];
+pub const WITH_MULTIGRID: &[Rung] = &[rung(Step::Method, ALWAYS, ""), FREE_MOTION];
 
-pub(super) const OF_EXISTENCE: &[Rung] = &[
+pub const OF_EXISTENCE: &[Rung] = &[
     rung(
         Step::Existence,
         when("if an answer has no bound", |past| !past.was_in_doubt() && past.is_doubtful()),
@@ -170,10 +169,9 @@ pub(super) const OF_EXISTENCE: &[Rung] = &[
     ),
 ];
 
-/// One attempt: its means, its method and its rule for condensing, its start, its limits, its condition, its reason,
-/// and the steps that may follow with the same means.
+/// One attempt, with its condition, its reason, and the steps that may follow with the same means.
 #[derive(Clone, Debug)]
-pub(crate) struct Attempt {
+pub struct Attempt {
     pub means: Means,
     /// [`Method::Auto`] if the rules choose it, once the pattern of the stiffness is analysed.
     pub method: Method,

@@ -1,15 +1,13 @@
 //! Factor or multigrid, by the estimates of seconds and bytes.
 
 use crate::cost::{Estimate, Smooth};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::memory::in_words as written;
 use crate::problem::ContactProblem;
-use crate::settings::Method;
-use crate::settings::Settings;
+use crate::settings::{Method, Settings};
 use crate::solution::{Expected, Why};
 
-/// The direct path is exact and its bound proven: multigrid replaces it only if the direct path takes this many times
-/// as long.
+/// The direct path is exact, its bound proven: multigrid replaces it only if it takes this many times as long.
 const CLEARLY: f64 = 1.15;
 
 /// The name of the methods with a factor in the comparison with multigrid.
@@ -23,13 +21,12 @@ const FIRST_DIGITS: f64 = 1.5;
 /// An estimate may be too large by this factor.
 const UNSURE: f64 = 2.0;
 
-/// Cycles of multigrid, or sets on all dofs, go on until they have cost this many times what the other way is expected
-/// to cost.
+/// Cycles of multigrid, or sets on all dofs, may cost this many times what the other way is expected to cost.
 const OUTRUN: f64 = 2.0;
 
 /// The chosen path, with the reason.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Choice {
+pub enum Choice {
     /// The direct path: a factorisation of the stiffness, unless its sets take more seconds than this.
     Factor { reason: String, most_seconds: f64 },
     /// Multigrid: it is much faster, unless it takes more cycles than this, or nothing else fits into the memory.
@@ -42,9 +39,8 @@ impl Estimate {
         !matches!(self.choose(most_bytes), Ok(Choice::Factor { .. }) | Err(_))
     }
 
-    /// The path to take within `most_bytes`. If a factor is not clearly too large, only its analysis decides whether it
-    /// fits.
-    pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
+    /// The path within `most_bytes`. If a factor is not clearly too large, its analysis decides whether it fits.
+    pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice> {
         let ratio = self.direct_seconds / self.multigrid_seconds;
         let fits = self.direct_bytes <= most_bytes;
         // For a body, constants alone give a poor hierarchy.
@@ -119,7 +115,7 @@ impl Estimate {
     }
 
     /// The reason for multigrid if a solve with a factor takes `factor` bytes, which is too much.
-    pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
+    pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String> {
         let multigrid = self.multigrid_bytes;
         if multigrid > most_bytes {
             return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes, ended: None });
@@ -135,9 +131,8 @@ impl Estimate {
 }
 
 /// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from
-/// multigrid. A factor gives a proven bound; it is taken if it fits into the memory and is estimated to take at most
-/// this number of seconds.
-pub(crate) fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, settings: &Settings) -> Result<bool, Error> {
+/// multigrid. A factor gives a proven bound; it is taken if it fits and takes at most these seconds.
+pub fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, settings: &Settings) -> Result<bool> {
     let (estimate, memory) = (Estimate::of(problem), settings.memory.unwrap_or(f64::INFINITY));
     if estimate.direct_bytes > memory {
         return estimate.without_factor(estimate.direct_bytes, memory).map(|_| false);

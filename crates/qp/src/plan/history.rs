@@ -12,7 +12,7 @@ const SURE_CONDITIONS: f64 = 1e-9;
 
 /// What a step works on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Means {
+pub enum Means {
     Problem,
     /// A factor of the stiffness.
     Factor,
@@ -22,7 +22,7 @@ pub(crate) enum Means {
 
 /// What is done in an attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Step {
+pub enum Step {
     Method,
     /// The active set, from the set that the interior point reaches.
     InteriorPoint,
@@ -43,11 +43,10 @@ pub(crate) enum Step {
 
 /// The start of an attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum From {
+pub enum From {
     /// The start that the caller gave, or none.
     Given,
-    /// The start that the caller gave, or the set that a few cycles of multigrid find: contact is everywhere, and a
-    /// front of closed rows moves by one row of nodes with every set.
+    /// The start that the caller gave, or the set of a few cycles: a front of closed rows moves one row of nodes a set.
     Cycles,
     /// The best answer of the attempts so far.
     Best,
@@ -56,7 +55,7 @@ pub(crate) enum From {
 
 /// The method of an attempt, once its data are prepared, with its number of unknowns if they are fewer than all.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Tried {
+pub struct Tried {
     pub method: Method,
     pub condensed_dofs: Option<usize>,
     /// `true` if the answer may fall short of a goal that a slower way would reach.
@@ -72,14 +71,14 @@ pub(crate) struct Tried {
 
 impl Tried {
     /// The method and its unknowns in words, if the rules chose it.
-    pub(super) fn in_words(&self) -> String {
+    pub fn in_words(&self) -> String {
         let (method, on, multiplications) = (self.method.name(), unknowns(self.condensed_dofs), self.multiplications);
         format!("of such methods {method}, {on}, for {multiplications:.1e} multiplications of a factor")
     }
 }
 
 /// The unknowns of a method in words; with this number of dofs, if they are fewer than all.
-pub(super) fn unknowns(condensed_dofs: Option<usize>) -> String {
+pub fn unknowns(condensed_dofs: Option<usize>) -> String {
     condensed_dofs.map_or_else(|| "on all dofs".to_string(), |dofs| format!("condensed to {dofs} dofs"))
 }
 
@@ -200,11 +199,11 @@ impl Best {
 pub struct History {
     pub settings: Settings,
     /// `true` if the program chooses the method, and the stiffness has all entries.
-    pub(super) is_dense: bool,
+    pub is_dense: bool,
     /// Estimated seconds of a multigrid hierarchy, if it was compared and fits into the memory.
-    pub(super) hierarchy_seconds: Option<f64>,
+    pub hierarchy_seconds: Option<f64>,
     /// `true` if equalities are eliminated first.
-    pub(super) is_eliminated: bool,
+    pub is_eliminated: bool,
     pub first: usize,
     pub records: Vec<Record>,
     pub best: Option<Best>,
@@ -216,7 +215,6 @@ impl History {
         self.certificate().is_some_and(|best| self.settings.goal().is_met_by(best))
     }
 
-    /// Returns `true` if no answer meets the goal.
     pub fn falls_short(&self) -> bool {
         !self.is_certified()
     }
@@ -246,11 +244,10 @@ impl History {
     }
 
     fn last_answer(&self) -> Option<&Answered> {
-        let answers = self.records.iter().rev().filter_map(|record| match &record.ended {
+        self.records.iter().rev().find_map(|record| match &record.ended {
             Ended::Answered(answered) if !record.improves() => Some(answered),
             _ => None,
-        });
-        { answers }.next()
+        })
     }
 
     /// Returns `true` if the last method met a motion that no row stops, or a negative energy.
@@ -268,12 +265,10 @@ impl History {
         self.is_unsettled() && !self.is_unheld()
     }
 
-    /// The last attempt with prepared data.
     pub fn last_tried(&self) -> Option<&Tried> {
         self.records.iter().rev().find_map(|record| record.tried.as_ref())
     }
 
-    /// The last method.
     pub fn method(&self) -> Method {
         self.last_tried().map_or(self.settings.method, |tried| tried.method)
     }
@@ -298,8 +293,7 @@ impl History {
         asks && last.is_some_and(is_new) && self.method().wants_best()
     }
 
-    /// Returns `true` if sets of this method that do not settle wander on a dense stiffness: the interior point follows
-    /// at once, so that a bound of where they ended is not worth its time.
+    /// Returns `true` if sets of this method wander on a dense stiffness: the interior point follows, without a bound.
     pub fn wanders_by(&self, method: Method) -> bool {
         self.is_dense && method == Method::ActiveSet
     }
@@ -327,8 +321,7 @@ impl History {
         is_unsettled && self.spent() + next > first.limits.most_seconds
     }
 
-    /// Returns `true` if multigrid fits, and the attempt before was refused for lack of memory or time, or its sets
-    /// cost more.
+    /// Returns `true` if multigrid fits, and memory or time refused the attempt before, or its sets cost more.
     pub fn is_refused(&self) -> bool {
         let Some(seconds) = self.hierarchy_seconds else { return false };
         match self.records.last().map(|record| &record.ended) {
@@ -344,7 +337,6 @@ impl History {
         self.records.into_iter().filter_map(refused).last()
     }
 
-    /// Returns `true` if existence was looked at.
     pub fn was_in_doubt(&self) -> bool {
         self.records.iter().any(|record| record.step == Step::Existence)
     }
@@ -361,13 +353,11 @@ impl History {
         let failed = |record: &Record| matches!(&record.ended, Ended::Failed(error) if error.leaves_existence_open());
         let Some(best) = &self.best else { return self.records.iter().any(failed) };
         let certificate = &best.solution.certificate;
-        match certificate.has_bound() {
-            true => certificate.loose_dofs > 0,
-            false => {
-                let is_singular = best.tried.is_some_and(|tried| tried.is_singular);
-                self.is_unheld() || is_singular || certificate.conditions_hold(self.settings.goal().tolerance)
-            }
+        if certificate.has_bound() {
+            return certificate.loose_dofs > 0;
         }
+        let is_singular = best.tried.is_some_and(|tried| tried.is_singular);
+        self.is_unheld() || is_singular || certificate.conditions_hold(self.settings.goal().tolerance)
     }
 
     /// The tolerance to which the conditions of an answer must hold if its rows are to tell whether it is the only one.

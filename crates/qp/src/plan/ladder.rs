@@ -9,9 +9,9 @@ use super::attempt::{
 };
 use super::choice::Choice;
 use super::history::{Answered, Ended, From, History, Means, Record, Step};
-use super::nearly_linear;
+use super::layout::check_rank;
 use crate::cost::{Estimate, is_everywhere, starts_near};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::Analysis;
 use crate::method::interior_point::InteriorPoint;
 use crate::method::mprgp::Limits;
@@ -41,36 +41,34 @@ const AIM: f64 = 0.3;
 /// A relative imbalance of forces below this is rounding.
 const IMBALANCE_ROUNDING: f64 = 1e-15;
 
-/// A piece has at least this number of unknowns, if all parts together have twice as many: smaller parts are solved
-/// faster together.
+/// A piece has at least this number of unknowns: smaller parts are solved faster together.
 const PIECE: usize = 2000;
 
 /// What is taken out of a problem before all attempts, so that the rest is solved by a ladder of its own.
 #[derive(Clone, Debug)]
-pub(crate) enum Door {
+pub enum Door {
     Equalities,
     Pieces(Arc<Pieces>),
 }
 
-/// Everything that may be tried, in order.
 #[derive(Clone, Debug)]
-pub(crate) struct Ladder {
+pub struct Ladder {
     /// The first has no steps if there is a door.
     pub attempts: Vec<Attempt>,
     pub door: Option<Door>,
-    pub(super) settings: Settings,
+    pub settings: Settings,
     /// The comparison of factor and multigrid, if the program chooses.
-    pub(super) choice: Option<(Estimate, Choice)>,
+    pub choice: Option<(Estimate, Choice)>,
     /// `true` if the program chooses the method, and the stiffness has all entries.
-    pub(super) is_dense: bool,
+    pub is_dense: bool,
     /// The reason for multigrid if a factor was refused before.
-    pub(super) refusal: Option<String>,
+    pub refusal: Option<String>,
 }
 
 impl Ladder {
-    /// The ladder for `problem`, if this number of gaps or loads shares the prepared data. It stays in one piece if a
-    /// start is given, or if its data are kept.
-    pub fn of(problem: &ContactProblem, gaps: usize, is_whole: bool, settings: &Settings) -> Result<Self, Error> {
+    /// The ladder for `problem`, if this number of gaps or loads shares the prepared data. It is whole if a start is
+    /// given, or data are kept.
+    pub fn of(problem: &ContactProblem, gaps: usize, is_whole: bool, settings: &Settings) -> Result<Self> {
         let mut ladder = Ladder {
             attempts: Vec::with_capacity(8),
             door: None,
@@ -79,7 +77,7 @@ impl Ladder {
             is_dense: settings.method == Method::Auto && Analysis::is_dense_for(problem.stiffness()),
             refusal: None,
         };
-        nearly_linear::check(problem)?;
+        check_rank(problem)?;
         let equalities = problem.equalities().len();
         if equalities > 0 {
             let because = format!("{equalities} pair{} of rows leave no room", if equalities == 1 { "" } else { "s" });
@@ -124,8 +122,7 @@ impl Ladder {
         Some(ladder)
     }
 
-    /// The same for a problem that the question of existence gives rise to: only a motion that no row stops raises it
-    /// again, and the stiffness of such a problem is regular.
+    /// The same for a regular problem that the question of existence raises: only a free motion asks again.
     pub fn without_existence(mut self) -> Self {
         self.attempts.pop();
         self
@@ -214,8 +211,7 @@ impl Ladder {
         History { settings, is_dense, hierarchy_seconds, is_eliminated, first, records, best: None }
     }
 
-    /// The next step; `None` if the goal is met and nothing more is to be gained, if nothing is left, if an error is
-    /// decided, or if the watch is over.
+    /// The next step; `None` if nothing is to be gained or left, an error is decided, or the watch is over.
     pub fn next(&self, history: &History) -> Option<Record> {
         let Some(last) = history.records.last() else { return Some(self.step_at(history.first, 0)) };
         if matches!(last.ended, Ended::Decided(_) | Ended::Prepared) || history.settings.watch.is_over() {

@@ -1,10 +1,11 @@
-//! The layout of a factor: its arrangement, the method on it, and the parts that are kept, within memory and time.
+//! The layout of a factor: its arrangement, the method on it, and the parts that are kept, within memory and time; and
+//! programs that are nearly linear, with a stiffness of low rank and an answer in a corner of their rows.
 
 use super::attempt::Arrangement;
 use super::history::unknowns;
 use crate::certificate::EnergyNorm;
 use crate::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::Analysis;
 use crate::problem::ContactProblem;
 use crate::settings::{Condense, Method, Settings};
@@ -21,15 +22,14 @@ const LONG: usize = 1000;
 const LONG_ROWS: usize = 8;
 
 /// An order of elimination with its structure, and its kept parts.
-pub(crate) struct Layout {
+pub struct Layout {
     pub analysis: Analysis,
     /// The dofs that are eliminated last.
     pub last: Vec<usize>,
     /// `true` if the stiffness is condensed onto the contact dofs.
     pub is_condensed: bool,
     pub method: Method,
-    /// `true` if the factor of the stiffness is kept beside those of the contact sets; if not, it is computed again for
-    /// the certificate.
+    /// `true` if the factor of the stiffness is kept beside those of sets; if not, the certificate makes it again.
     pub keeps_norm: bool,
 }
 
@@ -38,7 +38,7 @@ impl Layout {
     ///
     /// # Errors
     /// [`Error::TooLarge`] with the least memory that a layout needs, [`Error::OutOfTime`], [`Error::Interrupted`].
-    pub fn within(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<Self, Error> {
+    pub fn within(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<Self> {
         check_room_to_order(problem, settings)?;
         let mut refused: Option<Error> = None;
         for arrangement in Arrangement::under(settings.condense) {
@@ -46,21 +46,20 @@ impl Layout {
             if settings.watch.acknowledge() {
                 return Err(Error::Interrupted);
             }
-            let (last, dense) = match arrangement {
-                Arrangement::Condensed => {
-                    let last = scaling.contact.columns_with_entries();
-                    let dense = Kept::dense(last.len());
-                    (last, dense)
-                }
-                Arrangement::RowsLast => {
-                    let last = EnergyNorm::last_dofs(problem.stiffness(), &scaling.contact);
-                    let boundary = Kept::boundary(last.len());
-                    if last.is_empty() { continue } else { (last, boundary) }
-                }
-                Arrangement::AnyOrder => (Vec::new(), Kept::Nothing),
+            let last = match arrangement {
+                Arrangement::Condensed => scaling.contact.columns_with_entries(),
+                Arrangement::RowsLast => EnergyNorm::last_dofs(problem.stiffness(), &scaling.contact),
+                Arrangement::AnyOrder => Vec::new(),
+            };
+            let (values, count, by_interior_point) = (0, last.len(), false);
+            let least = match arrangement {
+                Arrangement::Condensed => Kept::Condensed { values, contact_dofs: count, by_interior_point },
+                Arrangement::RowsLast if last.is_empty() => continue,
+                Arrangement::RowsLast => Kept::Factors { values, last: count, by_interior_point },
+                Arrangement::AnyOrder => Kept::Nothing,
             };
             // The dense matrices on the boundary alone may be too large: the analysis would then waste memory.
-            if let Err(error) = check_memory(problem, dense, settings.memory) {
+            if let Err(error) = check_memory(problem, least, settings.memory) {
                 keep_least(&mut refused, error);
                 continue;
             }
@@ -85,7 +84,7 @@ impl Layout {
     }
 
     /// The layout with the method and the parts that fit into memory and time.
-    fn fitting(mut self, problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+    fn fitting(mut self, problem: &ContactProblem, settings: &Settings) -> Result<Self> {
         let mut choices = vec![(self.method, true)];
         // The chosen method may take more memory than available, or too much time before its first step.
         if settings.method == Method::Auto && self.method != Method::ActiveSet {
@@ -121,7 +120,6 @@ impl Layout {
         matches!(self.method, Method::Qp(_))
     }
 
-    /// Method and unknowns in words.
     pub fn in_words(&self) -> String {
         let method = self.method.name();
         let (multiplications, entries) = (self.analysis.multiplications(), self.analysis.factor_entries());
@@ -141,7 +139,7 @@ impl Layout {
 }
 
 /// Refuses a problem that is too large to be ordered, with a rough estimate of its factor.
-fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<()> {
     match check_memory(problem, Kept::Nothing, settings.memory) {
         Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
             let factor_entries = Estimate::of(problem).factor_entries;
@@ -171,7 +169,7 @@ fn keep_least(refused: &mut Option<Error>, other: Error) {
 /// Returns `true` if most sets of rows that may be closed are dependent, so that the loop of the active set wanders: if
 /// a problem has more long rows than dofs in them, or if most of its dofs have no stiffness, as in a linear program.
 /// Equalities are closed in every answer, and do not count.
-pub(super) fn is_crowded(problem: &ContactProblem) -> bool {
+fn is_crowded(problem: &ContactProblem) -> bool {
     let mut bounded: Vec<bool> = problem.gap().iter().map(|gap| gap.is_finite()).collect();
     problem.equalities().iter().flat_map(|pair| [pair.row, pair.opposed]).for_each(|row| bounded[row] = false);
     let of_dof = |dof: usize| problem.contact().column(dof).filter(|&(row, b)| b != 0.0 && bounded[row]);
@@ -182,8 +180,103 @@ pub(super) fn is_crowded(problem: &ContactProblem) -> bool {
 }
 
 /// The method for a factor of this size: the active set, but where its sets are many.
-pub(super) fn by_rules(problem: &ContactProblem, multiplications: f64, is_condensed: bool) -> Method {
+fn by_rules(problem: &ContactProblem, multiplications: f64, is_condensed: bool) -> Method {
     let rows = problem.rows();
     let is_long_chain = !is_condensed && rows > LONG && multiplications < CHAIN * rows as f64;
     if is_long_chain || is_crowded(problem) { Method::qp() } else { Method::ActiveSet }
+}
+
+/// Fewer motions without energy than this are found one by one, and cost little.
+const FEW_MOTIONS: usize = 256;
+
+/// A program is nearly linear if the stiffness holds less than one of this many directions.
+const ONE_OF: usize = 4;
+
+/// Most unknowns of a program that is looked at: its factor of low rank is dense.
+const MOST_UNKNOWNS: usize = 20_000;
+
+/// A pivot below this share of its diagonal entry is rounding.
+const NO_PIVOT: f64 = 1e-10;
+
+/// Refuses a nearly linear program: each of its motions without energy would have to be stopped by a row of its own.
+pub fn check_rank(problem: &ContactProblem) -> Result<()> {
+    // An equality takes a direction away.
+    let unknowns = problem.dofs().saturating_sub(problem.equalities().len());
+    let most = unknowns.saturating_sub(FEW_MOTIONS).min(unknowns / ONE_OF);
+    if most == 0 || unknowns <= FEW_MOTIONS || unknowns > MOST_UNKNOWNS || !is_crowded(problem) {
+        return Ok(());
+    }
+    match rank_within(problem, most) {
+        None => Ok(()),
+        Some(rank) => Err(Error::NearlyLinear { rank, unknowns }),
+    }
+}
+
+/// The rank of the stiffness, by a Cholesky factor with the largest pivots; `None` if it is above `most`.
+///
+/// # Source
+/// N. J. Higham, *Analysis of the Cholesky decomposition of a semi-definite matrix*, in *Reliable Numerical
+/// Computation*, Oxford University Press (1990) 161-185.
+fn rank_within(problem: &ContactProblem, most: usize) -> Option<usize> {
+    let (lower, diagonal) = (problem.stiffness().lower(), &problem.diagonal().values);
+    let upper = lower.transposed();
+    let mut left = diagonal.clone();
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    loop {
+        let is_pivot = |dof: &usize| left[*dof] > NO_PIVOT * diagonal[*dof];
+        let share = |dof: usize| left[dof] / diagonal[dof];
+        let Some(pivot) = (0..left.len()).filter(is_pivot).max_by(|&a, &b| share(a).total_cmp(&share(b))) else {
+            return Some(columns.len());
+        };
+        if columns.len() == most {
+            return None;
+        }
+        let mut column = vec![0.0; left.len()];
+        lower.column(pivot).chain(upper.column(pivot)).for_each(|(dof, value)| column[dof] = value);
+        for earlier in &columns {
+            let share = earlier[pivot];
+            column.iter_mut().zip(earlier).for_each(|(value, of_earlier)| *value -= share * of_earlier);
+        }
+        let root = left[pivot].sqrt();
+        column.iter_mut().for_each(|value| *value /= root);
+        left.iter_mut().zip(&column).for_each(|(left, value)| *left -= value * value);
+        left[pivot] = 0.0;
+        columns.push(column);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `K = F'F` with F of `rank` rows, and twice as many rows as unknowns, of ten entries each.
+    fn program(unknowns: usize, rank: usize) -> ContactProblem {
+        let entry = |row: usize, dof: usize| (((row + 1) * (dof + 3) * 7919) % 1009) as f64 / 504.0 - 1.0;
+        let of = |i: usize, j: usize| (0..rank).map(|row| entry(row, i) * entry(row, j)).sum::<f64>();
+        let stiffness: Vec<_> =
+            (0..unknowns).flat_map(|j| (j..unknowns).map(move |i| (i, j))).map(|(i, j)| (i, j, of(i, j))).collect();
+        let rows: Vec<_> = (0..2 * unknowns)
+            .flat_map(|row| (0..10).map(move |at| (row, (row + 37 * at) % unknowns, 1.0 + at as f64)))
+            .collect();
+        ContactProblem::of_entries(&stiffness, &vec![1.0; unknowns], &rows, &vec![1.0; 2 * unknowns])
+    }
+
+    #[test]
+    fn the_rank_of_a_stiffness_is_counted_up_to_a_limit() {
+        assert_eq!(rank_within(&program(40, 5), 10), Some(5));
+        assert_eq!(rank_within(&program(40, 10), 10), Some(10));
+        assert_eq!(rank_within(&program(40, 11), 10), None);
+        assert_eq!(rank_within(&ContactProblem::of_entries(&[], &[0.0; 4], &[], &[]), 10), Some(0));
+    }
+
+    #[test]
+    fn a_large_program_of_low_rank_is_refused_and_a_small_one_and_a_stiff_one_are_not() {
+        assert!(check_rank(&program(FEW_MOTIONS, 3)).is_ok());
+        assert!(check_rank(&program(400, 3)).unwrap_err().to_string().contains("holds 3 of 400 directions"));
+        assert!(check_rank(&program(400, 101)).is_ok());
+        // A body of any size with one row for each node.
+        let rows: Vec<_> = (0..400).map(|row| (row, row, 1.0)).collect();
+        let chain: Vec<_> = (0..400).map(|dof| (dof, dof, 2.0)).collect();
+        assert!(check_rank(&ContactProblem::of_entries(&chain, &[0.0; 400], &rows, &[1.0; 400])).is_ok());
+    }
 }

@@ -10,10 +10,10 @@
 //! As many springs N as there are motions, if they hold all, give a generalised inverse `K+ = (K + N)^-1`, exactly. A
 //! motion that K holds by no more than the rounding of its entries counts as one without energy.
 
-use super::reuse::Prepared;
+use super::Prepared;
 use crate::certificate::{Bounding, EnergyNorm};
 use crate::cost::{Kept, check_memory};
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::existence::Existence;
 use crate::linear::memory;
 use crate::linear::watch::Watch;
@@ -110,13 +110,13 @@ impl Prepared {
 
 impl Delassus {
     /// The same with M, q and motions, for springs at these places of the diagonal.
-    fn made(mut self, springs: &[(usize, usize, f64)]) -> Result<Self, Error> {
+    fn made(mut self, springs: &[(usize, usize, f64)]) -> Result<Self> {
         let (m, contact, load) = (self.rows.len(), self.held.contact(), self.held.load());
         let motion = |&(own, _, stiffness): &(usize, usize, f64)| {
             let load: Vec<f64> = (0..load.len()).map(|dof| if dof == own { stiffness } else { 0.0 }).collect();
             self.moved(&load, &vec![0.0; m])
         };
-        let motions: Vec<Vec<f64>> = springs.iter().map(motion).collect::<Result<_, Error>>()?;
+        let motions: Vec<Vec<f64>> = springs.iter().map(motion).collect::<Result<_>>()?;
         let (closing, below): (Vec<_>, _) = (motions.iter().map(|r| contact.mul(r)).collect(), self.compliance()?);
         let entry = |i: usize, j: usize| match (i < m, j < m) {
             (true, true) => below[i.min(j)][i.abs_diff(j)],
@@ -124,18 +124,12 @@ impl Delassus {
             (false, true) => closing[i - m][j],
             (false, false) => 0.0,
         };
-        let (size, mut starts, mut places, mut values) = (self.lower.len(), vec![0], Vec::new(), Vec::new());
-        for j in 0..size {
-            for (i, value) in (0..size).map(|i| (i, entry(i, j))).filter(|entry| entry.1 != 0.0) {
-                places.push(i);
-                values.push(value);
-            }
-            starts.push(values.len());
-        }
+        let size = self.lower.len();
+        let table: Vec<f64> = (0..size * size).map(|place| entry(place / size, place % size)).collect();
         let free = self.held.accurate_violation(&self.moved(load, &vec![0.0; m])?);
         let works = motions.iter().map(|motion| dot(motion, load));
         self.offset = free.into_iter().chain(works).map(|value| -value).collect();
-        self.matrix = SparseMatrix::from_csc(size, starts, places, values)?;
+        self.matrix = SparseMatrix::from_table(size, size, &table)?;
         let whole = |motion: Vec<f64>| match &self.elimination {
             Some(elimination) => elimination.motion(&motion).into_iter().map(|value| value.rounded()).collect(),
             None => motion,
@@ -145,7 +139,7 @@ impl Delassus {
     }
 
     /// `K+ (f + B' lambda)` of the dofs that stay.
-    fn moved(&self, load: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+    fn moved(&self, load: &[f64], multiplier: &[f64]) -> Result<Vec<f64>> {
         let (loaded, mut u) = (self.held.with_load(load.to_vec())?, vec![0.0; load.len()]);
         for _ in 0..=CORRECTIONS {
             let correction = self.norm.displacement(&loaded.accurate_residual(&u, multiplier));
@@ -155,7 +149,7 @@ impl Delassus {
     }
 
     /// The lower triangle of W, column by column.
-    fn compliance(&self) -> Result<Vec<Vec<f64>>, Error> {
+    fn compliance(&self) -> Result<Vec<Vec<f64>>> {
         let (m, contact) = (self.rows.len(), self.held.contact());
         if let Some(entry) = self.norm.compliances(contact) {
             return Ok((0..m).map(|j| (j..m).map(|i| entry(i, j)).collect()).collect());

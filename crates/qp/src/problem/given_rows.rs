@@ -4,8 +4,8 @@
 use std::borrow::Cow;
 
 use super::ContactProblem;
-use super::opposed::largest_finite;
-use crate::error::{Error, LinearError};
+use super::structure::largest_finite;
+use crate::error::{Error, LinearError, Result};
 use crate::linear::equations::{FOLLOWS, Following};
 use crate::linear::{Accumulator, SparseMatrix, check_finite, largest};
 use crate::solution::{ContactSet, Iteration, ProvenSet, Solution};
@@ -60,7 +60,7 @@ impl ContactProblem {
     }
 
     /// The same with all rows, whether they follow from each other or not.
-    pub(crate) fn with_all_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self, Error> {
+    pub(crate) fn with_all_equalities(&self, rows: &SparseMatrix, values: Vec<f64>) -> Result<Self> {
         if rows.columns() != self.dofs() {
             let (found, expected) = ((rows.rows(), rows.columns()), (rows.rows(), self.dofs()));
             return Err(LinearError::Shape { name: "equality matrix", found, expected }.into());
@@ -80,12 +80,7 @@ impl ContactProblem {
     }
 
     /// The same body under another load, with the rows `open` and with those `held` as equalities, at distances of all.
-    pub(crate) fn with_held(
-        &self,
-        load: Vec<f64>,
-        [open, held]: [&[usize]; 2],
-        distances: &[f64],
-    ) -> Result<Self, Error> {
+    pub(crate) fn with_held(&self, load: Vec<f64>, [open, held]: [&[usize]; 2], distances: &[f64]) -> Result<Self> {
         let pick = |rows: &[usize]| (self.contact.select_rows(rows), rows.iter().map(|&row| distances[row]).collect());
         let ((open, gap), (held, values)) = (pick(open), pick(held));
         let problem = ContactProblem::computed(self.stiffness.clone(), load, open, gap)?;
@@ -151,8 +146,7 @@ impl ContactProblem {
         Some(("redundant-row", sentence))
     }
 
-    /// Multipliers of all rows, from those of the rows of B (m), followed by those of the equality rows (p); others
-    /// stay as they are.
+    /// Multipliers of all rows, from those of the rows of B and then of the equality rows; others stay as they are.
     pub(crate) fn of_all_rows<'a>(&self, multiplier: &'a [f64]) -> Cow<'a, [f64]> {
         let inequalities = self.inequalities();
         if self.equality_rows == 0 || multiplier.len() != inequalities + self.equality_rows {
@@ -277,44 +271,30 @@ mod tests {
     }
 
     #[test]
-    fn two_walls_overlap_by_the_length_that_is_missing_between_them() {
+    fn rows_overlap_by_the_length_that_is_missing_if_weights_cancel_and_gaps_say_more_than_rounding() {
         // u <= -1 and u >= -1/2.
-        let problem = between(1.0, [-1.0, 0.5]);
-        for weights in [[1.0, 1.0], [3.0, 3.0]] {
-            assert_eq!(problem.overlap(&[0, 1], &weights), Some(0.5));
-            assert_eq!(problem.overlap(&[1, 0], &weights), Some(0.5));
-        }
+        let walls = between(1.0, [-1.0, 0.5]);
         // Half the weights on the same row twice.
-        assert_eq!(problem.overlap(&[0, 1, 1], &[1.0, 0.5, 0.5]), Some(0.5));
-        assert_eq!(between(1.0, [1.0, -0.5]).overlap(&[0, 1], &[1.0, 1.0]), None);
-    }
-
-    #[test]
-    fn weights_that_do_not_cancel_or_are_none_prove_nothing() {
-        let problem = between(1.0, [-1.0, 0.5]);
-        for weights in [[1.0, 0.5], [1.0, -1.0], [0.0, 0.0], [f64::NAN, 1.0], [f64::INFINITY, f64::INFINITY]] {
-            assert_eq!(problem.overlap(&[0, 1], &weights), None, "{weights:?}");
+        assert_eq!(walls.overlap(&[0, 1, 1], &[1.0, 0.5, 0.5]), Some(0.5));
+        assert_eq!(walls.overlap(&[0], &[1.0, 1.0]), None);
+        for (rows, weights, overlap) in [
+            ([0, 1], [1.0, 1.0], Some(0.5)),
+            ([1, 0], [3.0, 3.0], Some(0.5)),
+            // Weights that do not cancel, or are none.
+            ([0, 1], [1.0, 0.5], None),
+            ([0, 1], [1.0, -1.0], None),
+            ([0, 1], [0.0, 0.0], None),
+            ([0, 1], [f64::NAN, 1.0], None),
+            ([0, 1], [f64::INFINITY, f64::INFINITY], None),
+            ([0, 2], [1.0, 1.0], None),
+        ] {
+            assert_eq!(walls.overlap(&rows, &weights), overlap, "{rows:?} {weights:?}");
         }
-        assert_eq!(problem.overlap(&[0, 2], &[1.0, 1.0]), None);
-        assert_eq!(problem.overlap(&[0], &[1.0, 1.0]), None);
-    }
-
-    #[test]
-    fn rows_must_overlap_by_more_than_rounding_of_their_gaps() {
+        let is_proven = |b: f64, gap: [f64; 2]| between(b, gap).overlap(&[0, 1], &[1.0, 1.0]).is_some();
+        assert!(!is_proven(1.0, [1.0, -0.5]));
+        // 1 - b of the terms 1 + b is left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 %.
+        assert!(!is_proven(1.0 - 1e-9, [-1.0, 0.92]) && is_proven(1.0 - 1e-9, [-1.0, 0.89]));
         // The gaps are 1 and the doubles next below -1; four units in the last place of both together are 8.
-        for (units, proven) in [(7.0, false), (9.0, true)] {
-            let gap = -1.0 - units * f64::EPSILON;
-            assert_eq!(between(1.0, [1.0, gap]).overlap(&[0, 1], &[1.0, 1.0]).is_some(), proven, "{units}");
-        }
-    }
-
-    #[test]
-    fn rows_that_cancel_to_a_billionth_contradict_each_other_unless_a_far_displacement_meets_both() {
-        // 1 - b of the terms 1 + b are left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 % of the
-        // terms.
-        for (gap, proven) in [([-1.0, 0.92], false), ([-1.0, 0.89], true)] {
-            let found = between(1.0 - 1e-9, gap).overlap(&[0, 1], &[1.0, 1.0]);
-            assert_eq!(found.is_some(), proven, "{gap:?}: {found:?}");
-        }
+        assert!(!is_proven(1.0, [1.0, -1.0 - 7.0 * f64::EPSILON]) && is_proven(1.0, [1.0, -1.0 - 9.0 * f64::EPSILON]));
     }
 }

@@ -1,19 +1,16 @@
 //! The contact problem as a convex QP, checked once.
 
 mod given_rows;
-mod opposed;
-mod parts;
+mod structure;
 
-pub(crate) use opposed::Equality;
-pub(crate) use parts::Parts;
+pub(crate) use structure::{Equality, Parts};
 
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use opposed::{OpposedRows, settle, without_entries};
-use parts::Diagonal;
+use structure::{Diagonal, OpposedRows, settle, without_entries};
 
-use crate::error::{Error, LinearError};
+use crate::error::{Error, LinearError, Result};
 use crate::linear::equations::Following;
 use crate::linear::multigrid::NearNullSpace;
 use crate::linear::{Accumulator, SparseMatrix, SymmetricMatrix, check_finite, check_vector};
@@ -59,14 +56,12 @@ pub struct ContactProblem {
     equalities: FoundOnce<Vec<Equality>>,
     /// The number of equality rows: the last rows are as many, and the same from the other side.
     equality_rows: usize,
-    /// The equality rows that follow from the others except for rounding, each after its value: their rows
-    /// have no gap.
+    /// The equality rows that follow from others except for rounding, each after its value: they have no gap.
     following: Arc<[(f64, Following)]>,
     /// The rows without an entry, and those of them whose gaps were rounding, with these gaps.
     pub(crate) without_entries: Arc<[usize]>,
     rounded: Vec<(usize, f64)>,
-    /// The rows that count as equalities by themselves, with a multiplier of either sign: only in a certificate, see
-    /// `two_sided`.
+    /// The rows that are equalities by themselves, with a multiplier of either sign: see `two_sided`.
     two_sided: Vec<bool>,
 }
 
@@ -115,7 +110,7 @@ impl ContactProblem {
         load: Vec<f64>,
         contact: SparseMatrix,
         gap: Vec<f64>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self> {
         let dofs = stiffness.dim();
         if contact.columns() != dofs {
             let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
@@ -164,9 +159,8 @@ impl ContactProblem {
         Ok(ContactProblem { near_null: Some(near_null), free_motions: FoundOnce::default(), ..self })
     }
 
-    /// The same with the near-null space of another problem, each of its vectors made one `of` these dofs; those that
-    /// vanish are left out.
-    pub(crate) fn with_near_null_of(self, other: &Self, of: impl Fn(&[f64]) -> Vec<f64>) -> Result<Self, Error> {
+    /// The same with the near-null space of another problem, each vector made one `of` these dofs unless it vanishes.
+    pub(crate) fn with_near_null_of(self, other: &Self, of: impl Fn(&[f64]) -> Vec<f64>) -> Result<Self> {
         let vectors = other.near_null().map_or(&[][..], |modes| modes.vectors()).iter().map(|mode| of(mode));
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
         match NearNullSpace::of_modes(vectors.filter(moves).collect()) {
@@ -247,13 +241,15 @@ impl ContactProblem {
         Ok(problem)
     }
 
-    /// The diagonal of K, computed at its first use.
     pub(crate) fn diagonal(&self) -> &Diagonal {
-        self.diagonal.get_or_init(|| Diagonal::of(&self.stiffness))
+        self.diagonal.get_or_init(|| {
+            let values = self.stiffness.diagonal();
+            Diagonal { roots: values.iter().map(|value| value.sqrt()).collect(), values }
+        })
     }
 
     /// Returns `true` if K is positive semidefinite, to rounding. One factorisation, at the first use.
-    pub(crate) fn is_semidefinite(&self) -> Result<bool, Error> {
+    pub(crate) fn is_semidefinite(&self) -> Result<bool> {
         if let Some(&found) = self.semidefinite.get() {
             return Ok(found);
         }
@@ -272,7 +268,7 @@ impl ContactProblem {
         let count = || {
             let parts = self.parts();
             let mut part_of_body = vec![0; parts.bodies()];
-            (0..self.dofs()).for_each(|dof| part_of_body[parts.body_of_dof(dof)] = parts.of_dof(dof));
+            (0..self.dofs()).for_each(|dof| part_of_body[parts.body_of_dof(dof)] = parts.of_dof[dof]);
             let largest = |forces: &[f64]| {
                 let mut of_body = vec![0.0_f64; parts.bodies()];
                 for (dof, force) in forces.iter().enumerate() {
@@ -293,23 +289,17 @@ impl ContactProblem {
         *self.free_motions.get_or_init(count)
     }
 
-    /// Returns `true` if a vector of the near-null space has no energy on one of the bodies: supports do not hold it.
-    pub(crate) fn has_free_mode(&self) -> bool {
-        self.free_motions() > 0
-    }
-
     /// Returns `true` if the stiffness is known to be singular: contact alone holds a dof or a mode.
     pub(crate) fn is_singular(&self) -> bool {
-        !self.without_stiffness().is_empty() || self.has_free_mode()
+        !self.without_stiffness().is_empty() || self.free_motions() > 0
     }
 
-    /// The parts, computed at their first use.
     pub(crate) fn parts(&self) -> &Parts {
         self.parts.get_or_init(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
 
     /// Checks that no rows contradict each other at sight; the rows that may do so are found at the first use.
-    pub(crate) fn check_rows(&self) -> Result<(), Error> {
+    pub(crate) fn check_rows(&self) -> Result<()> {
         match self.opposed_rows().check(&self.without_entries, &self.gap) {
             Err(Error::Infeasible { rows, weights, .. }) if self.equality_rows > 0 => {
                 Err(self.infeasible(&rows, &weights))
@@ -351,11 +341,7 @@ impl ContactProblem {
     /// The violation B u - g of each row, length m, in m: positive is penetration; `-inf` without an obstacle. The
     /// displacement u has length n, in m.
     pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
-        let mut violation = self.contact.mul(displacement);
-        for (value, gap) in violation.iter_mut().zip(&self.gap) {
-            *value -= gap;
-        }
-        violation
+        self.contact.mul(displacement).iter().zip(&self.gap).map(|(moved, gap)| moved - gap).collect()
     }
 
     /// The work f'd of the load on a mode d, as a share of its terms `|f|'|d|`, between -1 and 1.
@@ -367,7 +353,7 @@ impl ContactProblem {
     }
 
     /// Checks that the vectors of an answer have the lengths of the problem.
-    pub(crate) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
+    pub(crate) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<()> {
         let length = LinearError::check_length;
         length("displacement", displacement.len(), self.dofs(), "dofs")?;
         let (found, of) =
@@ -381,15 +367,10 @@ impl ContactProblem {
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
     pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
-        self.accurate_residual_of(u, &[lambda])
+        self.accurate_balance(u, &[lambda]).residual
     }
 
-    /// The same for multipliers that are given as sums, which are not rounded.
-    pub(crate) fn accurate_residual_of(&self, u: &[f64], multipliers: &[&[f64]]) -> Vec<f64> {
-        self.accurate_balance(u, multipliers).residual
-    }
-
-    /// The same, with its terms.
+    /// The same with its terms, for multipliers that are given as sums, which are not rounded.
     pub(crate) fn accurate_balance(&self, u: &[f64], multipliers: &[&[f64]]) -> Balance {
         // Summed with opposite sign, K u first: if a body moves far and bends little, its energy is so small that
         // forces rounded first would leave nothing of that energy.
@@ -419,7 +400,7 @@ impl ContactProblem {
 }
 
 /// The forces on each dof at a displacement u, with twice the working precision.
-pub(crate) struct Balance {
+pub struct Balance {
     /// `f + B' lambda - K u` at the displacement u, one entry per dof.
     pub residual: Vec<f64>,
     /// `|K u|`.
@@ -431,7 +412,7 @@ pub(crate) struct Balance {
 }
 
 /// The distances `B u - g` of a displacement that is a sum, which is not rounded.
-pub(crate) struct Distances<'a> {
+pub struct Distances<'a> {
     problem: &'a ContactProblem,
     sums: Accumulator,
 }
@@ -451,13 +432,11 @@ impl<'a> Distances<'a> {
     }
 }
 
-/// Checks that `load` has the right length and allowed values.
-pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
+pub fn check_load(load: &[f64], dofs: usize) -> Result<()> {
     Ok(check_finite("load vector", load, (dofs, "dofs"))?)
 }
 
-/// Checks that `gap` has the right length and allowed values.
-pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
+pub fn check_gap(gap: &[f64], rows: usize) -> Result<()> {
     let allowed = "finite, or +inf for a row without obstacle";
     Ok(check_vector("gap vector", gap, (rows, "contact rows"), |gap| gap > f64::NEG_INFINITY, allowed)?)
 }

@@ -1,25 +1,25 @@
 //! What is taken out of a problem before its ladder: equalities, eliminated, or pieces that nothing couples.
 
-use super::carried_out::{Run, solved};
+use super::{Run, solved};
 use crate::certificate::{Bounding, motion_along, with_rounding};
 use crate::cost::bytes;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::method::Start;
 use crate::plan::{Answered, Best, Ended, Record};
 use crate::settings::Settings;
 use crate::solution::{Certificate, ContactSet, Iteration, ProvenSet, Seconds, Solution, Why};
-use crate::transform::{Elimination, Pieces};
+use crate::transform::{Elimination, Pieces, joined};
 
 impl Run<'_> {
-    /// The answer without the equalities, and these put back; nothing if they are not eliminated, or if it is left to
-    /// the whole whether there is an answer.
-    pub(super) fn by_elimination(&mut self, record: &mut Record) -> Result<Ended, Error> {
+    /// The answer without equalities, and these put back; nothing if none is eliminated, or the whole must decide.
+    pub fn by_elimination(&mut self, record: &mut Record) -> Result<Ended> {
         let (problem, kept) = (self.problem, self.rest);
         let made = if kept.is_some() { None } else { Elimination::of(problem)? };
         let Some(elimination) = kept.map(|kept| kept.elimination).or(made.as_ref()) else { return Ok(Ended::Empty) };
+        let staying = |set: &ContactSet| elimination.rows.iter().map(|&row| set.contains(row)).collect();
         let start = &Start {
             displacement: self.start.displacement.as_deref().map(|u| elimination.staying(u)),
-            contact_set: self.start.contact_set.as_ref().map(|set| elimination.staying_rows(set)),
+            contact_set: self.start.contact_set.as_ref().map(staying),
         };
         // What is exact enough for the rest may be far from that for a whole that moves almost without energy.
         let exact = Settings { tolerance: Some(f64::MIN_POSITIVE), accuracy: None, ..self.settings.clone() };
@@ -49,8 +49,7 @@ impl Run<'_> {
             let (of_rest, Seconds { factor, certificate, .. }) = (answer.certificate, answer.seconds);
             record.stages.factor += factor;
             record.stages.certificate += certificate;
-            let seconds = Seconds { proof: 0.0, ..answer.seconds };
-            let answer = elimination.expanded(problem, Solution { seconds, ..answer });
+            let answer = elimination.expanded(problem, answer);
             // An error has the same energy in the rest, but for the rounding of the displacement.
             let of_rest = self.is_cut.then(|| [with_rounding(problem, of_rest, &answer.displacement)]);
             let norm = || kept.and_then(|kept| kept.norm.clone()).map_or(Bounding::OwnFactor, Bounding::Factor);
@@ -64,9 +63,8 @@ impl Run<'_> {
         Ok(all.map_or(Ended::Empty, Ended::Answered))
     }
 
-    /// The answers of the pieces as one; nothing if a piece has no answer of its own, or more than one: that is decided
-    /// for the whole.
-    pub(super) fn in_pieces(&mut self, pieces: &Pieces, record: &mut Record) -> Result<Ended, Error> {
+    /// The answers of the pieces as one; nothing if a piece has none or several: that is decided for the whole.
+    pub fn in_pieces(&mut self, pieces: &Pieces, record: &mut Record) -> Result<Ended> {
         let problem = self.problem;
         // The whole problem stays in memory beside the piece.
         let of_whole = bytes::of_problem(problem.dofs() as f64, problem.stiffness().entries() as f64);
@@ -83,26 +81,25 @@ impl Run<'_> {
         }
         let in_whole = |(piece, answer): (usize, &Solution)| {
             let mut certificate = answer.certificate;
-            certificate.cancellation.dof = pieces.dof(piece, certificate.cancellation.dof);
+            certificate.cancellation.dof = pieces.dofs[piece].get(certificate.cancellation.dof).copied().unwrap_or(0);
             certificate
         };
         let certificates: Vec<_> = answers.iter().enumerate().map(in_whole).collect();
-        let joined = joined(pieces, answers);
-        let Seconds { factor, certificate, proof, .. } = joined.seconds;
-        record.stages = Seconds { factor, certificate, proof, solve: 0.0 };
-        let answer = Best::of(joined, record.attempt);
+        let sum = |of: fn(&Seconds) -> f64| answers.iter().map(|answer| of(&answer.seconds)).sum();
+        let (factor, certificate) = (sum(|seconds| seconds.factor), sum(|seconds| seconds.certificate));
+        record.stages = Seconds { factor, certificate, proof: sum(|seconds| seconds.proof), solve: 0.0 };
+        let answer = Best::of(put_together(pieces, answers), record.attempt);
         self.judged(answer, &Bounding::Pieces(&certificates), record).map(Ended::Answered)
     }
 }
 
 /// The answer put together from those of the pieces, without a certificate.
-fn joined(pieces: &Pieces, answers: Vec<Solution>) -> Solution {
-    let displacement = pieces.join_dofs(answers.iter().map(|answer| &answer.displacement[..]));
-    let multiplier = pieces.join_rows(answers.iter().map(|answer| &answer.multiplier[..]));
+fn put_together(pieces: &Pieces, answers: Vec<Solution>) -> Solution {
+    let displacement = joined(&pieces.dofs, answers.iter().map(|answer| &answer.displacement[..]));
+    let multiplier = joined(&pieces.rows, answers.iter().map(|answer| &answer.multiplier[..]));
     let mut names: Vec<&str> = answers.iter().map(|answer| answer.method.as_str()).collect();
     names.sort_unstable();
     names.dedup();
-    let sum = |of: fn(&Seconds) -> f64| answers.iter().map(|answer| of(&answer.seconds)).sum();
     Solution {
         contact_set: pieces.join_sets(answers.iter().map(|answer| Some(&answer.contact_set))),
         method: names.join(" + "),
@@ -115,12 +112,7 @@ fn joined(pieces: &Pieces, answers: Vec<Solution>) -> Solution {
         cut_short: answers.iter().find_map(|answer| answer.cut_short.clone()),
         lost_pivot: answers.iter().filter_map(|answer| answer.lost_pivot).min_by(f64::total_cmp),
         condensed_dofs: answers.iter().map(|answer| answer.condensed_dofs).sum(),
-        seconds: Seconds {
-            factor: sum(|seconds| seconds.factor),
-            certificate: sum(|seconds| seconds.certificate),
-            proof: sum(|seconds| seconds.proof),
-            solve: sum(|seconds| seconds.solve),
-        },
+        seconds: Seconds::default(),
         displacement,
         multiplier,
         equality_multiplier: Vec::new(),

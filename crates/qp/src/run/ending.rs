@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use super::carried_out::{Run, solved, without_certificate};
+use super::{Run, solved, without_certificate};
 use crate::certificate::{Bounding, Examination};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::method::{Ending, Outcome, Start};
 use crate::plan::{Best, Door, Ended, Record, Step};
 use crate::solution::{Attempt, Goal, ProvenSet, Seconds, Solution};
@@ -16,8 +16,7 @@ fn fallen_short(solution: Solution, goal: Goal) -> Error {
 }
 
 impl Run<'_> {
-    /// The best answer, or the error that stands in its way.
-    pub(super) fn decided(&mut self) -> Result<Best, Error> {
+    pub fn decided(&mut self) -> Result<Best> {
         let is_decided = |record: &Record| match record.ended {
             Ended::Decided(Error::Interrupted) => self.history.best.is_none(),
             Ended::Decided(_) => true,
@@ -45,8 +44,7 @@ impl Run<'_> {
         }
     }
 
-    /// The best answer with everything that was tried.
-    pub(super) fn reported(&self, mut best: Best, proven: (Option<ProvenSet>, f64)) -> Solution {
+    pub fn reported(&self, mut best: Best, proven: (Option<ProvenSet>, f64)) -> Solution {
         let (why, reason) = (self.ladder.why(&self.history, &best), self.ladder.reason(&self.history, &best));
         let mut attempts = self.other_attempts(&best);
         attempts.append(&mut best.solution.attempts);
@@ -67,7 +65,7 @@ impl Run<'_> {
     }
 
     /// The answer in the rows as they were given, if it meets the goal.
-    pub(super) fn certified(&self, solution: Solution) -> Result<Solution, Error> {
+    pub fn certified(&self, solution: Solution) -> Result<Solution> {
         let goal = self.settings.goal();
         if goal.is_met_by(&solution.certificate) {
             let without = self.without_open_rows(&solution)?;
@@ -78,9 +76,8 @@ impl Run<'_> {
         Err(fallen_short(Solution { cut_short, ..solution }, goal))
     }
 
-    /// The answer without the rows that are closed in `solution` but proven open by its own bound: the exact answer is
-    /// the same without them. `None` if there are none, or if no such answer is certified.
-    fn without_open_rows(&self, solution: &Solution) -> Result<Option<Solution>, Error> {
+    /// The answer without rows closed in `solution` but proven open: the exact one is the same. `None` without any.
+    fn without_open_rows(&self, solution: &Solution) -> Result<Option<Solution>> {
         let Some(proven) = &solution.proven else { return Ok(None) };
         let is_open = |row: usize| solution.contact_set.contains(row) && proven.open.contains(row);
         if !(0..self.problem.rows()).any(is_open) {
@@ -132,7 +129,7 @@ impl Run<'_> {
     }
 
     /// The error if no step gave an answer: the limit of time, with the body at rest, or the last error.
-    fn without_answer(&mut self) -> Result<Error, Error> {
+    fn without_answer(&mut self) -> Result<Error> {
         let records = std::mem::take(&mut self.history.records);
         let errors = records.into_iter().filter_map(|record| match record.ended {
             Ended::Refused(error) | Ended::Failed(error) => Some(error),
@@ -151,9 +148,8 @@ impl Run<'_> {
         }
     }
 
-    /// The rows that the best answer proves, and the seconds that this took: by the prepared data, or with a factor of
-    /// its own if the problem has equalities and no data were prepared.
-    pub(super) fn proven(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
+    /// The rows that the best answer proves, and the seconds: by prepared data, or for equalities with an own factor.
+    pub fn proven(&self, best: &mut Best) -> (Option<ProvenSet>, f64) {
         let (watch, equalities) = (&self.settings.watch, self.problem.equalities());
         let by = match self.made.as_ref().or(self.kept) {
             _ if !self.settings.prove => Bounding::Nothing,

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::carried_out::{Run, Workbench, answered};
+use super::{Run, Workbench, answered};
 use crate::certificate::Bounding;
 use crate::engine::Load;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::SymmetricMatrix;
 use crate::method::Start;
 use crate::plan::{Answered, Best, Ended, Ladder, Record};
@@ -30,8 +30,7 @@ const FEWEST_STEPS: usize = 3;
 const MOST_STEPS: usize = 12;
 
 impl Run<'_> {
-    /// The answer by steps with a regular stiffness.
-    pub(super) fn by_proximal_steps(&mut self, record: &mut Record) -> Result<Ended, Error> {
+    pub fn by_proximal_steps(&mut self, record: &mut Record) -> Result<Ended> {
         let Some(existence) = &self.existence else { return Ok(Ended::Empty) };
         let before = self.history.records.iter().rev().find(|record| record.answer.is_some());
         let because = before.map_or_else(String::new, |record| record.shortfall(self.settings.goal()));
@@ -60,7 +59,7 @@ impl Run<'_> {
 ///
 /// # Source
 /// R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control Optim. 14 (1976) 877-898.
-fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>, Error> {
+fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> Result<Vec<Solution>> {
     let added = scaling.identity(STEP);
     let (load, gap) = (problem.load(), problem.gap().to_vec());
     let stiffness = problem.stiffness().combined(1.0, 1.0, &SymmetricMatrix::of_diagonal(added.clone()))?;
@@ -103,8 +102,7 @@ fn answers(scaling: &Scaling, problem: &ContactProblem, settings: &Settings) -> 
     Ok(last)
 }
 
-/// The answer of a step: unchanged, without forces that come from the added diagonal and the rounding of the
-/// displacement, and also without the displacements that such forces cause.
+/// The answer of a step, also without forces that are rounding of it, and without the displacements that they cause.
 fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: &[f64]) -> [(Vec<f64>, Vec<f64>); 3] {
     let mut rounding = vec![0.0_f64; problem.rows()];
     for (row, dof, b) in problem.contact().triplets().filter(|entry| entry.2 != 0.0) {
@@ -139,8 +137,7 @@ mod tests {
 
     #[test]
     fn steps_end_with_the_answer_when_they_gain_nothing() {
-        // A dof of stiffness 2 under a force of 4 before a wall at 3, and one that a force of 3 presses to a wall at
-        // 1/2.
+        // A dof of stiffness 2 under a force of 4 before a wall at 3, and one that a force of 3 presses to one at 1/2.
         let problem = two([2.0, 0.0], [4.0, 3.0], [3.0, 0.5]);
         let counts = Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]);
         let counted = Arc::clone(&counts);
@@ -153,8 +150,7 @@ mod tests {
         let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
         let found = answers(&scaling, &problem, &settings.started().unwrap()).unwrap();
         assert!(found.iter().all(|found| found.displacement == [2.0, 0.5] && found.multiplier[1] == -3.0));
-        // Each step multiplies the error by about 2^-20: the third leaves less than the last bit, the fourth has the
-        // length of rounding, and there is no fifth.
+        // Each step multiplies the error by 2^-20: the third leaves less than the last bit, the fourth is rounding.
         let [solves, factors] = [0, 1].map(|count| counts[count].load(Ordering::SeqCst));
         assert!((FEWEST_STEPS..=5).contains(&solves), "{solves}");
         assert_eq!(factors, 1);

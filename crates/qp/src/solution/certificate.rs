@@ -106,7 +106,7 @@ pub enum Met {
 
 /// The dof at which loads and contact forces cancel most digits of what is left for the elastic force.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Cancellation {
+pub struct Cancellation {
     /// The dof, from 0.
     pub dof: usize,
     /// `(|B|'|lambda| + |f|)_i`, the forces that cancel, in the problem's unit of force.
@@ -134,7 +134,7 @@ impl Serialize for Cancellation {
 }
 
 /// A number that is zero, or another value that says nothing, is left out of a report.
-pub(super) fn is_nothing<T: Default + PartialEq>(value: &T) -> bool {
+pub fn is_nothing<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
@@ -254,12 +254,12 @@ impl Certificate {
         if self.meets(reached) { reached } else { f64::INFINITY }
     }
 
-    /// Returns `true` if this certificate falls short by less than `share` of what `before` falls short by. One with a
-    /// bound is better than one without.
+    /// Returns `true` if this falls short by less than `share` of what `before` does. A bound is better than none.
     pub(crate) fn improves_on(&self, before: &Certificate, share: f64) -> bool {
-        match self.has_bound() == before.has_bound() {
-            true => self.worst().1 < share * before.worst().1,
-            false => self.has_bound(),
+        if self.has_bound() == before.has_bound() {
+            self.worst().1 < share * before.worst().1
+        } else {
+            self.has_bound()
         }
     }
 
@@ -274,23 +274,18 @@ impl Certificate {
 
     /// Returns `true` if this certificate is better than `before` by the factor `share`.
     pub(crate) fn gains_on(&self, before: &Certificate, goal: Goal, share: f64) -> bool {
-        match goal.is_met_by(before) {
-            true => {
-                let is_balanced =
-                    self.stationarity < share * before.stationarity && before.stationarity > goal.required();
-                goal.is_met_by(self) && (is_balanced || self.complementarity < share * before.complementarity)
-            }
-            false => self.improves_on(before, share),
+        if !goal.is_met_by(before) {
+            return self.improves_on(before, share);
         }
+        let is_balanced = self.stationarity < share * before.stationarity && before.stationarity > goal.required();
+        goal.is_met_by(self) && (is_balanced || self.complementarity < share * before.complementarity)
     }
 
     /// The same numbers, with the statement that they meet `goal`, and in which way.
     pub fn judged(mut self, goal: Goal) -> Self {
         let tolerance = goal.required();
-        self.met = self.meets(tolerance).then_some(match self.part_error_bound <= tolerance {
-            true => Met::Tolerance,
-            false => Met::Rounding,
-        });
+        let met = if self.part_error_bound <= tolerance { Met::Tolerance } else { Met::Rounding };
+        self.met = self.meets(tolerance).then_some(met);
         self
     }
 }

@@ -12,7 +12,7 @@
 //! A long equality, as a mean value over all dofs, would fill `Z'K Z`. It is cut: the sum over some dofs becomes an
 //! unknown in the place of one of them, and the sum over some of these sums, until a short equality of sums is left.
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::equations::{FOLLOWS, PIVOT, Pivot, Pivots, Remainder, Solved, Sparse, Sums, largest};
 use crate::linear::twice::Sum;
 use crate::linear::{SparseMatrix, Twice, exponent, ldexp};
@@ -25,8 +25,8 @@ const FILL: usize = 4;
 /// Entries that are not worth counting.
 const FEW: usize = 2_000_000;
 
-/// Equalities of more dofs are cut where they would fill the stiffness, into sums of `CUT`: these fill it by blocks
-/// about as large as those of a solid element.
+/// Equalities of more dofs are cut where they would fill the stiffness, into sums of `CUT`, as many as a solid cell
+/// has.
 const LONG: usize = 64;
 
 const CUT: usize = 16;
@@ -50,9 +50,8 @@ pub struct Elimination {
 }
 
 impl Elimination {
-    /// The elimination of all equalities of `problem`; `None` if it would fill the stiffness, or if it is open within
-    /// rounding whether some of them follow from others or contradict them.
-    pub fn of(problem: &ContactProblem) -> Result<Option<Self>, Error> {
+    /// The elimination of all equalities; `None` if it fills the stiffness, or rounding hides whether some follow.
+    pub fn of(problem: &ContactProblem) -> Result<Option<Self>> {
         let mut found = Self::cut(problem, usize::MAX);
         if let Err(None) = found {
             found = Self::cut(problem, LONG);
@@ -126,7 +125,7 @@ impl Elimination {
         Ok(Elimination { equalities, solved, sums: all_sums, rows })
     }
 
-    pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem, Error> {
+    pub fn problem(&self, problem: &ContactProblem) -> Result<ContactProblem> {
         let (stiffness, load) = (self.solved.congruent(problem.stiffness())?, self.load(problem));
         let (by_row, mut sums) = (problem.contact().transposed(), Sums::default());
         let mut entries = Vec::with_capacity(by_row.entries());
@@ -197,12 +196,6 @@ impl Elimination {
         self.solved.stays.iter().map(|&dof| all[dof]).collect()
     }
 
-    /// The set of the rows that stay, from one of all rows.
-    pub fn staying_rows(&self, set: &ContactSet) -> ContactSet {
-        self.rows.iter().map(|&row| set.contains(row)).collect()
-    }
-
-    /// The displacement of all dofs, length n, from that of those that stay.
     pub fn displacement(&self, y: &[f64]) -> Vec<f64> {
         self.of_dofs(y, 1.0).map(Twice::rounded).collect()
     }
@@ -241,8 +234,7 @@ impl Elimination {
         Solution { contact_set, history, method, displacement, multiplier, proven: None, ..answer }
     }
 
-    /// Rows that contradict each other, with their weights, from those of the rows that stay: the equalities take what
-    /// is left on the pivots.
+    /// Rows that contradict each other, with weights, from those that stay: the equalities take what is left on pivots.
     pub fn contradiction(&self, problem: &ContactProblem, rows: &[usize], weights: &[f64]) -> (Vec<usize>, Vec<f64>) {
         let mut pressed = vec![0.0; problem.rows()];
         rows.iter().zip(weights).for_each(|(&row, weight)| pressed[self.rows[row]] += weight);
@@ -275,8 +267,8 @@ mod tests {
     /// Rounding of sums of a handful of numbers of order ten.
     const ROUNDING: f64 = 1e-13;
 
-    /// A ring of four dofs under loads, with the equality `u_0 - 2 u_1 + u_3 = 3` as two rows, the second three times
-    /// as large, and one inequality before them.
+    /// A ring of four loaded dofs, with an inequality, and `u_0 - 2 u_1 + u_3 = 3` as two rows, the second thrice as
+    /// large.
     fn tied(load: [f64; 4]) -> ContactProblem {
         let diagonal = [4.0, 3.0, 2.0, 5.0].into_iter().enumerate().map(|(dof, value)| (dof, dof, value));
         let stiffness: Vec<_> = diagonal.chain([(1, 0, -1.0), (2, 1, -1.0), (3, 2, -1.0), (3, 0, -0.5)]).collect();

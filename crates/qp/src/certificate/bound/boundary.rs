@@ -7,8 +7,8 @@
 //!   the error itself;
 //! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
+use super::general::bound_row_by_row;
 use super::repair::{Repair, Witness};
-use super::row_by_row::bound_row_by_row;
 use super::{Answer, EnergyNorm, ErrorBound, rounding_of_residual, rows_that_look_closed, underflow};
 use crate::problem::ContactProblem;
 
@@ -27,13 +27,12 @@ const SMALL: f64 = 1e-3;
 /// With springs, a factor that loses more than this is too inaccurate for the energy of a shift.
 const LOST_WITH_SPRINGS: f64 = 1e4;
 
-/// An upper bound on `|u - u*|_K`.
 pub fn energy_error_bound(norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
     let closed = rows_that_look_closed(answer);
-    let on_boundary = bound_on_boundary(norm, answer, &closed);
     // A bound that was cut short is not used.
-    let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
-    let bound = on_boundary
+    let is_whole = |bound: &ErrorBound| bound.whole.is_finite() || !norm.is_over();
+    let bound = bound_on_boundary(norm, answer, &closed)
+        .filter(is_whole)
         .unwrap_or_else(|| bound_row_by_row(norm, answer, Some(closed)).smaller(bound_row_by_row(norm, answer, None)));
     let (underflow, rounding) = (underflow(answer), rounding_of_residual(answer));
     let with_lost = |bound: f64, rounding: f64| norm.rounding() * bound + underflow + norm.loss() * rounding;
@@ -44,16 +43,14 @@ pub fn energy_error_bound(norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
     }
 }
 
-/// The bound from the repair on the boundary; `None` if there is no boundary, or if the rows that look closed
-/// cannot be met together.
+/// The bound from the repair on the boundary; `None` without one, or if the rows that look closed cannot be met.
 pub fn bound_on_boundary(norm: &EnergyNorm, answer: &Answer, closed: &[bool]) -> Option<ErrorBound> {
     let own = beside_springs(norm, answer);
     let (repair, witness, bound, is_sharp) = first_repair(norm, &own, closed)?;
     if is_sharp { Some(bound) } else { repeated(&repair, witness, answer).0 }
 }
 
-/// The answer moved to the witness of its own bound, in doubles; `None` if there is none, or if the boundary is not
-/// known.
+/// The answer moved to the witness of its own bound, in doubles; `None` if there is none.
 pub fn repaired(problem: &ContactProblem, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<Moved> {
     let answer = Answer::of(problem, u, lambda);
     let own = beside_springs(norm, &answer);
@@ -70,8 +67,7 @@ fn beside_springs<'a>(norm: &EnergyNorm, answer: &Answer<'a>) -> Answer<'a> {
     Answer { residual, violation: answer.violation.clone(), ..*answer }
 }
 
-/// Repairs that start from the witness of the previous one: the best bound, if there is one, with the answer moved
-/// to its witness.
+/// Repairs, each from the witness of the last: the best bound, if there is one, with the answer moved to its witness.
 ///
 /// The rounding of a large shift may be a large distance between rows that follow from others, and forces that
 /// cancel each other leave what the factor has rounded. A repair from the witness itself has small shifts, forces
@@ -84,14 +80,13 @@ fn repeated(repair: &Repair, mut witness: Witness, answer: &Answer) -> (Option<E
     let mut best: (Option<ErrorBound>, Moved) = (None, next.0.clone());
     for _ in 0..MOST_NEAR {
         let ((moved, multiplier), change) = next;
-        // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no
-        // stiffness.
+        // Multipliers stay sums: rounded, they would leave more than all other forces on a dof with little stiffness.
         let rounded = |row: usize| if multiplier[row] != 0.0 && !witness.passes[row] { 1.0 } else { 0.0 };
         multipliers.iter_mut().flat_map(|part| part.iter_mut().enumerate()).for_each(|(row, x)| *x *= rounded(row));
         multipliers.push(change);
         let parts: Vec<&[f64]> = multipliers.iter().map(Vec::as_slice).collect();
         let violation = problem.accurate_violation(&moved);
-        let residual = problem.accurate_residual_of(&moved, &parts);
+        let residual = problem.accurate_balance(&moved, &parts).residual;
         let near = Answer { displacement: &moved, multiplier: &multiplier, residual, violation, ..*answer };
         let near = beside_springs(norm, &near);
         let Some(repair) = Repair::new(norm, &near) else { break };
@@ -114,7 +109,6 @@ fn repeated(repair: &Repair, mut witness: Witness, answer: &Answer) -> (Option<E
     best
 }
 
-/// A displacement with its multipliers.
 type Moved = (Vec<f64>, Vec<f64>);
 
 /// The first repair of an answer, its witness and its bound, and `true` if rounding takes no part in the bound, or the
@@ -137,8 +131,7 @@ fn first_repair<'a>(
 }
 
 /// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, the
-/// bound without the way to the witness, is at most half of the `bound`, or the last one has gained little on the
-/// `best` before.
+/// bound without the way to the witness, is at most half of the `bound`, or little was gained on the `best` before.
 fn gains_nothing(rest: f64, bound: f64, best: f64) -> bool {
     rest <= FAR * bound || bound >= GAINS * best
 }

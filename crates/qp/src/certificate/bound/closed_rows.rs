@@ -29,12 +29,11 @@ const STEPS_FOR_A_ROW: usize = 4;
 /// Steps of a solve that are taken although the time is over: rows with few dofs in common need no more.
 const STEPS_WHEN_OVER: usize = 50;
 
-/// A row is at its gap if its distance is below this share of the terms, far above the rounding of twice the working
-/// precision.
+/// A row is at its gap if its distance is below this share of the terms, far above the rounding of the sums.
 const AT_GAP: f64 = 1e-26;
 
 /// The contact rows, each a column, with the compliance `D^-1` of each dof alone, and the watch over the work on them.
-pub(super) struct WatchedRows<'a> {
+pub struct WatchedRows<'a> {
     problem: &'a ContactProblem,
     pub by_row: SparseMatrix,
     compliance: Vec<f64>,
@@ -42,17 +41,15 @@ pub(super) struct WatchedRows<'a> {
 }
 
 /// A displacement at which the closed rows are at their gaps and no other row is violated.
-pub(super) struct Placed {
+pub struct Placed {
     /// The shift d, rounded.
     pub shift: Vec<f64>,
-    /// An upper bound on the energy norm, in each part, of what is missing in d: its rounding, and the last digits of
-    /// the way.
+    /// An upper bound on the energy norm, in each part, of what is missing in d: its rounding, and the end of the way.
     pub rest: Vec<f64>,
     /// The rows that are exactly at their gaps after both.
     pub closed: Vec<bool>,
 }
 
-/// Some rows B_C of all.
 struct ClosedRows<'a> {
     all: &'a WatchedRows<'a>,
     rows: Vec<usize>,
@@ -122,7 +119,6 @@ impl<'a> ClosedRows<'a> {
     }
 }
 
-/// The contact rows for work that ends with `watch`.
 pub fn watched_rows<'a>(problem: &'a ContactProblem, watch: &'a Watch) -> WatchedRows<'a> {
     let own = |&stiffness: &f64| if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 };
     let mut compliance: Vec<f64> = problem.diagonal().values.iter().map(own).collect();
@@ -169,8 +165,7 @@ pub fn balancing(watched: &WatchedRows, closed: &[bool], residual: &[f64]) -> Op
     Some(forces)
 }
 
-/// The shift d that moves the rows to their gaps as far as they can be together, what is missing in it, the distances
-/// `B (u + d) - g`, d not rounded, and `|B| |d|`.
+/// The shift d that moves the rows to their gaps, what is missing in it, `B (u + d) - g`, d not rounded, and `|B| |d|`.
 fn moved_to_gaps(rows: &ClosedRows, u: &[f64]) -> [Vec<f64>; 4] {
     let problem = rows.all.problem;
     let mut distances = Distances::of(problem);
@@ -204,18 +199,16 @@ fn moved_to_gaps(rows: &ClosedRows, u: &[f64]) -> [Vec<f64>; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::SymmetricMatrix;
 
     /// Rounding of a sum over a few dofs.
     const ROUNDING: f64 = 1e-14;
 
     /// Dofs of these stiffnesses, which nothing couples, and rows with gaps.
     fn problem(stiffness: &[f64], rows: &[&[f64]], gap: &[f64]) -> ContactProblem {
-        let diagonal: Vec<_> = stiffness.iter().enumerate().map(|(dof, &value)| (dof, dof, value)).collect();
-        let entries: Vec<_> = (rows.iter().enumerate())
-            .flat_map(|(row, of_row)| of_row.iter().enumerate().map(move |(dof, &b)| (row, dof, b)))
-            .filter(|entry| entry.2 != 0.0)
-            .collect();
-        ContactProblem::of_entries(&diagonal, &vec![0.0; stiffness.len()], &entries, gap)
+        let contact = SparseMatrix::from_table(rows.len(), stiffness.len(), &rows.concat()).unwrap();
+        let (stiffness, load) = (SymmetricMatrix::of_diagonal(stiffness.to_vec()), vec![0.0; stiffness.len()]);
+        ContactProblem::new(stiffness, load, contact, gap.to_vec()).unwrap()
     }
 
     fn placed(problem: &ContactProblem, u: &[f64], closed: &[bool]) -> Option<Placed> {

@@ -23,10 +23,8 @@
 
 pub(super) mod boundary;
 mod closed_rows;
-pub(super) mod cycles;
+pub(super) mod general;
 mod repair;
-pub(super) mod row_by_row;
-mod triangle;
 mod witness;
 
 use super::energy_norm::EnergyNorm;
@@ -34,7 +32,7 @@ use super::scales::{compliance_of_rows, energies};
 use crate::problem::ContactProblem;
 
 /// An answer (u, lambda) and what its certificate has computed for it.
-pub(super) struct Answer<'a> {
+pub struct Answer<'a> {
     pub problem: &'a ContactProblem,
     pub displacement: &'a [f64],
     pub multiplier: &'a [f64],
@@ -55,18 +53,16 @@ impl<'a> Answer<'a> {
     }
 }
 
-/// Numbers that cycles have measured for a bound.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Measured {
+pub struct Measured {
     /// An upper bound on the dual norm of the residual.
     pub of_residual: f64,
     /// The least Ritz value of K with the cycle.
     pub ritz: f64,
 }
 
-/// Upper bounds on the energy norm of the error.
 #[derive(Clone, Debug)]
-pub(super) struct ErrorBound {
+pub struct ErrorBound {
     /// `|u - u*|_K`.
     pub whole: f64,
     /// The same for each part, if there are several.
@@ -107,8 +103,7 @@ const OF_SUMS: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 /// Squares of numbers below this underflow, or lose digits.
 const LEAST: f64 = 1e-145;
 
-/// Rounding, in twice the working precision, of loads and contact forces that cancel each other: by parts, in the
-/// energy norm of dofs that stand alone.
+/// Rounding of loads and contact forces that cancel: by parts, in the energy norm of dofs that stand alone.
 fn rounding_of_residual(answer: &Answer) -> Vec<f64> {
     let problem = answer.problem;
     let roots = &problem.diagonal().roots;
@@ -119,8 +114,7 @@ fn rounding_of_residual(answer: &Answer) -> Vec<f64> {
     })
 }
 
-/// The energy of displacements that are too small for their squares to be kept in double precision, or beside the
-/// forces; 0 if no displacement is so small.
+/// The energy of displacements whose squares double precision does not keep, or not beside the forces.
 fn underflow(answer: &Answer) -> f64 {
     let problem = answer.problem;
     let roots = &problem.diagonal().roots;
@@ -172,8 +166,7 @@ mod tests {
     use crate::certificate::energy_norm::{PRESSING, springs_on};
     use crate::linear::SparseMatrix;
 
-    /// Two dofs of stiffness 4 and 16 that nothing couples, and one without stiffness; a row `3 u_0 + 5 u_1 <= 1` and
-    /// one of zeros.
+    /// Uncoupled dofs of stiffness 4 and 16, and one without stiffness; a row `3 u_0 + 5 u_1 <= 1` and one of zeros.
     fn apart() -> ContactProblem {
         let (stiffness, contact) = ([(0, 0, 4.0), (1, 1, 16.0)], [(0, 0, 3.0), (0, 1, 5.0)]);
         ContactProblem::of_entries(&stiffness, &[8.0, 0.0, 7.0], &contact, &[1.0, 1.0])
@@ -231,8 +224,7 @@ mod tests {
 
     #[test]
     fn a_row_on_dofs_without_stiffness_has_a_spring_that_its_force_stretches_by_the_energy_norm() {
-        // A row joins the first dof, of stiffness 4, to the third, of stiffness 0. The second row acts on the third
-        // alone.
+        // A row joins the first dof, of stiffness 4, to the third, of stiffness 0; the second row acts on that alone.
         let rows = SparseMatrix::from_triplets(2, 3, &[(0, 0, 3.0), (0, 2, 5.0), (1, 2, 1.0)]).unwrap();
         let apart = apart();
         let problem = ContactProblem::new(apart.stiffness, apart.load, rows, vec![9.0, 1.0]).unwrap();

@@ -7,12 +7,11 @@ use crate::linear::{AT_ONCE, SparseMatrix, dot, ldexp};
 /// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
-/// The way of rows to their gaps counts three times: as a shift of the answer, as the residual of that shift, and for
-/// the rounding of its length.
+/// The way of rows to their gaps counts as a shift, as the residual of that shift, and for the rounding of its length.
 const COUNTS: f64 = 3.0;
 
 /// The force `alpha r + B' x`, x in the units of normalised rows.
-pub(super) struct Force {
+pub struct Force {
     pub alpha: f64,
     pub rows: Vec<f64>,
     /// Magnitudes of the terms of x, the scale of rounding of their sum.
@@ -34,14 +33,13 @@ impl Force {
 }
 
 /// A feasible v and multipliers mu: `v - u = K^-1 error`, and the forces left out of balance at (v, mu).
-pub(super) struct Witness {
+pub struct Witness {
     pub error: Force,
     pub left: Force,
     /// The multipliers mu, rounded: those of the answer, if they push, plus the change.
     pub multiplier: Vec<f64>,
     /// What is added to the multipliers of the answer; of a row that passes forces on or takes them, mu itself.
     pub change: Vec<f64>,
-    /// `true` for rows that pass forces on or take them.
     pub passes: Vec<bool>,
     pub closed: Vec<bool>,
     /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap and leaves
@@ -56,9 +54,9 @@ pub(super) struct Witness {
 }
 
 /// An answer on the contact boundary, in equilibrated units, rows normalised by powers of two.
-pub(super) struct Repair<'a> {
+pub struct Repair<'a> {
     pub norm: &'a EnergyNorm,
-    boundary: &'a Boundary,
+    pub boundary: &'a Boundary,
     pub answer: &'a Answer<'a>,
     rows: RowsOnBoundary,
     pub violation: Vec<f64>,
@@ -101,12 +99,6 @@ impl<'a> Repair<'a> {
         self.boundary.block.forward(self.by_row().mul(weights))
     }
 
-    /// `L_tt'^-1 y`.
-    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
-        self.boundary.block.backward(y)
-    }
-
-    /// The product of the columns of W of two rows.
     pub fn product(&self, a: usize, b: usize) -> f64 {
         self.rows.compliance.product(a, b)
     }
@@ -142,7 +134,6 @@ impl<'a> Repair<'a> {
         self.norm.length(self.product(row, row))
     }
 
-    /// The shift of the whole body that a force causes, length n.
     fn shift(&self, force: &Force) -> Vec<f64> {
         let contact = self.answer.problem.contact.mul_transposed(&self.expanded(&force.rows));
         let total: Vec<f64> = self.answer.residual.iter().zip(contact).map(|(r, b)| force.alpha * r + b).collect();
@@ -169,8 +160,7 @@ impl<'a> Repair<'a> {
         if springs.is_some_and(|springs| !springs.hold(closed, |row| force[row], |_| of_left + cancelled)) {
             return ErrorBound::none();
         }
-        // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each
-        // other leave their rounding.
+        // Closed rows are put exactly at their gaps, which moves the answer; forces that cancel leave rounding.
         let put: Vec<f64> =
             (0..rest.len()).map(|row| self.way_on(witness, row) + self.cancelled_on(witness, row)).collect();
         let of_error = match springs {
@@ -185,15 +175,14 @@ impl<'a> Repair<'a> {
         let parts = self.answer.problem.parts();
         let of_parts = (parts.count() > 1).then(|| {
             let mut sizes = vec![0.0; parts.count()];
-            put.iter().enumerate().for_each(|(row, put)| sizes[parts.of_row(row)] += put);
+            put.iter().enumerate().for_each(|(row, put)| sizes[parts.of_row[row]] += put);
             [error, left].iter().for_each(|force| add_sizes(self.answer.problem, &self.shift(force), &mut sizes));
             sizes
         });
         ErrorBound { whole, of_parts }
     }
 
-    /// Upper bound, in energy norm, of what the way of this row to its gap adds: of a row that is put there, and of one
-    /// that follows from others.
+    /// Upper bound, in energy norm, of what the way of a row to its gap adds, put there or following from others.
     fn way_on(&self, witness: &Witness, row: usize) -> f64 {
         COUNTS * witness.rest[row] + self.norm.length(2.0 * witness.slack[row])
     }
@@ -212,8 +201,7 @@ impl<'a> Repair<'a> {
         (0..self.count()).map(|row| self.cancelled_on(witness, row)).fold(of_residual, |sum, of_row| sum + of_row)
     }
 
-    /// The part of a bound that another repair can make smaller: rounding of forces that cancel each other, and of the
-    /// way to the gaps.
+    /// What another repair can make smaller in a bound: rounding of forces that cancel, and of the way to the gaps.
     pub fn vague(&self, witness: &Witness) -> f64 {
         self.cancelled(witness) + (0..self.count()).map(|row| self.way_on(witness, row)).sum::<f64>()
     }
@@ -234,8 +222,7 @@ mod tests {
 
     #[test]
     fn a_spring_behind_its_wall_is_repaired_by_its_penetration() {
-        // K = 4, f = 8, g = 1; u = 3/2 under a force of 3 leaves -1 out of balance. The repair is u = 1 under a force
-        // of 4.
+        // K = 4, f = 8, g = 1; u = 3/2 under a force of 3 leaves -1 out of balance. The repair is u = 1 under 4.
         let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0)], &[1.0]);
         let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
         let answer = Answer::of(&problem, &[1.5], &[-3.0]);

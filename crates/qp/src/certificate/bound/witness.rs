@@ -2,13 +2,12 @@
 
 use super::allowed;
 use super::repair::{Force, Repair, Witness};
-use super::triangle::{Triangle, triangle_of};
+use crate::linear::{UpperTriangle, dot, norm, take_out};
 
 /// Number of corrections of the set of rows that look closed; after these, rows are only added.
 const EXCHANGES: usize = 10;
 
-/// Corrections of the multipliers that put rows at their gaps; each gains as many digits as the dependence of rows
-/// leaves.
+/// Corrections of the multipliers that put rows at their gaps; each gains the digits that dependent rows leave.
 const CORRECTIONS: usize = 4;
 
 /// After a fit, rows that follow from others are off by their own rounding and by that of their distances.
@@ -45,8 +44,7 @@ impl Repair<'_> {
         }
     }
 
-    /// A feasible point at which the closed rows are at their gaps, with the multipliers that balance them there, or
-    /// with those of the answer.
+    /// A feasible point with closed rows at their gaps, and the multipliers that balance it or those of the answer.
     pub fn settle(&self, closed: &[bool], balances: bool) -> Option<Witness> {
         let rows = self.count();
         let mut closed = closed.to_vec();
@@ -97,7 +95,6 @@ impl Repair<'_> {
         None
     }
 
-    /// The witness of the closed rows `set` that are at their gaps after a fit.
     fn witness(&self, set: &[usize], fitted: Fitted, closed: Vec<bool>, balances: bool) -> Witness {
         let rest = self.rest(set, &fitted);
         let Fitted { change, error, distance, tolerance, triangle } = fitted;
@@ -161,11 +158,9 @@ impl Repair<'_> {
             if force == 0.0 || others.is_empty() || others.iter().any(|other| self.norm.is_on_loose_dof(other.0)) {
                 continue;
             }
-            let share = others
-                .iter()
-                .filter(|(_, weight)| weight * force > 0.0)
-                .map(|&(other, weight)| can_give(other, multiplier) / (weight * force))
-                .fold((can_give(row, multiplier) / force.abs()).min(1.0), f64::min);
+            let taking = others.iter().filter(|(_, weight)| weight * force > 0.0);
+            let shares = taking.map(|&(other, weight)| can_give(other, multiplier) / (weight * force));
+            let share = shares.fold((can_give(row, multiplier) / force.abs()).min(1.0), f64::min);
             for (row, weight) in others.into_iter().chain([(row, -1.0)]).filter(|_| share > 0.0) {
                 passes[row] = true;
                 multiplier[row] = allowed(self.answer.problem, row, multiplier[row] + share * (weight * force));
@@ -174,8 +169,7 @@ impl Repair<'_> {
         passes
     }
 
-    /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to
-    /// its gap and does not move the others of the set; zero for rows that follow from others.
+    /// Upper bounds on the energy norm of the shift of each row alone exactly to its gap; zero for dependent rows.
     ///
     /// The shifts of all rows together put every row at its gap, so the sum of their lengths bounds the way to such a
     /// point, for all signs of the rounding errors in the distances. The part of a row that is orthogonal to the rows
@@ -196,7 +190,7 @@ impl Repair<'_> {
         let triangle = triangle_of(&columns, |a, b| self.product(set[a], set[b]), || self.norm.is_over())?;
         let independent = triangle.independent();
         let (mut change, mut steps) = (vec![0.0; self.count()], vec![0.0; self.count()]);
-        let mut moved = self.backward(self.sweep(base));
+        let mut moved = self.boundary.block.backward(self.sweep(base));
         // The magnitudes of the shifts whose sum is `moved`: that keeps the rounding of each.
         let mut magnitude: Vec<f64> = moved.iter().map(|shift| shift.abs()).collect();
         let mut correction = 0;
@@ -221,10 +215,11 @@ impl Repair<'_> {
             let mut added = vec![0.0; self.count()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
-            // The shifts are those of the forces, except for the rounding of each step, even if the steps cancel each
-            // other.
+            // The shifts are those of the forces, except for the rounding of each step, even if steps cancel.
             steps.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step.abs());
-            for ((sum, most), step) in moved.iter_mut().zip(&mut magnitude).zip(self.backward(self.spread(&added))) {
+            for ((sum, most), step) in
+                moved.iter_mut().zip(&mut magnitude).zip(self.boundary.block.backward(self.spread(&added)))
+            {
                 *sum += step;
                 *most += step.abs();
             }
@@ -232,8 +227,7 @@ impl Repair<'_> {
     }
 }
 
-/// Rows after a fit: the change of each multiplier, the distances and their rounding, and the triangle of the rows of
-/// the set.
+/// Rows after a fit: changes of multipliers, distances and their rounding, and the triangle of the rows of the set.
 struct Fitted {
     change: Vec<f64>,
     /// The force that puts them there, which includes the change of the multipliers and the magnitudes of its steps.
@@ -241,4 +235,179 @@ struct Fitted {
     distance: Vec<f64>,
     tolerance: Vec<f64>,
     triangle: Triangle,
+}
+
+/// R of the columns of Z that do not follow from others, and the weights with which the other columns follow from them.
+#[derive(Default)]
+struct Triangle {
+    r: UpperTriangle,
+    /// The place in Z of each column of R.
+    kept: Vec<usize>,
+    /// For each column of Z the weights of the columns of R before it; empty for a column of R.
+    weights: Vec<Vec<f64>>,
+}
+
+/// Pivots below this share of the products that cancel in them are rounding of nearly dependent rows.
+const PARALLEL: f64 = 1e-12;
+
+/// A row follows from others if its component orthogonal to them is below this share of the terms.
+const DEPENDENT: f64 = 64.0 * f64::EPSILON;
+
+/// Number of times that a row is made orthogonal to others: the second removes the rounding of the first.
+const TURNS: usize = 2;
+
+/// R from the products of the columns of Z. If some are nearly parallel, such as rows on a part much softer than the
+/// others, the products have lost their difference, and the columns themselves are made orthogonal.
+///
+/// `product` gives the product of two of the columns. `None` if it `is_over` before R is found.
+fn triangle_of(
+    columns: &[&[f64]],
+    product: impl Fn(usize, usize) -> f64,
+    is_over: impl Fn() -> bool,
+) -> Option<Triangle> {
+    let found = of_products(columns.len(), product, &is_over)?;
+    if found.kept.len() < columns.len() { of_columns(columns, &is_over) } else { Some(found) }
+}
+
+fn of_products(count: usize, product: impl Fn(usize, usize) -> f64, is_over: &impl Fn() -> bool) -> Option<Triangle> {
+    let mut found = Triangle::default();
+    let lengths: Vec<f64> = (0..count).map(|column| product(column, column).sqrt()).collect();
+    for column in 0..count {
+        if is_over() {
+            return None;
+        }
+        let entries = found.r.solve_lower(found.kept.iter().map(|&place| product(column, place)).collect());
+        let pivot = product(column, column) - dot(&entries, &entries);
+        found.take(entries, &lengths, |terms| (pivot > PARALLEL * terms * terms).then(|| pivot.sqrt()));
+    }
+    Some(found)
+}
+
+fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Triangle> {
+    let mut found = Triangle::default();
+    let mut directions: Vec<Vec<f64>> = Vec::new();
+    let lengths: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
+    for column in columns {
+        if is_over() {
+            return None;
+        }
+        let (mut entries, mut across) = (vec![0.0; directions.len()], column.to_vec());
+        for _ in 0..TURNS {
+            for (entry, direction) in entries.iter_mut().zip(&directions) {
+                *entry += take_out(&mut across, direction);
+            }
+        }
+        let left = norm(&across);
+        if found.take(entries, &lengths, |terms| (left > DEPENDENT * terms).then_some(left)) {
+            across.iter_mut().for_each(|entry| *entry /= left);
+            directions.push(across);
+        }
+    }
+    Some(found)
+}
+
+impl Triangle {
+    /// Takes in the next column of Z, which has these entries in R. `diagonal` gives its diagonal entry, or `None` if
+    /// it follows from the columns of R, from the lengths of the terms that cancel. Returns `true` if R has it.
+    fn take(&mut self, entries: Vec<f64>, lengths: &[f64], diagonal: impl Fn(f64) -> Option<f64>) -> bool {
+        let place = self.weights.len();
+        let weights = self.r.solve_upper(entries.clone());
+        let along = weights.iter().zip(&self.kept);
+        let terms = along.fold(lengths[place], |sum, (weight, &other)| sum + weight.abs() * lengths[other]);
+        let diagonal = diagonal(terms);
+        if let Some(diagonal) = diagonal {
+            self.r.push(entries, diagonal);
+            self.kept.push(place);
+        }
+        self.weights.push(if diagonal.is_some() { Vec::new() } else { weights });
+        diagonal.is_some()
+    }
+
+    /// `true` for each column of Z that does not follow from those before it.
+    pub fn independent(&self) -> Vec<bool> {
+        let mut independent = vec![false; self.weights.len()];
+        self.kept.iter().for_each(|&place| independent[place] = true);
+        independent
+    }
+
+    /// For each column of Z the earlier columns that it follows from, with their weights.
+    pub fn weights(&self) -> impl Iterator<Item = impl Iterator<Item = (usize, f64)>> {
+        self.weights.iter().map(|weights| self.kept.iter().copied().zip(weights.iter().copied()))
+    }
+
+    /// As [`UpperTriangle::solve_normal`], on all columns: zero on those that follow from others.
+    pub fn solve_normal(&self, b: &[f64]) -> Vec<f64> {
+        self.spread(self.r.solve_normal(self.kept.iter().map(|&place| b[place]).collect()))
+    }
+
+    /// As [`UpperTriangle::lengths_of_inverse`]; zero on columns that follow from others.
+    pub fn lengths_of_inverse(&self) -> Vec<f64> {
+        self.spread(self.r.lengths_of_inverse())
+    }
+
+    /// Values of the columns of R as values of all columns.
+    fn spread(&self, values: Vec<f64>) -> Vec<f64> {
+        let mut all = vec![0.0; self.weights.len()];
+        self.kept.iter().zip(values).for_each(|(&place, value)| all[place] = value);
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    /// Rounding of a handful of operations on nearly orthogonal columns.
+    const ROUNDING: f64 = 1e-13;
+
+    fn of(columns: &[&[f64]], is_over: bool) -> Option<Triangle> {
+        triangle_of(columns, |a, b| dot(columns[a], columns[b]), || is_over)
+    }
+
+    #[test]
+    fn what_cancels_in_a_column_are_the_lengths_of_its_parts_whatever_their_signs() {
+        let mut found = Triangle::default();
+        let lengths = [2.0, 5.0, 7.0, 7.0];
+        assert!(found.take(Vec::new(), &lengths, |_| Some(2.0)) && found.take(vec![3.0], &lengths, |_| Some(4.0)));
+        // R w = (x, 8) with w_2 = 2; columns of length 2 and 5 next to ones of length 7.
+        for (place, x, first) in [(2, 8.0, 1.0), (3, 4.0, -1.0)] {
+            let all = Cell::new(0.0);
+            found.take(vec![x, 8.0], &lengths, |terms| {
+                all.set(terms);
+                None
+            });
+            assert_eq!((&found.weights[place][..], all.get()), (&[first, 2.0][..], 7.0 + 2.0 + 2.0 * 5.0));
+        }
+    }
+
+    #[test]
+    fn a_column_that_follows_from_others_is_left_out_with_its_weights_in_any_unit() {
+        for unit in [1e-40, 1.0, 1e40] {
+            let column = |entries: [f64; 3]| entries.map(|entry| unit * entry);
+            // The third is twice the first less three times the second.
+            let columns = [[1.0, 0.0, 2.0], [0.0, 1.0, -1.0], [2.0, -3.0, 7.0], [1.0, 1.0, 0.0]].map(column);
+            let columns: Vec<&[f64]> = columns.iter().map(|column| &column[..]).collect();
+            let found = of(&columns, false).unwrap();
+            assert_eq!(found.independent(), [true, true, false, true], "{unit:e}");
+            let off = found.weights[2].iter().zip([2.0, -3.0]).map(|(weight, exact)| (weight - exact).abs());
+            assert!(off.fold(0.0, f64::max) < ROUNDING, "{unit:e}: {:?}", found.weights);
+            // R'R are the products of the columns that are kept.
+            for (a, b) in [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)] {
+                let product: f64 = (0..=a).map(|row| found.r.column(a)[row] * found.r.column(b)[row]).sum();
+                let exact = dot(columns[found.kept[a]], columns[found.kept[b]]);
+                assert!((product - exact).abs() < ROUNDING * unit * unit * 6.0, "{unit:e}, {a}, {b}");
+            }
+            assert!(of(&columns, true).is_none());
+        }
+    }
+
+    #[test]
+    fn copies_of_a_column_take_no_room_in_the_triangle() {
+        let columns = vec![&[3.0, 4.0][..]; 20_000];
+        let found = of(&columns, false).unwrap();
+        assert_eq!((found.r.size(), found.weights().map(Iterator::count).max()), (1, Some(1)));
+        assert_eq!(found.solve_normal(&[50.0; 20_000])[..2], [2.0, 0.0]);
+    }
 }

@@ -3,16 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use super::{Bound, Bounds, LeftOut, Side, are_equal, length, no_bound};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::multigrid::{Direction, Units};
 use crate::linear::{SparseMatrix, ldexp};
 
-/// Entries of a unit vector below this are rounding of the reflections. So is a share along one of them: in a chain of
-/// rows it would wander on to the end.
+/// Entries of a unit vector, and shares along a reflection, below this are rounding: they would wander along chains.
 const TURNING_ROUNDING: f64 = 1e-12;
 
-/// A row is left out if less than this share of its length is beyond the span of other rows: 3 degrees. The pivot of a
-/// mean has at least this share of it.
+/// A row with less than this share beyond the span of others is left out: 3 degrees. A pivot has this share of a mean.
 const LEAST_BEYOND: f64 = 0.05;
 
 /// The same for a row that is needed. The bounds of rows with a small angle between them take more steps.
@@ -24,7 +22,6 @@ const MOST_BEYOND: usize = 24;
 /// A row of more nodes is a mean.
 const GROUPS_OF_A_PAIR: usize = 2;
 
-/// Bounds that are being made.
 struct Making<'a> {
     /// The rows, each a column, with their gaps.
     by_row: &'a SparseMatrix,
@@ -46,7 +43,7 @@ impl Bounds {
         (order, needed): (&[usize], usize),
         units: &Units,
         travels: Vec<usize>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self> {
         let by_row = &contact.transposed();
         let mut means = means((by_row, gap), &units.groups, &travels);
         let is_unscaled = units.exponents.iter().all(|&unit| unit == 0);
@@ -77,15 +74,60 @@ impl Bounds {
             means = with_pivot;
         }
     }
+
+    /// Turns a unit vector onto the coordinate of its largest entry: that, and its sign there. `None` without entries.
+    fn onto_one(&mut self, unit: Direction) -> Option<(usize, f64)> {
+        let &(first, value) = unit.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        Some((first, if unit.len() == 1 { value.signum() } else { self.reflect(unit, first) }))
+    }
+
+    /// A unit vector after the reflections that touch it, in the order of the product H or, back, of H'.
+    pub fn reflected(&self, vector: Direction, is_back: bool) -> Direction {
+        if vector.len() == 1 && vector.iter().all(|entry| !self.touching.contains_key(&entry.0)) {
+            return vector;
+        }
+        let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
+        let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
+        let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
+        while let Some(next) = if is_back { waiting.pop_last() } else { waiting.pop_first() } {
+            let follows = |other: &usize| (*other > next) != is_back && *other != next;
+            let reflection = &self.reflections[next];
+            let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
+            if along.abs() <= TURNING_ROUNDING {
+                continue;
+            }
+            for &(place, w) in reflection {
+                *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
+                waiting.extend(of_place(&place).filter(follows));
+            }
+        }
+        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > TURNING_ROUNDING).collect();
+        reflected.sort_unstable_by_key(|entry| entry.0);
+        reflected
+    }
+
+    /// Adds the reflection that turns a unit vector onto `place`, up to the sign that is returned.
+    fn reflect(&mut self, mut unit: Direction, place: usize) -> f64 {
+        let own = unit.iter().find(|entry| entry.0 == place).map_or(1.0, |entry| entry.1);
+        // |u + sign e|^2 = 2 + 2 |u_place|.
+        let length = (2.0 + 2.0 * own.abs()).sqrt();
+        for entry in &mut unit {
+            if entry.0 == place {
+                entry.1 += own.signum();
+            }
+            entry.1 /= length;
+            self.touching.entry(entry.0).or_default().push(self.reflections.len());
+        }
+        self.reflections.push(unit);
+        -own.signum()
+    }
 }
 
-/// The entries of a row that are not zero.
 fn entries(by_row: &SparseMatrix, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
     by_row.column(row).filter(|entry| entry.1 != 0.0)
 }
 
-/// The rows of more nodes than a pair. First come those whose heaviest node most others touch: it can be a pivot only
-/// before them.
+/// The rows of more nodes than a pair, first those whose heaviest node most touch: it can be a pivot only before them.
 fn means((by_row, gap): (&SparseMatrix, &[f64]), groups: &[u32], travels: &[usize]) -> Vec<usize> {
     let (mut heaviest, mut touched) = (Vec::new(), HashMap::<u32, usize>::new());
     for row in (0..gap.len()).filter(|&row| gap[row].is_finite()) {
@@ -106,7 +148,7 @@ fn means((by_row, gap): (&SparseMatrix, &[f64]), groups: &[u32], travels: &[usiz
 
 impl Making<'_> {
     /// The length of a row in the units of the dofs, its unit vector after the reflections, and its travel.
-    fn turned(&self, row: usize) -> Result<(f64, Direction, Direction), Error> {
+    fn turned(&self, row: usize) -> Result<(f64, Direction, Direction)> {
         let is_travel = |entry: &(usize, f64)| self.all.travels.binary_search(&entry.0).is_ok();
         let entries = entries(self.by_row, row).map(|(dof, b)| (dof, ldexp(b, self.all.units[dof])));
         let (mut moving, mut entries): (Direction, Direction) = entries.partition(is_travel);
@@ -123,7 +165,7 @@ impl Making<'_> {
     }
 
     /// Turns a row into a bound, if at least the share `least` of it is beyond the rows before it.
-    fn turn(&mut self, row: usize, least: f64) -> Result<(), Error> {
+    fn turn(&mut self, row: usize, least: f64) -> Result<()> {
         let (length, turned, moving) = self.turned(row)?;
         let (shared, mut own): (Direction, Direction) =
             turned.into_iter().partition(|entry| self.bound_of[entry.0].is_some());
@@ -162,9 +204,8 @@ impl Making<'_> {
         Ok(())
     }
 
-    /// Makes a mean a bound on its pivot: the direction at one node of what no other row has. Returns `false` if there
-    /// is none.
-    fn pivot(&mut self, row: usize) -> Result<bool, Error> {
+    /// Makes a mean a bound on its pivot, the direction at one node of what no other row has, if there is one.
+    fn pivot(&mut self, row: usize) -> Result<bool> {
         let (length, turned, moving) = self.turned(row)?;
         let Some(group) = self.group_of_pivot(&turned) else { return Ok(false) };
         let (mut own, mut shears): (Direction, Direction) =
@@ -188,8 +229,7 @@ impl Making<'_> {
         self.bound_of[place].is_none() && !self.carried.contains(&place)
     }
 
-    /// The node with most of what may be a pivot, in displacements, so that a soft node does not count more than a
-    /// stiff one.
+    /// The node with most of what may be a pivot, in displacements: a soft node counts no more than a stiff one.
     fn group_of_pivot(&self, turned: &Direction) -> Option<u32> {
         let (mut of_group, mut whole) = (BTreeMap::<u32, f64>::new(), 0.0_f64);
         for &(place, c) in turned {
@@ -216,55 +256,5 @@ impl Making<'_> {
             }
         }
         self.all.left_out.push(LeftOut { row, shares });
-    }
-}
-
-impl Bounds {
-    /// Turns a unit vector onto the coordinate of its largest entry: that coordinate, and its sign there. `None`
-    /// without entries.
-    fn onto_one(&mut self, unit: Direction) -> Option<(usize, f64)> {
-        let &(first, value) = unit.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-        Some((first, if unit.len() == 1 { value.signum() } else { self.reflect(unit, first) }))
-    }
-
-    /// A unit vector after the reflections that touch it, in the order of the product H or, back, of H'.
-    pub(super) fn reflected(&self, vector: Direction, is_back: bool) -> Direction {
-        if vector.len() == 1 && vector.iter().all(|entry| !self.touching.contains_key(&entry.0)) {
-            return vector;
-        }
-        let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
-        let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
-        let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
-        while let Some(next) = if is_back { waiting.pop_last() } else { waiting.pop_first() } {
-            let follows = |other: &usize| (*other > next) != is_back && *other != next;
-            let reflection = &self.reflections[next];
-            let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
-            if along.abs() <= TURNING_ROUNDING {
-                continue;
-            }
-            for &(place, w) in reflection {
-                *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
-                waiting.extend(of_place(&place).filter(follows));
-            }
-        }
-        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > TURNING_ROUNDING).collect();
-        reflected.sort_unstable_by_key(|entry| entry.0);
-        reflected
-    }
-
-    /// Adds the reflection that turns a unit vector onto `place`, up to the sign that is returned.
-    fn reflect(&mut self, mut unit: Direction, place: usize) -> f64 {
-        let own = unit.iter().find(|entry| entry.0 == place).map_or(1.0, |entry| entry.1);
-        // |u + sign e|^2 = 2 + 2 |u_place|.
-        let length = (2.0 + 2.0 * own.abs()).sqrt();
-        for entry in &mut unit {
-            if entry.0 == place {
-                entry.1 += own.signum();
-            }
-            entry.1 /= length;
-            self.touching.entry(entry.0).or_default().push(self.reflections.len());
-        }
-        self.reflections.push(unit);
-        -own.signum()
     }
 }

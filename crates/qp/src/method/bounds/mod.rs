@@ -65,11 +65,8 @@ fn reflect(w: &Direction, v: &mut [f64]) {
 /// shears.
 #[derive(Clone, Debug, Default)]
 pub struct Bounds {
-    /// The exponent of the unit of each dof.
     units: Vec<i32>,
-    /// `true` if all units are 1.
     is_unscaled: bool,
-    /// The unit vector of each reflection.
     reflections: Vec<Direction>,
     touching: HashMap<usize, Vec<usize>>,
     pub bounds: Vec<Bound>,
@@ -82,8 +79,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The rows that contradict a row of those left out, which is violated, with weights; `None` if one of the bounds
-    /// on which it depends is open.
+    /// The rows that contradict a violated row that was left out, with weights; `None` if one of its bounds is open.
     pub fn contradicting(&self, left: &LeftOut, multiplier: &[f64]) -> Option<Vec<(usize, f64)>> {
         let of_share = |&(index, share): &(usize, f64)| {
             let pressed = self.bounds[index].sides.iter().flatten().find(|side| multiplier[side.row] < 0.0)?;
@@ -96,8 +92,7 @@ impl Bounds {
         Some(all)
     }
 
-    /// The rows under pressure that a row takes force from if it presses itself, with the force of it that leaves them
-    /// none.
+    /// The rows that a row takes force from if it presses, with the force of it that leaves them none.
     pub fn relieved<'a>(&'a self, by: &'a LeftOut, multiplier: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
         by.shares.iter().flat_map(move |&(index, share)| {
             let of_side = move |side: &Side| (side.row, multiplier[side.row] * side.coefficient / share);
@@ -206,8 +201,7 @@ impl Bounds {
         holds.into_iter().map(back).collect()
     }
 
-    /// The multipliers of the rows if the forces on the unknowns with bounds are `force` (those out of balance there),
-    /// and the rows that are closed.
+    /// The multipliers of the rows if the forces out of balance on bounded unknowns are `force`, and the closed rows.
     pub fn multipliers(&self, force: impl Fn(usize) -> f64) -> (Vec<f64>, ContactSet) {
         let (mut multiplier, mut closed) = (vec![0.0; self.rows], ContactSet::open(self.rows));
         for (index, bound) in self.bounds.iter().enumerate() {

@@ -12,29 +12,25 @@
 //! until all rows are met, by their accurate distances
 //! ```
 //!
-//! A semidefinite K is made definite by a proximal term. The corrections and further passes remove it again, because
-//! they start from the last answer.
+//! A proximal term makes a semidefinite K definite. Corrections and passes remove it: they start from the last answer.
 //!
 //! # Source
 //! D. Goldfarb and A. Idnani, 1983, "A numerically stable dual method for solving strictly convex quadratic programs",
 //! Mathematical Programming 27, pp. 1-33.
 
-mod basis;
 mod polyhedron;
 
 use std::collections::HashSet;
 
 use super::{Ending, Outcome, ScaledProblem};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::linear::watch::Watch;
 use crate::linear::{Augmented, dot, largest, norm};
 use crate::problem::ContactProblem;
 use crate::solution::Iteration;
-use basis::{Basis, DEPENDENT_ROW};
-use polyhedron::Polyhedron;
+use polyhedron::{Basis, DEPENDENT_ROW, Polyhedron};
 
-/// Largest number of passes: the second corrects errors hidden by the rounding of the first if dofs are of very
-/// different scale.
+/// Largest number of passes: the second corrects what rounding hid in the first if dofs differ much in scale.
 const MOST_PASSES: usize = 10;
 
 /// Least number of corrections of one set. The first gains all digits except the last, unless a part is so soft that
@@ -72,18 +68,17 @@ const NO_WEIGHT: f64 = 1e-24;
 const WEIGHT_CORRECTIONS: usize = 3;
 
 /// As [`ContactProblem::dual_active_set`].
-pub(crate) fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Outcome, Error> {
-    let augmented = Augmented::new(problem.stiffness(), problem.contact(), None, 1);
-    let scaled = ScaledProblem::new(problem, &augmented, is_definite, None, Watch::default());
+pub fn dual_active_set(problem: &ContactProblem, is_definite: bool) -> Result<Outcome> {
+    let (augmented, compliance) = (&Augmented::new(problem.stiffness(), problem.contact(), None, 1), None);
+    let (swept_load, factor_seconds, watch) = Default::default();
+    let scaled = ScaledProblem { problem, is_definite, augmented, compliance, swept_load, factor_seconds, watch };
     solve(&scaled)?.ok_or(Error::NotCondensed { step: "the dual active set" })
 }
 
-/// Solves a scaled problem, or finds rows that contradict each other; it always starts from the free point. `None` if
-/// the factorisation fails or the problem is too large for a dense basis of its rows.
+/// Solves a scaled problem, or finds a contradiction. `None` without a factor, or if a dense basis would be too large.
 ///
-/// The answer is not settled if the method was cut short or if its corrections do not converge, for example if rows and
-/// stiffness do not hold the body: the method makes no claim about that.
-pub fn solve(scaled: &ScaledProblem) -> Result<Option<Outcome>, Error> {
+/// The answer is not settled if the method was cut short, or its corrections do not converge: it makes no claim.
+pub fn solve(scaled: &ScaledProblem) -> Result<Option<Outcome>> {
     let Some(polyhedron) = Polyhedron::of(scaled)? else { return Ok(None) };
     let [pressures, rests, carried, distances] = [(); 4].map(|()| vec![0.0; scaled.problem.rows()]);
     let [displacement, point, target, change] = [(); 4].map(|()| vec![0.0; scaled.problem.dofs()]);
@@ -129,7 +124,6 @@ pub fn solve(scaled: &ScaledProblem) -> Result<Option<Outcome>, Error> {
 /// The best answer so far, in the units of the polyhedron, with the pass from there to the nearest point.
 struct Search<'a> {
     polyhedron: &'a Polyhedron,
-    /// The closed rows.
     basis: Basis,
     /// The sets of all passes so far.
     history: Vec<Iteration>,
@@ -158,8 +152,8 @@ impl Search<'_> {
     fn residuals(&self) -> (Vec<f64>, Vec<f64>) {
         let problem = &self.polyhedron.problem;
         let forces = [negative(&self.pressures), negative(&self.rests)];
-        let imbalance = problem.accurate_residual_of(&self.displacement, &[&forces[0], &forces[1]]);
-        (self.polyhedron.of_force(&imbalance), negative(&problem.accurate_violation(&self.displacement)))
+        let imbalance = problem.accurate_balance(&self.displacement, &[&forces[0], &forces[1]]).residual;
+        (self.polyhedron.factor.forward(&imbalance), negative(&problem.accurate_violation(&self.displacement)))
     }
 
     /// One pass from the answer so far: `true` if all rows are met, `false` if it was cut short, or returned to a set
@@ -168,25 +162,24 @@ impl Search<'_> {
     fn pass(&mut self, watch: &Watch) -> Result<bool, Ending> {
         (self.target, self.distances) = self.residuals();
         self.carried.fill(0.0);
-        self.basis.rows().iter().for_each(|&row| self.carried[row] = self.pressures[row]);
+        self.basis.rows.iter().for_each(|&row| self.carried[row] = self.pressures[row]);
         self.given_up.clear();
         self.open_pulling();
         let is_met = self.close_violated(watch)?;
         self.advance(&self.change.clone());
-        self.basis = of_rows(self.polyhedron, self.basis.rows());
+        self.basis = of_rows(self.polyhedron, &self.basis.rows);
         Ok(is_met)
     }
 
     fn advance(&mut self, change: &[f64]) {
         self.point.iter_mut().zip(change).for_each(|(entry, change)| *entry += change);
-        let moved = self.polyhedron.displacement(change);
+        let moved = self.polyhedron.factor.backward(change.to_vec());
         self.displacement.iter_mut().zip(&moved).for_each(|(u, moved)| *u += moved);
     }
 
-    /// The change of the point that balances the forces with the closed rows at their gaps, and the change of their
-    /// pressures.
+    /// The changes of point and pressures that balance the forces with the closed rows at their gaps.
     fn correction(&self, imbalance: &[f64], distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let on_closed: Vec<f64> = self.basis.rows().iter().map(|&row| distances[row]).collect();
+        let on_closed: Vec<f64> = self.basis.rows.iter().map(|&row| distances[row]).collect();
         self.basis.nearest(imbalance, &on_closed)
     }
 
@@ -202,7 +195,7 @@ impl Search<'_> {
             }
             self.advance(&change);
             let Search { basis, pressures, rests, .. } = self;
-            for (&row, change) in basis.rows().iter().zip(&changes) {
+            for (&row, change) in basis.rows.iter().zip(&changes) {
                 let (before, change) = (pressures[row], rests[row] + change);
                 pressures[row] = before + change;
                 rests[row] = change - (pressures[row] - before);
@@ -222,7 +215,7 @@ impl Search<'_> {
         let distances = negative(&problem.accurate_violation(&self.displacement));
         let at_rest = vec![0.0; self.displacement.len()];
         let (to_closed, _) = self.correction(&at_rest, &distances);
-        let explained = problem.contact().mul(&self.polyhedron.displacement(&to_closed));
+        let explained = problem.contact().mul(&self.polyhedron.factor.backward(to_closed));
         let terms = problem.contact().mul_abs(&self.displacement);
         let violation = |row: usize| explained[row] - distances[row];
         (0..distances.len()).any(|row| violation(row) > ROW_MET * (terms[row] + problem.gap()[row].abs()))
@@ -232,7 +225,7 @@ impl Search<'_> {
     fn open_pulling(&mut self) {
         loop {
             self.balance();
-            let rows = self.basis.rows().iter().enumerate();
+            let rows = self.basis.rows.iter().enumerate();
             let pulling = rows.map(|(place, &row)| (place, self.pressures[row])).filter(|entry| entry.1 < 0.0);
             match pulling.min_by(|a, b| a.1.total_cmp(&b.1)) {
                 Some((place, _)) => self.open(place),
@@ -245,7 +238,7 @@ impl Search<'_> {
     fn close_violated(&mut self, watch: &Watch) -> Result<bool, Ending> {
         let mut seen = HashSet::new();
         while let Some((row, violation)) = self.most_violated() {
-            if watch.is_over() || !self.polyhedron.affords(self.basis.rows().len()) {
+            if watch.is_over() || !self.polyhedron.affords(self.basis.rows.len()) {
                 return Ok(false);
             }
             watch.step("dual active set", self.history.len() + 1);
@@ -266,13 +259,13 @@ impl Search<'_> {
     fn balance(&mut self) {
         let (change, changes) = self.correction(&self.target, &self.distances);
         self.change = change;
-        for (&row, change) in self.basis.rows().iter().zip(&changes) {
+        for (&row, change) in self.basis.rows.iter().zip(&changes) {
             self.pressures[row] = self.carried[row] + change;
         }
     }
 
     fn open(&mut self, place: usize) {
-        let row = self.basis.rows()[place];
+        let row = self.basis.rows[place];
         self.basis.open(place);
         self.pressures[row] = 0.0;
         let carried = [std::mem::take(&mut self.carried[row]), std::mem::take(&mut self.rests[row])];
@@ -283,9 +276,8 @@ impl Search<'_> {
         }
     }
 
-    /// The row that is violated most, and its violation.
     fn most_violated(&self) -> Option<(usize, f64)> {
-        let moved = self.polyhedron.problem.contact().mul(&self.polyhedron.displacement(&self.change));
+        let moved = self.polyhedron.problem.contact().mul(&self.polyhedron.factor.backward(self.change.clone()));
         let size = norm(&self.change) + norm(&self.target);
         let violated = |row: usize| {
             let violation = moved[row] - self.distances[row];
@@ -295,10 +287,9 @@ impl Search<'_> {
         (0..moved.len()).filter_map(violated).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Closes `row`; opens other rows if their pressure falls to zero in the step. Returns `false` if the row cannot be
-    /// met.
+    /// Closes `row`, and opens rows whose pressure falls to zero. Returns `false` if the row cannot be met.
     fn close(&mut self, row: usize, mut violation: f64) -> Result<bool, Ending> {
-        let before = self.basis.rows().to_vec();
+        let before = self.basis.rows.to_vec();
         let direction = self.polyhedron.row(row);
         loop {
             let split = self.basis.split(&direction);
@@ -311,10 +302,13 @@ impl Search<'_> {
             }
             let Some(place) = first else {
                 self.check_contradiction(row, &split.weights)?;
-                self.restore(&before);
+                // Back to the set that was closed before.
+                self.pressures.fill(0.0);
+                self.basis = of_rows(self.polyhedron, &before);
+                self.balance();
                 return Ok(false);
             };
-            for (&closed, weight) in self.basis.rows().iter().zip(&split.weights) {
+            for (&closed, weight) in self.basis.rows.iter().zip(&split.weights) {
                 self.pressures[closed] = (self.pressures[closed] - step * weight).max(0.0);
             }
             if !split.depends {
@@ -324,25 +318,17 @@ impl Search<'_> {
         }
     }
 
-    /// The largest step of the new pressure before the pressure of a closed row falls to zero, and the place of that
-    /// row.
+    /// The largest step before the pressure of a closed row falls to zero, and the place of that row.
     fn blocking(&self, weights: &[f64]) -> (f64, Option<usize>) {
         let rounding = DEPENDENT_ROW * (1.0 + largest(weights));
         let mut first = (f64::INFINITY, None);
-        for (place, (&row, &weight)) in self.basis.rows().iter().zip(weights).enumerate() {
+        for (place, (&row, &weight)) in self.basis.rows.iter().zip(weights).enumerate() {
             let step = self.pressures[row].max(0.0) / weight;
             if weight > rounding && step < first.0 {
                 first = (step, Some(place));
             }
         }
         first
-    }
-
-    /// Returns to a set that was closed before.
-    fn restore(&mut self, rows: &[usize]) {
-        self.pressures.fill(0.0);
-        self.basis = of_rows(self.polyhedron, rows);
-        self.balance();
     }
 
     /// Checks that `row` does not contradict the closed rows. It does if, under the weights y (1 for it, -r for them),
@@ -353,12 +339,13 @@ impl Search<'_> {
         let Polyhedron { problem, lengths, reach, .. } = self.polyhedron;
         let mut weights = vec![0.0; problem.rows()];
         weights[row] = 1.0;
-        self.basis.rows().iter().zip(shares).for_each(|(&closed, share)| weights[closed] = (-share).max(0.0));
+        self.basis.rows.iter().zip(shares).for_each(|(&closed, share)| weights[closed] = (-share).max(0.0));
         let mut rest = vec![0.0; problem.rows()];
-        let left = |weights: &[f64], rest: &[f64]| self.polyhedron.of_force(&self.polyhedron.force(weights, rest));
+        let left =
+            |weights: &[f64], rest: &[f64]| self.polyhedron.factor.forward(&self.polyhedron.force(weights, rest));
         for _ in 0..WEIGHT_CORRECTIONS {
-            let change = self.basis.solve_upper(self.basis.along(&left(&weights, &rest)));
-            for (&closed, change) in self.basis.rows().iter().zip(&change) {
+            let change = self.basis.triangle.solve_upper(self.basis.along(&left(&weights, &rest)));
+            for (&closed, change) in self.basis.rows.iter().zip(&change) {
                 let weight = rest[closed] - change;
                 let sum = (weights[closed] + weight).max(0.0);
                 (rest[closed], weights[closed]) =

@@ -20,18 +20,17 @@
 
 mod exchange;
 mod iterate;
-mod travel;
 
 use super::bounds::Bounds;
 use super::{Ending, Outcome, Start};
-use crate::error::Error;
+use crate::error::Result;
 use crate::linear::SparseMatrix;
 use crate::linear::multigrid::{Face, Interval, Multigrid};
 use crate::linear::watch::Watch;
 use crate::problem::ContactProblem;
-use exchange::{Exchange, order};
+pub use exchange::takes_travels;
+use exchange::{Exchange, in_face, order, preconditioned};
 use iterate::{BoundedIterate, Move};
-pub use travel::takes_travels;
 
 /// The loop has stagnated after this many iterations without a residual half as large as the best before; those that
 /// change the face count only beyond one for each row.
@@ -68,8 +67,7 @@ pub struct Limits {
     /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
     pub tolerance: f64,
     pub most_cycles: usize,
-    /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or
-    /// after this number unless few are left.
+    /// Cycles that another way is worth: the loop ends if clearly more are left, or after these unless few are left.
     pub worth: usize,
     /// Estimated seconds that the sets of a loop with a factor may take, because another way takes less.
     pub most_seconds: f64,
@@ -90,10 +88,8 @@ impl Limits {
 /// MPRGP on an unscaled problem, with the hierarchy of its stiffness.
 #[derive(Clone, Copy)]
 pub struct Mprgp<'a> {
-    /// The problem in its own units.
     pub problem: &'a ContactProblem,
     pub multigrid: &'a Multigrid,
-    /// The accuracy and the cycles of this solve.
     pub limits: Limits,
     /// The watch that may end the loop before, with the answer so far.
     pub watch: &'a Watch,
@@ -104,7 +100,7 @@ impl Mprgp<'_> {
     ///
     /// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations
     /// together do not halve the residual; those that change the face count only beyond one for each row.
-    pub fn solve(&self, start: Start) -> Result<Outcome, Error> {
+    pub fn solve(&self, start: Start) -> Result<Outcome> {
         let Mprgp { problem, multigrid, limits, .. } = *self;
         let (rows, units, mut start) = ((problem.contact(), problem.gap()), multigrid.units(), start);
         let mut before: Option<Outcome> = None;
@@ -130,9 +126,26 @@ impl Mprgp<'_> {
         }
     }
 
-    fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome, Error> {
+    fn within(&self, bounds: &Bounds, start: Start) -> Result<Outcome> {
         let (limits, watch, rows) = (self.limits, self.watch, self.problem.rows());
-        let mut steps = Steps::of(self, self.started(bounds, start));
+        let (iterate, best) = (self.started(bounds, start), f64::INFINITY);
+        let mut steps = Steps {
+            multigrid: self.multigrid,
+            watch,
+            iterate,
+            face: None,
+            travels: Vec::new(),
+            is_old: false,
+            last: None,
+            cycles: 0,
+            of_faces: 0,
+            on_face: (0, best),
+            best,
+            since_best: 0,
+            changes: 0,
+            is_fresh: true,
+            last_checked: best,
+        };
         let mut history = vec![steps.iterate.step()];
         let mut ending = Ending::Unsettled;
         while steps.cycles < limits.most_cycles
@@ -176,8 +189,7 @@ impl Mprgp<'_> {
         Ok(Outcome { displacement, multiplier, contact_set, iterations, history, ending, variant })
     }
 
-    /// The iterate at the start; if a displacement is given that is not near the answer, the better one of that and
-    /// none.
+    /// The iterate at the start: of a given displacement far from the answer and none the better one.
     fn started<'b>(&'b self, bounds: &'b Bounds, start: Start) -> BoundedIterate<'b> {
         let at = |start: Start| BoundedIterate::new(self.problem, bounds, start, self.multigrid);
         let from_nothing = || at(self.nested(bounds).map(Start::near).unwrap_or_default());
@@ -260,30 +272,7 @@ struct Steps<'a> {
     last_checked: f64,
 }
 
-impl<'a> Steps<'a> {
-    /// Before the first step.
-    fn of(&Mprgp { multigrid, watch, .. }: &Mprgp<'a>, iterate: BoundedIterate<'a>) -> Self {
-        let (face, travels, last, best) = (None, Vec::new(), None, f64::INFINITY);
-        let (cycles, of_faces, on_face, since_best, changes) = (0, 0, (0, best), 0, 0);
-        Steps {
-            multigrid,
-            watch,
-            iterate,
-            face,
-            travels,
-            is_old: false,
-            last,
-            cycles,
-            of_faces,
-            on_face,
-            best,
-            since_best,
-            changes,
-            is_fresh: true,
-            last_checked: best,
-        }
-    }
-
+impl Steps<'_> {
     /// Notes a residual above the tolerance.
     fn note(&mut self, residual: f64) {
         self.is_fresh = false;
@@ -306,8 +295,7 @@ impl<'a> Steps<'a> {
         (is_told && left > unsure * worth) || (self.cycles + self.of_faces >= limits.worth && !is_near)
     }
 
-    /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement
-    /// is left.
+    /// Recomputes the gradient, which steps only update. Returns `true` if only rounding of the displacement is left.
     fn has_settled(&mut self) -> bool {
         self.iterate.refresh_gradient_accurately();
         let checked = self.iterate.residual();
@@ -318,9 +306,8 @@ impl<'a> Steps<'a> {
         false
     }
 
-    /// Takes a proportioning, conjugate gradient or expansion step. Returns `false` at a direction along which nothing
-    /// is held, or along which the energy is negative.
-    fn take_one(&mut self) -> Result<bool, Error> {
+    /// Takes one of the steps. Returns `false` at a direction along which nothing is held, or the energy is negative.
+    fn take_one(&mut self) -> Result<bool> {
         let iterate = &mut self.iterate;
         if iterate.is_disproportionate() {
             iterate.proportion();
@@ -330,7 +317,7 @@ impl<'a> Steps<'a> {
             Some(face) if !self.is_old => face,
             old => {
                 let face = self.multigrid.face(&iterate.held(), old.as_ref())?;
-                self.travels = travel::in_face(std::mem::take(&mut self.travels), iterate, &face);
+                self.travels = in_face(std::mem::take(&mut self.travels), iterate, &face);
                 self.cycles += iterate.bounds.travels.len();
                 self.of_faces += self.multigrid.cycles_of_face();
                 face
@@ -339,7 +326,7 @@ impl<'a> Steps<'a> {
         self.is_old = false;
         let last = self.last.take();
         let (direction, slope) = iterate.of_free_gradient(|gradient| {
-            let step = travel::preconditioned(&self.travels, iterate, &face, gradient);
+            let step = preconditioned(&self.travels, iterate, &face, gradient);
             self.cycles += 1;
             self.watch.step("MPRGP", self.cycles);
             iterate.conjugate(step, last, gradient)

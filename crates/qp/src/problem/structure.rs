@@ -1,10 +1,94 @@
-//! Rows that contradict each other at sight: a row without entries, whose gap is met or not, whatever moves, and two
-//! rows that oppose each other.
+//! What follows from the matrices of a problem: its parts, rows without entries, and rows that oppose each other.
 
 use std::collections::HashMap;
 
-use crate::error::Error;
-use crate::linear::{Accumulator, SparseMatrix, exponent, ldexp};
+use crate::error::{Error, Result};
+use crate::linear::{Accumulator, Forest, SparseMatrix, SymmetricMatrix, exponent, ldexp};
+
+/// A coupling below this share of `sqrt(K_ii K_jj)` does not make two dofs one part.
+const WEAK_COUPLING: f64 = 1e-6;
+
+#[derive(Clone, Debug)]
+pub struct Diagonal {
+    /// K_ii of each dof.
+    pub values: Vec<f64>,
+    /// `sqrt(K_ii)` of each dof.
+    pub roots: Vec<f64>,
+}
+
+/// The connected components of K and B, which share almost no energy: a coupling or a row with an obstacle joins dofs.
+///
+/// An answer may be right for a stiff part and wrong for a soft one beside it, because the energy of the soft part is
+/// too small to show in that of the whole. Therefore a certificate measures every part in its own scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parts {
+    /// The part of each dof, length n, numbered from 0 in the order of their first dofs.
+    pub of_dof: Vec<usize>,
+    /// The part of each row; 0 for a row without dofs.
+    pub of_row: Vec<usize>,
+    count: usize,
+    /// The body of each dof and their number: the components of K alone; nothing and zero if there is but one.
+    bodies: (Vec<usize>, usize),
+}
+
+impl Parts {
+    /// The parts of a stiffness under contact rows with these gaps; rows with an infinite gap join nothing.
+    pub fn of(stiffness: &SymmetricMatrix, diagonal: &Diagonal, contact: &SparseMatrix, gap: &[f64]) -> Self {
+        let roots = &diagonal.roots;
+        let mut forest = Forest::new(roots.len());
+        for (column, &own) in roots.iter().enumerate() {
+            if forest.is_one_tree() {
+                break;
+            }
+            for (row, value) in stiffness.lower().column(column) {
+                if row != column && value.abs() > WEAK_COUPLING * own * roots[row] {
+                    forest.join(column, row);
+                }
+            }
+        }
+        let bodies = if forest.is_one_tree() { Default::default() } else { forest.clone().into_trees() };
+        let mut first: Vec<Option<usize>> = vec![None; contact.rows()];
+        let dofs = if forest.is_one_tree() { 0 } else { roots.len() };
+        for dof in 0..dofs {
+            let bounded = |entry: &(usize, f64)| entry.1 != 0.0 && gap[entry.0].is_finite();
+            for (row, _) in contact.column(dof).filter(bounded) {
+                forest.join(*first[row].get_or_insert(dof), dof);
+            }
+        }
+        let (of_dof, count) = forest.into_trees();
+        let mut of_row = vec![0; contact.rows()];
+        if count > 1 {
+            contact.triplets().filter(|entry| entry.2 != 0.0).for_each(|(row, dof, _)| of_row[row] = of_dof[dof]);
+        }
+        Parts { of_dof, of_row, count, bodies }
+    }
+
+    /// Number of parts, at least one: a problem without dofs has an empty one.
+    pub fn count(&self) -> usize {
+        self.count.max(1)
+    }
+
+    /// Returns `true` if the stiffness has no coupling of two parts, not even a weak one.
+    pub fn are_apart(&self, stiffness: &SymmetricMatrix) -> bool {
+        stiffness.lower().triplets().all(|(row, column, value)| value == 0.0 || self.of_dof[row] == self.of_dof[column])
+    }
+
+    pub fn bodies(&self) -> usize {
+        self.bodies.1.max(1)
+    }
+
+    /// The body of a dof: K alone joins its dofs.
+    pub fn body_of_dof(&self, dof: usize) -> usize {
+        self.bodies.0.get(dof).copied().unwrap_or(0)
+    }
+
+    /// The sum of `term(dof)` over the dofs of each part.
+    pub fn sums(&self, term: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut sums = vec![0.0; self.count()];
+        self.of_dof.iter().enumerate().for_each(|(dof, &part)| sums[part] += term(dof));
+        sums
+    }
+}
 
 /// The gap of a row without entries is rounding if it is below this share of the largest.
 const OF_LARGEST: f64 = 16.0 * f64::EPSILON;
@@ -21,10 +105,9 @@ type Direction = Vec<(usize, u64)>;
 /// Rows with the size of their first entry, on each of the two sides of a direction.
 type Sides = [Vec<(usize, f64)>; 2];
 
-/// Two opposed rows that meet exactly, which makes them an equality: `opposed` is `-ratio` times `row`, in coefficients
-/// and gap.
+/// Two opposed rows that meet exactly: `opposed` is `-ratio` times `row`, in coefficients and gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Equality {
+pub struct Equality {
     pub row: usize,
     pub opposed: usize,
     pub ratio: f64,
@@ -32,7 +115,7 @@ pub(crate) struct Equality {
 
 /// The rows of a contact matrix that may contradict each other at some gaps.
 #[derive(Clone, Debug)]
-pub(super) struct OpposedRows {
+pub struct OpposedRows {
     /// The directions with rows on both sides.
     directions: Vec<Sides>,
     /// The transposed rows, if there are such directions.
@@ -55,12 +138,8 @@ impl OpposedRows {
         };
         let mut moved: Vec<usize> = (0..contact.rows()).filter(|&row| ends[row].0 > 0).collect();
         moved.sort_by_cached_key(likeness);
-        let alike: Vec<usize> = moved
-            .chunk_by(|a, b| likeness(a) == likeness(b))
-            .filter(|rows| rows.len() > 1)
-            .flatten()
-            .copied()
-            .collect();
+        let alike = moved.chunk_by(|a, b| likeness(a) == likeness(b)).filter(|rows| rows.len() > 1);
+        let alike: Vec<usize> = alike.flatten().copied().collect();
         if alike.is_empty() {
             return OpposedRows { directions: Vec::new(), by_row: None };
         }
@@ -80,7 +159,7 @@ impl OpposedRows {
     }
 
     /// Checks that no rows, of which these are without entries, contradict each other at sight under `gap` (length m).
-    pub fn check(&self, without_entries: &[usize], gap: &[f64]) -> Result<(), Error> {
+    pub fn check(&self, without_entries: &[usize], gap: &[f64]) -> Result<()> {
         if let Some(&row) = without_entries.iter().find(|&&row| gap[row] < 0.0) {
             let reason =
                 format!("contact row {row} has no free dof, but its gap is {:e}: it must not be negative", gap[row]);
@@ -115,15 +194,11 @@ impl OpposedRows {
         equalities
     }
 
-    /// The nearest row on each side of a direction under `gap`, the one of the smaller number first: row, first entry,
-    /// distance.
+    /// The nearest row on each side of a direction, the smaller number first: row, first entry, distance.
     fn nearest(&self, gap: &[f64]) -> impl Iterator<Item = [(usize, f64, f64); 2]> {
         let nearest = |side: &[(usize, f64)]| {
-            let distances = side
-                .iter()
-                .filter(|entry| gap[entry.0].is_finite())
-                .map(|&(row, first)| (row, first, gap[row] / first));
-            distances.min_by(|a, b| a.2.total_cmp(&b.2))
+            let finite = side.iter().filter(|entry| gap[entry.0].is_finite());
+            finite.map(|&(row, first)| (row, first, gap[row] / first)).min_by(|a, b| a.2.total_cmp(&b.2))
         };
         self.directions.iter().filter_map(move |[above, below]| {
             let (a, b) = (nearest(above)?, nearest(below)?);
@@ -136,8 +211,7 @@ impl OpposedRows {
     }
 }
 
-/// Returns `true` if two rows with entries in the same places are multiples of each other, to the last bit. Quotients
-/// that are equal only by rounding do not count: then some displacement meets both rows.
+/// Returns `true` if two rows are multiples to the last bit: if only by rounding, some displacement meets both.
 fn are_parallel(by_row: &SparseMatrix, a: usize, b: usize) -> bool {
     let entries = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0).map(|entry| entry.1);
     let (Some(first_a), Some(first_b)) = (entries(a).next(), entries(b).next()) else { return false };
@@ -152,15 +226,14 @@ fn are_parallel(by_row: &SparseMatrix, a: usize, b: usize) -> bool {
 }
 
 /// The rows of a matrix without an entry.
-pub(super) fn without_entries(contact: &SparseMatrix) -> Vec<usize> {
+pub fn without_entries(contact: &SparseMatrix) -> Vec<usize> {
     let mut has_entry = vec![false; contact.rows()];
     (0..contact.columns()).for_each(|dof| contact.with_rows(dof, &mut has_entry, |has, b| *has |= b != 0.0));
     (0..contact.rows()).filter(|&row| !has_entry[row]).collect()
 }
 
-/// Makes given gaps those of a problem: `+inf` for every [`NO_OBSTACLE`], and zero on these rows where they are
-/// rounding beside the largest. Returns such rows with their former gaps.
-pub(super) fn settle(without_entries: &[usize], gap: &mut [f64]) -> Vec<(usize, f64)> {
+/// Makes given gaps those of a problem: `+inf` for [`NO_OBSTACLE`], zero for rounding. Returns such rows and gaps.
+pub fn settle(without_entries: &[usize], gap: &mut [f64]) -> Vec<(usize, f64)> {
     gap.iter_mut().filter(|gap| NO_OBSTACLE.contains(gap)).for_each(|gap| *gap = f64::INFINITY);
     let size = OF_LARGEST * largest_finite(gap);
     let is_rounding = |row: &usize| gap[*row] != 0.0 && gap[*row].abs() <= size;
@@ -169,7 +242,7 @@ pub(super) fn settle(without_entries: &[usize], gap: &mut [f64]) -> Vec<(usize, 
 }
 
 /// The largest magnitude of the finite gaps.
-pub(super) fn largest_finite(gap: &[f64]) -> f64 {
+pub fn largest_finite(gap: &[f64]) -> f64 {
     gap.iter().filter(|gap| gap.is_finite()).fold(0.0, |most, gap| gap.abs().max(most))
 }
 
