@@ -428,6 +428,24 @@ mod tests {
     }
 
     #[test]
+    fn springs_of_stiffness_four_that_move_by_three_have_a_length_of_six() {
+        let springs = Springs { stiffness: vec![4.0, 0.0], are_equalities: vec![false; 2] };
+        let norm = EnergyNorm { springs: Some(Arc::new(springs)), ..norm(&pair(4.0, 0.0)) };
+        assert_eq!(norm.length_of_springs(&[3.0, 7.0]), ROUNDED_BOUND * 6.0);
+    }
+
+    #[test]
+    fn rows_that_count_are_on_the_boundary_only_without_entries_beyond_it() {
+        let rows = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
+        let norm = EnergyNorm::of(&pair(4.0, 0.0), &rows(&[(0, 1, 1.0)])).unwrap().unwrap();
+        assert_eq!(norm.boundary.as_ref().unwrap().dofs, [1]);
+        let beyond = rows(&[(0, 1, 1.0), (1, 0, 1.0), (1, 1, 1.0)]);
+        assert!(norm.rows_on_boundary(&beyond, |_| true).is_none());
+        let first = norm.rows_on_boundary(&beyond, |row| row == 0).unwrap();
+        assert_eq!((0..2).map(|row| first.compliance.by_row().column(row).count()).collect::<Vec<_>>(), [1, 0]);
+    }
+
+    #[test]
     fn a_norm_ends_with_its_watch() {
         let norm = norm(&pair(4.0, 0.5));
         assert!(!norm.is_over());
