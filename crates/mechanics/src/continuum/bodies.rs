@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::bound::Bracket;
 use super::mesh::{Cells, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Surface};
 use super::simplex::{Point, pairs};
@@ -103,6 +104,18 @@ pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
         mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
     }
     (problem, mesh)
+}
+
+/// The bracket of a problem on a mesh, with settings for an exact answer.
+pub fn solved<'a>(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Bracket<'a> {
+    Bracket::new(problem, mesh, None, &settings()).unwrap()
+}
+
+/// Both energies of a bracket are this one, up to this share.
+pub fn assert_energy(bracket: &Bracket, energy: f64, share: f64) {
+    for found in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
+        assert!((found / energy - 1.0).abs() < share, "{found} {energy}");
+    }
 }
 
 /// Settings for an exact answer.

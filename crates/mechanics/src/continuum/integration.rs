@@ -2,8 +2,7 @@
 
 use super::axis::{around, beyond};
 use super::problem::ContinuumProblem;
-use super::sample::{Sample, line, square};
-use super::simplex::{Point, Simplex, Weights, quadratic_rule, size_of_facet};
+use super::simplex::{Point, Sample, Simplex, Weights, line, quadratic_rule, size_of_facet, square};
 use super::turning;
 
 /// Points on a facet along each direction: exact for degree 15. Two quadratic functions and the radius have 5, P and

@@ -15,8 +15,7 @@ use super::integration::samples;
 use super::normal::{Lower, add, null_space};
 use super::part_stress::{PartStress, QUADRATIC, quadratic_factors};
 use super::problem::{ContinuumProblem, Law, Medium};
-use super::sample::Sample;
-use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
+use super::simplex::{ENTRIES, Point, Sample, Simplex, corners_of_side, traction};
 use crate::fem::material::engineering;
 use signorini_qp::dot;
 

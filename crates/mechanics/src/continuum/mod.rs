@@ -13,14 +13,12 @@ mod fans;
 mod force;
 mod integration;
 mod johnson_mercier;
-mod judge;
 #[cfg(test)]
 mod keys;
 mod mesh;
 mod normal;
 mod part_stress;
 mod problem;
-mod sample;
 mod seams;
 mod simplex;
 mod springs;
@@ -30,10 +28,9 @@ mod turning;
 #[cfg(test)]
 mod two_bodies;
 
-pub use answer::ContinuumAnswer;
+pub use answer::{ContinuumAnswer, Judged, Strain};
 pub use bound::Bracket;
 pub use fans::Unjoined;
-pub use judge::{Judged, Strain};
 pub use mesh::{Cells, SimplexMesh};
 pub use problem::{
     Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace, Surface,

@@ -8,8 +8,7 @@ use std::sync::OnceLock;
 
 use super::mesh::SimplexMesh;
 use super::problem::ContinuumProblem;
-use super::sample::{Sample, beyond, square as points};
-use super::simplex::{Point, Simplex};
+use super::simplex::{Point, Sample, Simplex, beyond, square as points};
 use crate::fem::geometry::{dot, minus};
 
 /// Points along a line: exact for degree 19, of the squares of two linear strains (2), the stiffness (4), `P^2` (12),

@@ -1,11 +1,10 @@
 //! A problem that moves to another end: gaps, load or both change linearly.
 
-use serde::Serialize;
-
 use super::Summary;
 use super::kept_answers::{KeptAnswers, points};
 use super::scene::Sweep;
 use crate::error::Error;
+use serde::Serialize;
 use signorini_qp::{ContactProblem, Prepared, Settings, Solution, Start};
 
 /// The answer to a problem whose gaps and load lie between those of a directory and those of its other end.

@@ -3,18 +3,16 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use serde::Serialize;
-
-use super::exact_path::ExactPath;
-use super::kept_answers::{KeptAnswers, points};
-use super::summary::{LargestDisplacement, OF_MESHED_PART, Status};
+use super::kept_answers::{ExactPath, KeptAnswers, points};
+use super::summary::{LargestDisplacement, OF_MESHED_PART, Status, contact_on_obstacles};
 use super::warnings::{
     AnswerWarning, BEYOND, check_approach, check_deformation, initial_overlap, of_scene, point_support,
 };
-use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
+use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::scene::{Answer, ContactExtent, Model};
+use serde::Serialize;
 use signorini_qp::{ContactSet, Goal, Prepared, Settings, Solution, Start, solve};
 
 /// Gaps at the middle that differ by more than this from the mean of the ends, relative, are not on a straight line.

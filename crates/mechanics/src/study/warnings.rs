@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, dot};
 use crate::scene::answers::deformation;
@@ -11,6 +9,7 @@ use crate::scene::models::overlap::Overlap;
 use crate::scene::models::parts::Origin;
 use crate::scene::models::rigid_body_modes::soft::SoftMotion;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
+use serde::Serialize;
 use signorini_qp::{Certificate, ContactProblem, Solution, largest};
 
 /// Overlaps below this share of the size of the mesh are rounding of coordinates.

@@ -63,13 +63,7 @@ pub struct Inverse {
 }
 
 impl Cell {
-    /// The cell `reference` at `coordinates` (x, y, z of its nodes, in its order).
-    #[inline]
-    pub fn new(reference: &'static ReferenceElement, coordinates: &PerNode<[f64; 3]>) -> Self {
-        Self::at(reference, |local| coordinates[local])
-    }
-
-    /// The same, with a function from local nodes to coordinates.
+    /// The cell `reference` at the `coordinates` (x, y, z) of its nodes, by their local numbers.
     #[inline]
     pub fn at(reference: &'static ReferenceElement, coordinates: impl Fn(usize) -> [f64; 3]) -> Self {
         let origin = coordinates(0);

@@ -1,13 +1,11 @@
 //! Orthotropic elasticity: three planes of symmetry, eps = S sigma along the axes of the material.
 
-use signorini_linear as linear;
-
-use super::cylinder::Cylinder;
-use super::law::{Matrices, Matrix};
+use super::law::{Cylinder, Matrices, Matrix};
 use crate::error::Error;
 use crate::fem::dense::DenseMatrix;
 use crate::fem::formulation::{Formulation, positive};
 use crate::fem::geometry::{COORDINATES, Symmetric, cross, dot, length, turned, unit};
+use signorini_linear as linear;
 
 /// Axes that deviate by less than this, as a sine, deviate by rounding.
 const SAME_DIRECTION: f64 = 1e-9;

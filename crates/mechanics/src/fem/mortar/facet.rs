@@ -114,7 +114,7 @@ impl<'a> Facet<'a> {
     /// Adds its part to the normals of its nodes, with weights that leave no error on circles and spheres, however much
     /// the facets around a node differ: `|a x b| / (a.a b.b)` at a corner with the edges a and b.
     pub fn add_normals(&self, sums: &mut [[f64; 3]]) {
-        let (reference, cell) = (self.reference(), Cell::new(self.reference(), &self.corners));
+        let (reference, cell) = (self.reference(), Cell::at(self.reference(), |local| self.corners[local]));
         for (local, &node) in self.nodes.iter().enumerate() {
             let normal = unit(cell.area_vector(&(reference.derivative)(reference.nodes[local])));
             let weight = self.weight(local);

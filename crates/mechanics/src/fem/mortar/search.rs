@@ -3,13 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::coverage::Covered;
+use super::coverage::{Covered, MOST, Shared};
 use super::data::{Mortar, MortarRow, Opposite};
 use super::face::Projected;
 use super::facet::{self, Facet, SharedPoint, SurfaceMesh};
 use super::line;
-use super::shared::{MOST, Shared};
-use super::smooth::Curve;
+use super::skin::Curve;
 use crate::fem::element::{MAX_NODES, PerNode, positive_coefficient, positive_functions};
 use crate::fem::geometry::{dot, length, minus, unit};
 use crate::fem::surface::Tree;

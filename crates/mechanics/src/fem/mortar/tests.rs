@@ -455,7 +455,7 @@ fn corners_are_not_rounded() {
     );
     assert_eq!(pair.found().unwrap().sag, 0.0);
     let sides = Sides::of(&pair);
-    let curve = smooth::Curve::of(&pair.slave, &sides.slave, &sides.normals[0]);
+    let curve = super::skin::Curve::of(&pair.slave, &sides.slave, &sides.normals[0]);
     let middle = (Line2.reference().shape)([0.0; 3]);
     assert!(sides.slave.iter().all(|facet| curve.beyond(facet, &middle) == 0.0));
 }

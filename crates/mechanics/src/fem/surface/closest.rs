@@ -1,7 +1,7 @@
 //! The closest point of a surface, the normal there, and the signed distance.
 
-use super::closed::ClosedSurface;
-use super::triangle::Part;
+use super::facets::Part;
+use super::tree::ClosedSurface;
 use crate::fem::geometry::{distance, dot, length, minus, unit};
 
 /// With this many closest points a node has them all around, like the centre of a ball: any one of these points can be

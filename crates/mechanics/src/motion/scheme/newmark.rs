@@ -1,4 +1,5 @@
-//! Newmark's family with the constraint at the end of the step.
+//! Newmark's family with the constraint at the end of the step: the trapezoidal rule with beta = 1/4 and gamma = 1/2,
+//! HHT-alpha, and the contact-stabilised rule.
 //!
 //! ```text
 //! u^ = u + dt v + dt^2 (1/2 - beta) a,   v^ = v + dt (1 - gamma) a,   u+ = u^ + w,   a+ = w/(beta dt^2),   v+ = v^ + dt gamma a+
@@ -10,7 +11,8 @@
 //! structural dynamics*, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292.
 
 use crate::error::Error;
-use crate::motion::step::{Advance, Found, Stepping, next, plus};
+use crate::fem::assembly::MassForm;
+use crate::motion::step::{About, Advance, Found, Parameter, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp::Settings;
 
@@ -110,5 +112,93 @@ impl Advance for Newmark {
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
         let acceleration = at.iter().map(|&dof| after.acceleration[dof]).collect();
         Balance { acceleration, ..Balance::between(step, before, after, 1.0 + self.alpha, at) }
+    }
+}
+
+// HHT-alpha: Newmark's rule with beta = (1 - alpha)^2/4 and gamma = 1/2 - alpha, which damps short waves.
+
+pub(super) static HHT: About = About {
+    name: "hht",
+    parameter: Some(Parameter {
+        name: "alpha",
+        default: -0.1,
+        allows: |alpha| (-1.0 / 3.0..=0.0).contains(&alpha),
+        range: "from -1/3 to 0",
+    }),
+    prepare: |problem, step, alpha, settings| Ok(Box::new(Newmark::new(problem, step, alpha, settings, settings)?)),
+    ..TRAPEZOIDAL
+};
+
+/// The other rules of its kind name only what differs.
+pub(super) const TRAPEZOIDAL: About = About {
+    name: "trapezoidal",
+    parameter: None,
+    masses: &[MassForm::Consistent, MassForm::Lumped],
+    gains_energy: true,
+    penetrates: false,
+    is_explicit: false,
+    uses_frequency: false,
+    follows_obstacles: false,
+    is_exact_in_bars: false,
+    load_times: &[0.0, 1.0],
+    unstable_in_contact: &[],
+    prepare: |problem, step, _, settings| Ok(Box::new(Newmark::new(problem, step, 0.0, settings, settings)?)),
+};
+
+// Newmark's rule, contact-stabilised: the prediction is made admissible first, and contact forces are implicit.
+//
+// ```text
+// u^ = argmin norm_M(u^ - u - dt v) with B u^ <= g,   u+ = u^ + w,   v+ = v + 2 w/dt
+// (2/dt^2) M w + C (v + w/dt) + K (u + u+)/2 = f(t + dt/2) + B' lambda,   B u+ <= g
+// ```
+//
+// # Source
+// P. Deuflhard, R. Krause, S. Ertel, *A contact-stabilized Newmark method for dynamical contact problems*, Int. J.
+// Numer. Methods Eng. 73 (2008) 1274-1290.
+
+pub(super) static CONTACT_STABILISED: About = About {
+    name: "contact-stabilised",
+    gains_energy: false,
+    load_times: &[0.5],
+    prepare: |problem, step, _, settings| {
+        // The equation above, multiplied by two.
+        let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
+        let stepping = Stepping::of(problem, matrix, settings)?;
+        Ok(Box::new(ContactStabilised { stepping, mass: Stepping::of_mass(problem, settings)? }))
+    },
+    ..TRAPEZOIDAL
+};
+
+#[derive(Debug)]
+struct ContactStabilised {
+    stepping: Stepping,
+    mass: Stepping,
+}
+
+impl Advance for ContactStabilised {
+    fn start(&self, _: &DynamicProblem, _: f64, state: State) -> Result<State, Error> {
+        Ok(state)
+    }
+
+    fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error> {
+        let mut predicted = plus(&state.displacement, step, &state.velocity);
+        let bound = problem.remaining_gap(&predicted);
+        if let Some(correction) = self.mass.smallest(bound, &state.contact_set)? {
+            predicted = plus(&predicted, 1.0, &correction.change);
+        }
+        let elastic = plus(&state.elastic, 1.0, &problem.statics().stiffness().mul(&predicted));
+        let load = problem.load_at((state.steps as f64 + 0.5) * step);
+        let mut force: Vec<f64> = load.iter().zip(&elastic).map(|(f, k)| 2.0 * f - k).collect();
+        problem.damp(2.0, &state.velocity, &mut force);
+        let gap = problem.remaining_gap(&predicted);
+        let found = self.stepping.solve(force, gap, &state.contact_set)?;
+        let displacement = plus(&predicted, 1.0, &found.change);
+        let velocity = plus(&state.velocity, 2.0 / step, &found.change);
+        let multiplier = found.multiplier.iter().map(|lambda| lambda / 2.0).collect();
+        Ok(next(problem, state, [displacement, velocity], (multiplier, found.contact_set)))
+    }
+
+    fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
+        Balance::of_middle(step, before, after, at)
     }
 }

@@ -9,20 +9,18 @@
 //!
 //! The contact set of a penalty starts from that of the penalty before, the first from that of the last step.
 
-use super::newmark::Newmark;
-use super::penalty::springs;
-use super::trapezoidal;
+use super::newmark::{self, Newmark};
 use crate::error::Error;
 use crate::motion::step::{About, Advance, Parameter, Stepping};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp as qp;
-use signorini_qp::largest;
+use signorini_qp::{Method, Penalty, Settings, largest};
 
 /// Number of penalties, each ten times the one before, from the local stiffness on. At the last one, 1e8, the rounding
 /// of double precision and the remaining penetration are equally large; larger penalties would only add noise.
 const PENALTIES: i32 = 9;
 
-pub(super) static ABOUT: About = About {
+pub(super) static PENALTY_LOOP: About = About {
     name: "penalty-loop",
     parameter: Some(Parameter {
         name: "threshold",
@@ -37,7 +35,7 @@ pub(super) static ABOUT: About = About {
         let stiffer = stiffer.collect::<Result<Vec<_>, Error>>()?;
         Ok(Box::new(PenaltyLoop { threshold, newmark, stiffer }))
     },
-    ..trapezoidal::ABOUT
+    ..newmark::TRAPEZOIDAL
 };
 
 #[derive(Debug)]
@@ -82,4 +80,28 @@ impl Advance for PenaltyLoop {
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
         self.newmark.balance(step, before, after, at)
     }
+}
+
+// The trapezoidal rule with springs of `penalty` times the local stiffness instead of closed rows.
+
+pub(super) static PENALTY: About = About {
+    name: "penalty",
+    parameter: Some(Parameter {
+        name: "penalty",
+        default: 10.0,
+        allows: |penalty| penalty.is_finite() && penalty > 0.0,
+        range: "positive and finite",
+    }),
+    penetrates: true,
+    prepare: |problem, step, penalty, settings| {
+        Ok(Box::new(Newmark::new(problem, step, 0.0, &springs(settings, penalty), settings)?))
+    },
+    ..newmark::TRAPEZOIDAL
+};
+
+/// The settings with springs of one penalty, in multiples of the local stiffness, instead of closed rows.
+pub(super) fn springs(settings: &Settings, penalty: f64) -> Settings {
+    let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0 };
+    // Springs yield, so that no certificate of rigid contact is possible.
+    settings.clone().by(Method::Penalty(one)).without_tolerance()
 }

@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 
 use super::schema::PartSpec;
-use super::schema::part::PartNormalSpec;
+use super::schema::body::PartNormalSpec;
 use crate::fem::assembly::{node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{along_axis, dot, length};

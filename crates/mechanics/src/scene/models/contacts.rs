@@ -18,9 +18,6 @@ const HALVINGS: usize = 12;
 impl Scene {
     /// The scene with an obstacle for each pair of bodies that face each other and that no obstacle names, and the body
     /// with the boundaries of these obstacles.
-    ///
-    /// # Errors
-    /// None for bodies of one model.
     pub(crate) fn with_contacts(&self, mut body: ElasticBody) -> Result<(Scene, ElasticBody), Error> {
         let (mut scene, nodes) = (self.clone(), body.mesh().nodes().to_vec());
         let regions = body.regions().to_vec();

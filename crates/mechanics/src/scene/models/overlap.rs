@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use std::collections::HashMap;
 
 use super::contacts::facet_length;
-use crate::fem::element::{Cell, MAX_NODES};
+use crate::fem::element::Cell;
 use crate::fem::mesh::extent;
 use crate::fem::mortar::Skin;
 use crate::fem::surface::Tree;
@@ -97,9 +97,9 @@ impl Solid {
         let mut near = Vec::new();
         self.elements.around_line(at, [1.0, 0.0, 0.0], [0.0; 3], |number| near.push(self.first + number as usize));
         near.into_iter().any(|element| {
-            let mut places = [[0.0; 3]; MAX_NODES];
-            places.iter_mut().zip(mesh.element(element)).for_each(|(place, &node)| *place = nodes[node]);
-            Cell::new(mesh.kind_of(element).reference(), &places).weights_at(at, SAME_PLACE).is_some()
+            let own = mesh.element(element);
+            let cell = Cell::at(mesh.kind_of(element).reference(), |local| nodes[own[local]]);
+            cell.weights_at(at, SAME_PLACE).is_some()
         })
     }
 }

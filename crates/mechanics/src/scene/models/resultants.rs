@@ -3,8 +3,6 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use serde::Serialize;
-
 use super::held::Holder;
 use super::points::{ForcesAt, ReferencePoint};
 use super::rigid_face::Motion;
@@ -14,7 +12,8 @@ use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{COORDINATES, cross, dot, length, minus};
 use crate::scene::Model;
 use crate::scene::input::obstacle::PlacedObstacle;
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::model::Rule;
+use serde::Serialize;
 
 /// Forces that cancel to this share of the sum of their magnitudes leave only rounding, which has no line of action.
 const CANCELS: f64 = 1e-10;
@@ -153,10 +152,6 @@ pub(crate) fn without_rounding(all: &mut [Resultant]) {
 impl Model {
     /// The resultants of the contact forces, obstacle by obstacle, from the multipliers of all rows (one entry per
     /// contact row, in force, `<= 0`).
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`](signorini_qp::LinearError::Length) if `multiplier` does not have one entry per
-    /// contact row.
     pub fn contact_resultants(&self, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
         self.check_multiplier(multiplier)?;
         let mut sums = vec![Sum::default(); self.obstacles().len()];

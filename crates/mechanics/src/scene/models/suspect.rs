@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::Parts;
+use super::preload::terms_of;
 use super::rows::ContactRow;
-use super::terms::terms_of;
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::fem::{Boundary, DofMap, ElasticBody};

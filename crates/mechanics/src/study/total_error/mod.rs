@@ -3,7 +3,6 @@
 
 mod estimated;
 mod examined;
-mod foresight;
 mod found;
 mod goal;
 mod guaranteed;

@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-use super::card::Card;
 use super::content::Deck;
-use super::surfaces::Surface;
+use super::sets::Surface;
+use super::source::Card;
 use crate::error::Error;
 use crate::fem::mesh::MAX_NODES;
 

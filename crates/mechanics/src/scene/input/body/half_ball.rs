@@ -1,17 +1,14 @@
 //! The lower half of a ball, or its mirror image: a core of bricks, and shells of bricks around it out to the sphere.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::shape::{About, Block, BodyShape, RoundCells, Sides, Site};
+use super::shape::{Block, BodyShape, RoundCells, Sides, Site};
 use crate::error::Error;
 use crate::fem::Integration;
-use crate::fem::mesh::lattice::Lattice;
-use crate::fem::mesh::round::Grading;
+use crate::fem::mesh::lattice::{Grading, Lattice};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
-use crate::scene::input::entry::wrong;
-use crate::scene::input::files::Files;
-use crate::scene::input::schema::cells::{HalfSpec, SolidElementSpec};
+use crate::scene::input::entry::{Files, wrong};
+use crate::scene::input::schema::model::{HalfSpec, SolidElementSpec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Corners of a face of the core, in steps along its two directions, counterclockwise seen from outside.
 const AROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
@@ -52,8 +49,6 @@ pub enum SymmetrySpec {
     /// A plane of symmetry normal to y.
     Y,
 }
-
-pub(super) const ABOUT: About = About { name: "half-ball", dimensions: &[3] };
 
 impl BodyShape for HalfBallSpec {
     fn integration(&self) -> Integration {

@@ -2,13 +2,12 @@
 
 use std::collections::HashMap;
 
-use serde_json::{Value, json};
-
 use super::bodies::side;
-use super::scene_text::Entry;
-use super::ties::surfaces;
+use super::bolts::surfaces;
+use super::keywords::Entry;
 use crate::error::{Error, nearly};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
+use serde_json::{Value, json};
 
 /// The contacts of a scene, and what a reader should know of them.
 pub(super) struct Contacts {

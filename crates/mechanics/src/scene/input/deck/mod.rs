@@ -7,44 +7,33 @@ mod bodies;
 mod bolts;
 mod contacts;
 mod coupling;
-mod equations;
-mod forces;
 mod keywords;
 mod loads;
 mod materials;
 mod mpc;
-pub(crate) mod reference_node;
-mod references;
+pub(crate) mod references;
 pub(crate) mod requests;
-mod rigid;
-mod scene_text;
-mod springs;
+pub(crate) mod rigid;
 mod supports;
-mod temperatures;
-mod ties;
-mod transforms;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::warning::Warning;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Deck, DeckElement, Place, Space};
 use crate::scene::Scene;
-use crate::scene::input::warning::Warning;
-use amplitudes::Amplitudes;
+use amplitudes::{Amplitudes, Temperatures};
 use bodies::Body;
+use bolts::ties;
 use contacts::contacts;
+use keywords::SceneText;
 use loads::Loads;
 use materials::Sections;
-use reference_node::{Displacements, ReferenceNode};
 use references::References;
 use requests::Requests;
-use rigid::RigidBodies;
-use scene_text::SceneText;
+use rigid::{Displacements, ReferenceNode, RigidBodies, Transforms};
 use supports::supports;
-use temperatures::Temperatures;
-use ties::ties;
-use transforms::Transforms;
 
 /// More bodies than this are a mesh whose nodes were not merged.
 const MOST_BODIES: usize = 1000;
@@ -120,7 +109,7 @@ impl DeckScene {
         text.plain("units", &serde_json::json!({"length": "", "force": ""}));
         text.plain("model", &model(space).into());
         if let Some((thickness, place)) = sections.thickness.filter(|thickness| thickness.0 != 1.0) {
-            text.one("thickness", &scene_text::Entry::new(thickness.into(), place));
+            text.one("thickness", &keywords::Entry::new(thickness.into(), place));
         }
         let bodies = (0..deck.bodies).map(|index| Body::of(&deck, index, named, &sections, &temperatures));
         add_bodies(&mut text, bodies.collect::<Result<_, Error>>()?);
@@ -190,9 +179,6 @@ impl Scene {
 
     /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is
     /// not built.
-    ///
-    /// # Errors
-    /// As [`Scene::read_deck`].
     pub fn text_of_deck(file: &Path, named: &str, permits: &[&str], step: Option<usize>) -> Result<String, Error> {
         DeckScene::read(file, named, Reading { permits, step, earlier: &[] }).map(|scene| scene.text)
     }
@@ -232,7 +218,7 @@ fn comments(deck: &Deck, named: &str, noted: &[(Place, String)], passed: &[(Stri
 fn add_bodies(text: &mut SceneText, bodies: Vec<Body>) {
     let mut bodies = bodies.into_iter();
     let Some(first) = bodies.next() else { return };
-    text.one("body", &scene_text::Entry::new(first.body, first.place));
+    text.one("body", &keywords::Entry::new(first.body, first.place));
     first.material.iter().for_each(|material| text.one("material", material));
     text.list("materials", &first.materials);
     text.list("temperature", &first.temperature.into_iter().collect::<Vec<_>>());

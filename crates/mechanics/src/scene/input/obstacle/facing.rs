@@ -3,12 +3,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::mortar;
-use super::pairs::{Between, Facing};
-use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::order::{Between, Facing};
+use super::shape::{Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::assembly::{node_normals, outward};
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
@@ -17,7 +14,9 @@ use crate::fem::mortar::{TwoSkins, has_corners};
 use crate::fem::surface::Tree;
 use crate::fem::{Boundary, FacetKind};
 use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, number, point, refused, wrong};
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::model::Rule;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Allowed lateral offset of a partner, in units of its distance: at the end of a curved boundary only the facets on
 /// one side give the normal, which is wrong by half the angle of a facet.
@@ -122,8 +121,6 @@ const PAIR_UP: &str = "for `\"rows\": \"pairs\"` the nodes of the two boundaries
 
 /// The code of boundaries whose nodes do not pair up.
 const UNPAIRED: &str = "unpaired-nodes";
-
-pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
 
 impl ObstacleShape for FacingSpec {
     /// Finds the rows: pairs where all nodes pair up, else means.

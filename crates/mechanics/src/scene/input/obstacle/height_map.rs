@@ -3,16 +3,14 @@
 use std::iter;
 use std::sync::Arc;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::graph::{Form, Graph, Grid, across};
-use super::patch::{Foot, Patch};
-use super::shape::{About, Geometry, ObstacleShape, Site};
-use super::triangle::{PAIRS, extent};
+use super::patch::{Foot, PAIRS, Patch, extent};
+use super::shape::{Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Feet closer together than this, relative to the body's size, are one point: neighbouring cells share their edges,
 /// and the accuracy of a search is the square root of rounding.
@@ -37,8 +35,6 @@ pub struct HeightMapSpec {
     #[schemars(extend("minItems" = 2))]
     pub heights: Vec<Vec<f64>>,
 }
-
-pub(super) const ABOUT: About = About { name: "height-map", dimensions: &[3] };
 
 impl ObstacleShape for HeightMapSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::order::facet_size;
-use super::pairs::{Between, Facing};
+use super::order::{Between, Facing, facet_size};
 use super::shape::Site;
 use crate::error::Error;
 use crate::fem::assembly::{PositiveBasis, outward};
@@ -11,7 +10,7 @@ use crate::fem::mortar::{Found, MortarRow, Opposite};
 use crate::fem::{Boundary, DofMap, ElasticBody, Mortar};
 use crate::scene::Warning;
 use crate::scene::input::entry::wrong;
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::model::Rule;
 
 /// Facets of the other boundary larger than this many facets of the carrying one leave waves in the pressure.
 const COARSE: f64 = 4.0;

@@ -1,8 +1,8 @@
 //! The oracle of enclosed gaps: the rows by rule `approach` at points of a triangle.
 
-use super::ruled::RigidSurface;
-use super::triangle::PAIRS;
-use crate::scene::input::schema::approach::Rule;
+use super::patch::PAIRS;
+use super::row::RigidSurface;
+use crate::scene::input::schema::model::Rule;
 
 /// Rounding of gaps and places of order one, with slopes of some hundreds near a rim.
 pub(super) const ROUNDING: f64 = 1e-11;

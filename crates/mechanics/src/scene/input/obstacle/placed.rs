@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use super::order::SideOrder;
-use super::pairs::{Between, Facing};
+use super::order::{Between, Facing, SideOrder};
 use super::row::{Obstacle, ObstacleRow};
 use super::shape::{Geometry, Site};
 use crate::error::Error;
@@ -11,9 +10,8 @@ use crate::fem::assembly::{DofMap, node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{length, unit};
 use crate::scene::Warning;
-use crate::scene::input::entry::{boundary, finite, number, positive, wrong};
-use crate::scene::input::files::Files;
-use crate::scene::input::schema::approach::{Approach, Rule};
+use crate::scene::input::entry::{Files, boundary, finite, number, positive, wrong};
+use crate::scene::input::schema::model::{Approach, Rule};
 use crate::scene::input::schema::obstacle::ObstacleSpec;
 
 /// A component of a unit normal below this is rounding of the geometry, not a direction.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::why_not::{WhyNot, none};
+use super::{WhyNot, none};
 use crate::continuum::{Circle, Condition, Held, Linear, Point};
 use crate::error::Error;
 use crate::fem::Mesh;
@@ -11,10 +11,9 @@ use crate::fem::geometry::{COORDINATES, cross, dot, minus, unit};
 use crate::fem::mesh::pieces::Pieces;
 use crate::scene::Model;
 use crate::scene::input::entry::boundary;
-use crate::scene::input::profile::Profile;
-use crate::scene::input::schema::load::{LoadSpec, PressureSpec, TractionSpec};
-use crate::scene::input::schema::profile::ProfileSpec;
+use crate::scene::input::schema::load::{LoadSpec, PressureSpec, ProfileSpec, TractionSpec};
 use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
+use crate::scene::input::sum::Profile;
 use crate::scene::models::load::spread;
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
