@@ -8,7 +8,7 @@ use super::bound::Bracket;
 use super::simplex::{MOST_CORNERS, Point, Sample, Simplex, Tensor, Weights, less, middle};
 use crate::error::Error;
 use crate::fem::element::Tabulated;
-use crate::fem::geometry::key;
+use crate::fem::geometry::{key, midpoint};
 use crate::fem::threads::each;
 use crate::fem::{Boundary, ElementKind, Mesh};
 
@@ -70,15 +70,17 @@ impl Bracket<'_> {
     pub fn answer(&self) -> ContinuumAnswer {
         let (mesh, dimension) = (self.mesh, self.mesh.dimension);
         let kind = if dimension == 2 { ElementKind::QUADRATIC_TRIANGLE } else { ElementKind::QUADRATIC_TETRAHEDRON };
-        let half = |a: Point, b: Point| [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
         let of = |function: usize| -> Point {
             let component =
                 |axis: usize| if axis < dimension { self.primal.values[dimension * function + axis] } else { 0.0 };
             [0, 1, 2].map(component)
         };
         let corners = (0..mesh.nodes.len()).map(of);
-        let middles =
-            mesh.edges.iter().enumerate().map(|(edge, &[a, b])| half(half(of(a), of(b)), of(mesh.nodes.len() + edge)));
+        let middles = mesh
+            .edges
+            .iter()
+            .enumerate()
+            .map(|(edge, &[a, b])| midpoint(midpoint(of(a), of(b)), of(mesh.nodes.len() + edge)));
         let displacement: Vec<Point> = corners.chain(middles).collect();
         let places = self.displacements.places();
         // The nodes body by body; at a seam each body has its own.

@@ -4,6 +4,7 @@ use super::bound::{Bracket, steepest};
 use super::problem::Surface;
 use super::simplex::{pairs, traction};
 use crate::error::Error;
+use crate::fem::geometry::plus;
 use signorini_qp as qp;
 
 /// Rounding of jumps of tractions over the largest stress, and of forces of the wrong sign over the largest force:
@@ -113,8 +114,7 @@ impl Bracket<'_> {
                 let body_force = self.problem.medium(self.mesh.origins[cell]).body_force;
                 let mut sum = body_force.map(|force| self.problem.radius(part.corners()[corner]) * force);
                 for (axis, slope) in part.slopes().into_iter().enumerate().take(corners) {
-                    let pull = traction(self.stress[cell].slope(k, corner, axis), slope);
-                    (0..3).for_each(|axis| sum[axis] += pull[axis]);
+                    sum = plus(sum, traction(self.stress[cell].slope(k, corner, axis), slope));
                 }
                 // About an axis the radial balance gives the hoop stress.
                 let balances = sum.iter().skip(usize::from(self.problem.is_axisymmetric));

@@ -30,6 +30,7 @@ mod two_bodies;
 
 pub use answer::{ContinuumAnswer, Judged, Strain};
 pub use bound::Bracket;
+pub(crate) use fans::SAME_PLACE;
 pub use fans::Unjoined;
 pub use mesh::{Cells, SimplexMesh};
 pub use problem::{

@@ -209,6 +209,7 @@ pub fn square(points: usize) -> Vec<([f64; 2], f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::geometry::shifted;
 
     /// A triangle and a tetrahedron.
     fn simplices() -> [Simplex; 2] {
@@ -237,7 +238,7 @@ mod tests {
                 let (normal, size) = simplex.outward(corner);
                 let on_side = simplex.corners()[(corner + 1) % count];
                 assert!(dot(normal, minus(simplex.corners()[corner], on_side)) < 0.0);
-                (0..3).for_each(|axis| sum[axis] += size * normal[axis]);
+                sum = shifted(sum, size, normal);
                 assert!((simplex.part(corner).size() * count as f64 / simplex.size() - 1.0).abs() < 1e-14);
                 let weights = [0.1, 0.2, 0.3, 0.4].map(|weight| if count == 3 { weight / 0.6 } else { weight });
                 let weights = if count == 3 { [weights[0], weights[1], weights[2], 0.0] } else { weights };

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::PositiveBasis;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{COORDINATES, dot, unit};
+use crate::fem::geometry::{COORDINATES, dot, shifted, unit};
 use crate::fem::mesh::Mesh;
 use signorini_linear as linear;
 
@@ -357,10 +357,7 @@ impl Frame {
 
 /// The component of a vector perpendicular to orthonormal `axes`.
 pub(crate) fn perpendicular(vector: [f64; 3], axes: &[[f64; 3]]) -> [f64; 3] {
-    axes.iter().fold(vector, |rest, axis| {
-        let along = dot(rest, *axis);
-        [0, 1, 2].map(|i| rest[i] - along * axis[i])
-    })
+    axes.iter().fold(vector, |rest, &axis| shifted(rest, -dot(rest, axis), axis))
 }
 
 /// The rigid-body modes at the free dofs, one vector each, one entry per free dof: the translations, then the rotations

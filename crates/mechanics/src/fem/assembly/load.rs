@@ -6,7 +6,7 @@ use super::{DofMap, internal_force};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::{Cell, PerKind, PerNode, QuadraturePoint, Tabulated, between_levels};
-use crate::fem::geometry::{cross, dot, inertia, length, minus, principal, unit};
+use crate::fem::geometry::{cross, dot, inertia, length, minus, principal, shifted, unit};
 use crate::fem::mesh::{Boundary, FacetKind, Mesh};
 
 /// A moment of inertia of a boundary below this times the largest is rounding: the boundary is a straight line about
@@ -113,8 +113,7 @@ pub(crate) fn turning_traction(
     let (mut area, mut sum) = (0.0, [0.0; 3]);
     visit(&mut |point| {
         area += point.area;
-        let away = minus(point.at, first);
-        (0..3).for_each(|axis| sum[axis] += point.area * away[axis]);
+        sum = shifted(sum, point.area, minus(point.at, first));
     });
     let centre = [0, 1, 2].map(|axis| first[axis] + sum[axis] / area);
     let mut of_area = [0.0; 6];

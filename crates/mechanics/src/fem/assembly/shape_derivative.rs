@@ -14,7 +14,7 @@ use super::load::{FacetPoint, Kinks, for_each_fine_point, for_each_point};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody, Integration, LocalPoint};
 use crate::fem::element::{MAX_NODES, PerKind, PerNode, Tabulated, TabulatedPoint};
-use crate::fem::geometry::{COORDINATES, Symmetric, dot, minus, trace};
+use crate::fem::geometry::{COORDINATES, Symmetric, dot, minus, shifted, trace};
 use crate::fem::material::{Stiffness, engineering};
 use crate::fem::mesh::Boundary;
 use crate::fem::threads::in_order;
@@ -230,11 +230,7 @@ fn work_by_places(
 
 /// A field at a point of a cell with this number of nodes, from its values there.
 pub(crate) fn interpolated(values: &PerNode<[f64; 3]>, shape: &PerNode<f64>, nodes: usize) -> [f64; 3] {
-    values
-        .iter()
-        .zip(shape)
-        .take(nodes)
-        .fold([0.0; 3], |sum, (value, share)| [0, 1, 2].map(|axis| sum[axis] + share * value[axis]))
+    values.iter().zip(shape).take(nodes).fold([0.0; 3], |sum, (&value, share)| shifted(sum, *share, value))
 }
 
 pub(super) fn add(body: &ElasticBody, nodes: &[usize], vectors: &PerNode<[f64; 3]>, nodal: &mut [f64]) {

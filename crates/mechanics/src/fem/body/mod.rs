@@ -26,8 +26,8 @@ use crate::fem::mesh::{Boundary, Mesh, fail};
 use crate::fem::mortar::Skin;
 use crate::fem::threads::in_order;
 
-/// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
-const ON_THE_AXIS: f64 = 1e-12;
+/// Radii of a body of revolution below this times its size, of either sign, are rounding of zero: on its axis.
+pub(crate) const ON_THE_AXIS: f64 = 1e-12;
 
 /// An elastic body of one material or several, or several bodies that only contact couples; checked once, when it is
 /// built.

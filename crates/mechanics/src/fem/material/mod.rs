@@ -1,15 +1,13 @@
 //! Homogeneous linear elasticity: materials, isotropic or orthotropic, with density and thermal expansion.
 
 mod law;
-mod orthotropic;
 
-pub use law::{Cylinder, Lame, Law, Matrices, Matrix, Stiffness, back, engineering, local};
-use orthotropic::Orthotropic;
-use signorini_linear as linear;
-
+use super::formulation::{Formulation, positive};
+use super::geometry::Symmetric;
 use crate::error::Error;
-use crate::fem::formulation::{Formulation, positive};
-use crate::fem::geometry::Symmetric;
+use law::Orthotropic;
+pub use law::{Cylinder, Lame, Law, Matrices, Matrix, Stiffness, back, engineering, local};
+use signorini_linear as linear;
 
 /// A linear elastic material, checked once, when it is built.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,12 +1,11 @@
 //! Meshes in one, two or three dimensions: nodes, elements, named boundaries.
 
-mod axis;
+pub(crate) mod axis;
 pub(crate) mod bisection;
 mod boundary;
 pub(crate) mod deck;
 mod faces;
 pub mod gmsh;
-pub(crate) mod lattice;
 pub(crate) mod pieces;
 
 pub use super::element::{ElementKind, FacetKind};

@@ -4,6 +4,7 @@
 use super::facet::Facet;
 use crate::fem::dense::DenseMatrix;
 use crate::fem::element::PerNode;
+use crate::fem::geometry::sorted;
 
 /// A node with less than this share of its area covered carries no row.
 const LEAST_COVERED: f64 = 0.1;
@@ -81,8 +82,7 @@ impl<'a> Covered<'a> {
     /// Its nodes in ascending order, and the covered share of its area: facets on a curve exceed it by rounding of the
     /// curve.
     pub fn share(&self) -> (Vec<usize>, f64) {
-        let (mut nodes, share) = (self.facet.nodes.to_vec(), self.area / self.whole);
-        nodes.sort_unstable();
+        let (nodes, share) = (sorted(self.facet.nodes.iter().copied()), self.area / self.whole);
         (nodes, if share > 1.0 - WHOLE { 1.0 } else { share })
     }
 

@@ -38,6 +38,7 @@ use super::formulation::Formulation;
 use super::geometry::{dot, minus, unit};
 use super::mesh::Boundary;
 use crate::error::Error;
+use crate::fem::geometry::shifted;
 use coverage::{Covered, Part, kept, parts};
 use data::{Sided, named};
 use facet::{Facet, SurfaceMesh};
@@ -320,9 +321,7 @@ impl<'a> Mortar<'a> {
         let (slave, mut master) = (shares(part.slave), shares(part.master));
         master.sort_unstable_by_key(|entry| entry.0);
         // Negative shares count: only all of them together are as exact as the rows where the normals turn.
-        let outward = master
-            .iter()
-            .fold([0.0; 3], |sum, &(other, share)| [0, 1, 2].map(|axis| sum[axis] + share * others[other][axis]));
+        let outward = master.iter().fold([0.0; 3], |sum, &(other, share)| shifted(sum, share, others[other]));
         let mean = unit(minus(own[node], unit(outward)));
         let normal = self.direction.unwrap_or(mean);
         // Relative to the node, so that surfaces far from the origin lose no digits.

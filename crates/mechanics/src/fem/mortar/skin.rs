@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::facet::{Facet, SurfaceMesh, area_vector};
 use crate::fem::element::PerNode;
-use crate::fem::geometry::{cross, dot, key, length, minus, unit};
+use crate::fem::geometry::{cross, dot, key, length, minus, shifted, unit};
 use crate::fem::mesh::{Boundary, extent};
 use crate::fem::surface::{Tree, distance_from};
 
@@ -150,7 +150,7 @@ impl Piece {
             return None;
         }
         let at = dot(normal, minus(a, from)) / turned;
-        let place = [0, 1, 2].map(|axis| from[axis] + at * way[axis]);
+        let place = shifted(from, at, way);
         let is_inside = if b == c {
             let along = minus(b, a);
             let share = dot(minus(place, a), along) / dot(along, along);

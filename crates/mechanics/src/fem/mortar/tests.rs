@@ -3,6 +3,7 @@
 use super::face::Projected;
 use super::*;
 use crate::fem::element::FacetKind::{self, Line2, Line3, Q4, Q8, T3, T6};
+use crate::fem::geometry::midpoint;
 
 const SPACE: Formulation = Formulation::Space;
 const PLANE: Formulation = Formulation::PlaneStrain { thickness: 1.0 };
@@ -145,7 +146,7 @@ fn sheet(
             .iter()
             .map(|&[a, b]| {
                 let (a, b) = (nodes[corners[a]], nodes[corners[b]]);
-                let middle = [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
+                let middle = midpoint(a, b);
                 nodes.iter().position(|&node| node == middle).unwrap_or_else(|| {
                     nodes.push(middle);
                     nodes.len() - 1

@@ -4,7 +4,7 @@ use super::{Stress, finished};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::{Cell, PerNode, ReferenceElement, TabulatedPoint};
-use crate::fem::geometry::{cross, dot, length, minus};
+use crate::fem::geometry::{cross, dot, length, minus, shifted};
 
 /// Points of a piece in an element whose stress is not constant.
 const POINTS: usize = 5;
@@ -146,7 +146,7 @@ impl Line {
     }
 
     fn at(&self, distance: f64) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.from[axis] + distance * self.way[axis])
+        shifted(self.from, distance, self.way)
     }
 
     fn distance(&self, place: [f64; 3]) -> f64 {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
+use crate::fem::geometry::{cross, distance, dot, length, minus, shifted, unit};
 use signorini_linear as linear;
 
 /// Coordinates larger than this are refused: products of three would overflow.
@@ -330,7 +330,7 @@ impl Triangle {
             }
             // A side so short that its square is zero gives NaN as share.
             if share > 0.0 {
-                return ([0, 1, 2].map(|axis| from[axis] + share * along[axis]), Part::Side(corner));
+                return (shifted(from, share, along), Part::Side(corner));
             }
             (from, Part::Corner(corner))
         });

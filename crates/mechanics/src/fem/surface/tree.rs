@@ -2,7 +2,7 @@
 
 use super::facets::{Facets, Triangle};
 use crate::error::Error;
-use crate::fem::geometry::{Around, distance, dot, length, minus};
+use crate::fem::geometry::{Around, distance, dot, length, midpoint, minus};
 use robust::{Coord, orient2d};
 
 /// Triangles of a leaf: with fewer triangles more boxes are tested than triangles are saved.
@@ -144,7 +144,7 @@ impl Tree {
         let mut open = if self.order.is_empty() { Vec::new() } else { vec![0] };
         while let Some(place) = open.pop() {
             let branch = self.branches[place];
-            let middle = [0, 1, 2].map(|axis| (branch.low[axis] + branch.high[axis]) / 2.0);
+            let middle = midpoint(branch.low, branch.high);
             let half = distance(branch.high, middle);
             let away = minus(middle, point);
             let far = dot(away, along);

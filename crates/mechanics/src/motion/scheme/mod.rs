@@ -4,7 +4,6 @@ mod central_difference;
 mod fox_goodwin;
 mod midpoint;
 mod newmark;
-mod penalty_loop;
 
 pub(crate) use central_difference::{MOST_IN_CONTACT, frequency_bound, stable_step};
 
@@ -90,8 +89,8 @@ impl SchemeSpec {
             SchemeSpec::Trapezoidal => &newmark::TRAPEZOIDAL,
             SchemeSpec::ContactStabilised => &newmark::CONTACT_STABILISED,
             SchemeSpec::Hht => &newmark::HHT,
-            SchemeSpec::Penalty => &penalty_loop::PENALTY,
-            SchemeSpec::PenaltyLoop => &penalty_loop::PENALTY_LOOP,
+            SchemeSpec::Penalty => &newmark::PENALTY,
+            SchemeSpec::PenaltyLoop => &newmark::PENALTY_LOOP,
             SchemeSpec::CentralDifference => &central_difference::ABOUT,
         }
     }

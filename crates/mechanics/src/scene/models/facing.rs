@@ -12,15 +12,12 @@ use crate::fem::mortar::{Found, MortarRow};
 use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, number, positive, wrong};
 use crate::scene::input::obstacle::SideOrder;
-use crate::scene::input::obstacle::mortar::{ends, means};
+use crate::scene::input::obstacle::mortar::{COVERED, ends, means};
 use crate::scene::input::obstacle::order::facet_size;
 use crate::scene::input::sum::Component;
 
 /// Surfaces farther apart than this share of a facet are apart: far above what straight facets miss of a curve.
 const APART: f64 = 0.1;
-
-/// A surface covered by less than this share is only partly tied.
-const COVERED: f64 = 1.0 - 1e-6;
 
 /// Two surfaces within reach of each other.
 pub(super) struct Facing<'a> {

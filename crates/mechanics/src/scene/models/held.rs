@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, Frame, node_normals, perpendicular};
-use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{COORDINATES, dot};
+use crate::fem::body::{ElasticBody, ON_THE_AXIS};
+use crate::fem::geometry::{COORDINATES, dot, minus};
 use crate::fem::mesh::Mesh;
 use crate::scene::input::entry::{boundary, finite, node_at, nodes_named_once, number, point, vector, wrong};
 use crate::scene::input::schema::{Place, Scene, SupportSpec};
@@ -146,7 +146,7 @@ fn shared(components: &[Component], force: [f64; 3]) -> Vec<(Holder, [f64; 3])> 
     for (component, axis) in independent.iter().rev() {
         let amount = dot(left, *axis) / dot(component.direction, *axis);
         let share = component.direction.map(|part| amount * part);
-        left = [0, 1, 2].map(|place| left[place] - share[place]);
+        left = minus(left, share);
         shares.push((component.by, share));
     }
     shares
@@ -234,9 +234,6 @@ fn contradiction(component: &Component, implied: f64, before: &[Component]) -> S
     let (value, implied) = (number(component.value), number(implied + 0.0));
     format!("{value} contradicts the {implied} that {names} {verb} for")
 }
-
-/// Radii below this times the body's size lie on the axis of revolution.
-pub(crate) const ON_THE_AXIS: f64 = 1e-12;
 
 /// The normals of a flat boundary have one direction up to the rounding of coordinates: one minus the cosine of their
 /// angle.

@@ -1,7 +1,6 @@
 //! A discretised scene: mesh and materials, supports, loads and springs, contact rows, and the problem that they make.
 
 pub(crate) mod build;
-mod contacts;
 pub(crate) mod continuum;
 mod elastic;
 mod facing;

@@ -11,7 +11,7 @@ use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{cross, dot, length, unit};
+use crate::fem::geometry::{cross, dot, length, plus, shifted, unit};
 use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, finite, node_at, nodes_named_once, refused, vector, wrong};
 use crate::scene::input::obstacle::SideOrder;
@@ -39,7 +39,7 @@ impl Shortening {
     /// The unit vector from the first side to the other.
     pub fn towards(&self) -> [f64; 3] {
         let own = self.terms[self.own.clone()].iter();
-        unit(own.fold([0.0; 3], |sum, (_, vector)| [0, 1, 2].map(|axis| sum[axis] + vector[axis])))
+        unit(own.fold([0.0; 3], |sum, (_, vector)| plus(sum, *vector)))
     }
 
     /// Its value at values of the unknowns, in length.
@@ -158,7 +158,7 @@ fn across(towards: [f64; 3], axes: &[[f64; 3]; 3], dimension: usize) -> [[f64; 3
     }
     let projected = axes.map(|axis| {
         let part = dot(axis, towards);
-        [0, 1, 2].map(|k| axis[k] - part * towards[k])
+        shifted(axis, -part, towards)
     });
     let longest = projected.into_iter().max_by(|a, b| length(*a).total_cmp(&length(*b))).unwrap_or_default();
     let first = unit(longest);

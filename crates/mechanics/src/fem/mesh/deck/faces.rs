@@ -8,7 +8,7 @@ use super::sets::{FacePressure, Surface};
 use super::source::{Card, Place, key};
 use crate::error::{Error, nearly};
 use crate::fem::element::{Cell, Tabulated};
-use crate::fem::geometry::length;
+use crate::fem::geometry::{length, sorted};
 
 /// An element and its face, from 0.
 type Face = (usize, usize);
@@ -78,9 +78,8 @@ impl Deck {
         for element in 0..self.elements.len() {
             for face in 0..self.element_list[element].kind.reference().faces.len() {
                 if self.nodes_of_face((element, face)).all(|node| marked[node]) {
-                    let mut key: Vec<usize> = self.nodes_of_face((element, face)).collect();
-                    key.sort_unstable();
-                    found.entry(key).and_modify(|face| *face = None).or_insert(Some((element, face)));
+                    let nodes = sorted(self.nodes_of_face((element, face)));
+                    found.entry(nodes).and_modify(|face| *face = None).or_insert(Some((element, face)));
                 }
             }
         }

@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::fem::assembly::{Density, FacetPoint, Points, integral_by_places, normal_sums};
+use crate::fem::body::ON_THE_AXIS;
 use crate::fem::geometry::{dot, length};
 use crate::scene::answers::patch::{Patch, StraightCell};
 use crate::scene::derivatives::effect::derivative;
 use crate::scene::input::entry::point;
 use crate::scene::input::obstacle::{ObstacleRow, PlacedObstacle, shortest_edges};
-use crate::scene::models::held::ON_THE_AXIS;
 use crate::scene::models::rows::ContactRow;
 use crate::scene::{Answer, Model, Rule};
 

@@ -2,7 +2,7 @@
 
 use super::shape::{Block, BodyShape, RoundCells, Sides, Site};
 use crate::error::Error;
-use crate::fem::mesh::lattice::{Grading, Lattice, half_steps};
+use crate::fem::mesh::axis::{Grading, Lattice, half_steps};
 use crate::fem::mesh::{Boundary, ElementKind, MAX_NODES, Mesh, Zone, check_lines, fail};
 use crate::fem::{Axis, Integration};
 use crate::scene::input::entry::Files;

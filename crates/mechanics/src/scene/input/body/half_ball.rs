@@ -3,7 +3,8 @@
 use super::shape::{Block, BodyShape, RoundCells, Sides, Site};
 use crate::error::Error;
 use crate::fem::Integration;
-use crate::fem::mesh::lattice::{Grading, Lattice};
+use crate::fem::geometry::plus;
+use crate::fem::mesh::axis::{Grading, Lattice};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
 use crate::scene::input::entry::{Files, wrong};
 use crate::scene::input::schema::model::{HalfSpec, SolidElementSpec};
@@ -136,7 +137,7 @@ pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, sides: [Sides; 2]) 
         let direction =
             [graded.tangent(across[0][x]), graded.tangent(across[1][y]), -graded.tangent(graded.down[down])];
         let at = graded.place(direction, graded.shells[shell]);
-        [0, 1, 2].map(|axis| centre[axis] + at[axis])
+        plus(centre, at)
     };
     let nodes = lattice.keys.iter().map(place).collect();
     let mesh = Mesh::new(nodes, ElementKind::Hex8, connectivity, Vec::new())?;

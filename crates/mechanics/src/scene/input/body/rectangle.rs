@@ -2,7 +2,8 @@
 
 use super::shape::{Block, BodyShape, Site};
 use crate::error::Error;
-use crate::fem::mesh::lattice::half_steps;
+use crate::fem::mesh::axis::half_steps;
+use crate::fem::mesh::pieces::OF_HEXAHEDRON;
 use crate::fem::mesh::{Boundary, ElementKind, FacetKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
 use crate::scene::input::entry::Files;
@@ -175,11 +176,6 @@ pub fn bar(x: &[f64]) -> Result<Mesh, Error> {
 const CORNERS: [[usize; 3]; 8] =
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
 
-/// Six tetrahedra around the diagonal from corner 0 to corner 6; every face of a cell is cut from its lowest to its
-/// highest corner, so that neighbouring cells fit.
-const TETRAHEDRA: [[usize; 4]; 6] =
-    [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
-
 /// The sides: name, axis normal to the side, upper end or not, and the corners of a cell's face seen from outside
 /// counterclockwise, the first one being the lowest or the highest of the face.
 const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
@@ -264,7 +260,7 @@ pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh
         if of_bricks {
             connectivity.extend((0..8).map(|local| corner(cell, local)));
         } else {
-            connectivity.extend(TETRAHEDRA.as_flattened().iter().map(|&local| corner(cell, local)));
+            connectivity.extend(OF_HEXAHEDRON.as_flattened().iter().map(|&local| corner(cell, local)));
         }
     }
     let side = |(name, axis, upper, face): (&str, usize, bool, [usize; 4])| {

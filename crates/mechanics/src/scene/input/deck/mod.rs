@@ -4,7 +4,6 @@
 
 mod amplitudes;
 mod bodies;
-mod bolts;
 mod contacts;
 mod coupling;
 mod keywords;
@@ -25,8 +24,7 @@ use crate::fem::mesh::deck::{Deck, DeckElement, Place, Space};
 use crate::scene::Scene;
 use amplitudes::{Amplitudes, Temperatures};
 use bodies::Body;
-use bolts::ties;
-use contacts::contacts;
+use contacts::{contacts, ties};
 use keywords::SceneText;
 use loads::Loads;
 use materials::Sections;

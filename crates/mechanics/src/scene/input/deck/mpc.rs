@@ -7,7 +7,7 @@
 use super::coupling::Equation;
 use super::rigid::Transforms;
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, across, cross, distance, dot, length, minus, unit};
+use crate::fem::geometry::{COORDINATES, across, cross, distance, dot, length, minus, shifted, unit};
 use crate::fem::mesh::deck::{Card, Deck, Place, SpringType, key};
 use crate::scene::input::sum::Sum;
 
@@ -82,7 +82,7 @@ fn sums(deck: &Deck, transforms: &Transforms, name: &str, nodes: &[usize]) -> Re
     let off_line = |node: usize| {
         let away = minus(at(node), at(first));
         let height = dot(away, line);
-        [0, 1, 2].map(|axis| away[axis] - height * line[axis])
+        shifted(away, -height, line)
     };
     if extent == 0.0 {
         return Err(format!("the nodes of {name} of *MPC lie at one place"));

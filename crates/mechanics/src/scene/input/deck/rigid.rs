@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
-use super::bolts::Bolts;
+use super::contacts::Bolts;
 use super::coupling::{Coupling, Joined, couplings};
 use super::keywords::Entry;
 use crate::error::Error;

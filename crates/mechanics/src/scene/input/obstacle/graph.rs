@@ -64,7 +64,7 @@ impl Graph {
 
     /// A point in the frame, with the surface moved by `shift`.
     fn local(&self, point: [f64; 3], shift: f64) -> [f64; 3] {
-        let from_origin = [0, 1, 2].map(|axis| point[axis] - self.origin[axis]);
+        let from_origin = minus(point, self.origin);
         let [t1, t2, towards] = self.axes.map(|axis| dot(axis, from_origin));
         [t1, t2, towards - shift]
     }

@@ -15,8 +15,8 @@ use crate::scene::input::schema::model::Rule;
 /// Facets of the other boundary larger than this many facets of the carrying one leave waves in the pressure.
 const COARSE: f64 = 4.0;
 
-/// A boundary covered by less than this share is only partly covered.
-const COVERED: f64 = 1.0 - 1e-6;
+/// A boundary covered by less than this share is only partly covered, or tied.
+pub(crate) const COVERED: f64 = 1.0 - 1e-6;
 
 /// The sag of straight facets that counts, in gaps: gaps are those of curves through the nodes, which miss circles by a
 /// two-hundredth of the sag, uneven meshes included.

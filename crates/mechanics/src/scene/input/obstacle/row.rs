@@ -4,6 +4,7 @@
 use std::fmt::Debug;
 
 use super::patch::NOT_ENCLOSED;
+use crate::fem::geometry::shifted;
 use crate::scene::input::schema::model::Rule;
 
 /// The contact row `normal . u <= gap` of a node: the statement of an [`Obstacle`](super::Obstacle) at the place of the
@@ -20,7 +21,7 @@ pub struct ObstacleRow {
 impl ObstacleRow {
     /// The point where the row of a node at `point` meets the obstacle.
     pub(super) fn foot(&self, point: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|axis| point[axis] + self.gap * self.normal[axis])
+        shifted(point, self.gap, self.normal)
     }
 }
 
@@ -79,7 +80,7 @@ pub trait Obstacle: Debug + Send + Sync {
     /// The same, with the obstacle moved by `shift` along its approach direction, in length.
     fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let approach = self.approach();
-        self.row([0, 1, 2].map(|axis| point[axis] - shift * approach[axis]))
+        self.row(shifted(point, -shift, approach))
     }
 
     /// The dimensionless unit normal [x, y, z] of the surface, into the obstacle, at the point where the row of a node

@@ -7,7 +7,7 @@ use super::row::{Local, Obstacle, RigidSurface, Ruled};
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::along_axis;
+use crate::fem::geometry::{along_axis, shifted};
 use crate::scene::input::entry::{COORDINATE_ROUNDING, Files, positive, vector, wrong};
 use crate::scene::input::schema::model::{Approach, Rule};
 use schemars::JsonSchema;
@@ -155,7 +155,7 @@ impl Site<'_> {
             (None, Some(apex)) => self.point("apex", &apex),
             (Some(centre), None) => {
                 let (centre, approach) = (self.point("centre", &centre)?, self.direction());
-                Ok([0, 1, 2].map(|axis| centre[axis] - radius * approach[axis]))
+                Ok(shifted(centre, -radius, approach))
             }
             (Some(_), Some(_)) => Err(wrong(self.path.as_str(), "has both `centre` and `apex`; give only one")),
             (None, None) => Err(wrong(self.path.as_str(), "has neither `centre` nor `apex`; give one")),

@@ -5,14 +5,13 @@ mod surface;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::held::ON_THE_AXIS;
 use super::rigid_face::{Motion, RigidFace};
 use crate::continuum::{
     Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
     RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
 };
 use crate::error::Error;
-use crate::fem::body::Phase;
+use crate::fem::body::{ON_THE_AXIS, Phase};
 use crate::fem::geometry::{COORDINATES, dot};
 use crate::fem::mesh::pieces::Pieces;
 use crate::fem::{Formulation, Region};
