@@ -23,4 +23,3 @@ pub use total_error::{
     TotalErrorGoal, total_error,
 };
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint};
-pub use warnings::AnswerWarning;

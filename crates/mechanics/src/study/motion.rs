@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 
-use super::warnings::{AnswerWarning, FEW_NODES};
+use super::warnings::FEW_NODES;
 use crate::motion::Observation;
-use crate::scene::Model;
+use crate::scene::{Model, Warning};
 use serde::{Deserialize, Serialize};
 
 /// Largest allowed growth of the energy, relative to the initial energy and the work of the loads; a motion beyond it
@@ -242,12 +242,12 @@ impl MotionSummary {
     }
 
     /// Warnings for this motion of a model.
-    pub fn warnings(&self, model: &Model) -> Vec<AnswerWarning> {
+    pub fn warnings(&self, model: &Model) -> Vec<Warning> {
         [self.unstable(), self.takes_energy(), self.few_rows(model)].into_iter().flatten().collect()
     }
 
     /// Warns of a contact that closes one or two nodes in every step: its force depends on the mesh.
-    fn few_rows(&self, model: &Model) -> Option<AnswerWarning> {
+    fn few_rows(&self, model: &Model) -> Option<Warning> {
         let is_small = |(index, one): &(usize, &MotionContact)| {
             let rows = 1..=FEW_NODES.min(model.obstacles()[*index].candidates().len().saturating_sub(1));
             rows.contains(&one.rows_max)
@@ -259,11 +259,11 @@ impl MotionSummary {
             "the contact of obstacles[{index}] closes at most {nodes} in a step. Peak force and times depend on the mesh there: \
              refine it near the contact and compare"
         );
-        Some(AnswerWarning { code: "mesh-dependent", message })
+        Some(Warning { code: "mesh-dependent", message })
     }
 
     /// Warns of a scheme that takes a visible share of the energy, once a contact is over.
-    fn takes_energy(&self) -> Option<AnswerWarning> {
+    fn takes_energy(&self) -> Option<Warning> {
         let share = self.taken_by_scheme() / self.energy_scale;
         let message = || {
             format!(
@@ -274,12 +274,11 @@ impl MotionSummary {
                 self.energy_scale
             )
         };
-        (share > MOST_TAKEN && self.contact.run == 0)
-            .then(|| AnswerWarning { code: "takes-energy", message: message() })
+        (share > MOST_TAKEN && self.contact.run == 0).then(|| Warning { code: "takes-energy", message: message() })
     }
 
     /// Warns of an energy that grows by more than 1 %.
-    fn unstable(&self) -> Option<AnswerWarning> {
+    fn unstable(&self) -> Option<Warning> {
         if !self.is_unstable() {
             return None;
         }
@@ -293,7 +292,7 @@ impl MotionSummary {
             self.work_max,
             100.0 * MOST_GROWTH
         );
-        Some(AnswerWarning { code: "unstable", message })
+        Some(Warning { code: "unstable", message })
     }
 
     /// The present sum of the energies minus the initial sum, over the largest kinetic and strain energy.

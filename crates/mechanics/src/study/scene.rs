@@ -5,13 +5,11 @@ use std::time::Instant;
 
 use super::kept_answers::{ExactPath, KeptAnswers, points};
 use super::summary::{LargestDisplacement, OF_MESHED_PART, Status, contact_on_obstacles};
-use super::warnings::{
-    AnswerWarning, BEYOND, check_approach, check_deformation, initial_overlap, of_scene, point_support,
-};
+use super::warnings::{BEYOND, check_approach, check_deformation, initial_overlap, of_scene, point_support};
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::scene::{Answer, ContactExtent, Model};
+use crate::scene::{Answer, ContactExtent, Model, Warning};
 use serde::Serialize;
 use signorini_qp::{ContactSet, Goal, Prepared, Settings, Solution, Start, solve};
 
@@ -31,7 +29,7 @@ impl Summary {
         assemble_seconds: f64,
     ) -> Summary {
         let warning = super::warnings::untouched(problem, &solution);
-        let of_rows = problem.warnings().into_iter().map(|(code, message)| AnswerWarning { code, message });
+        let of_rows = problem.warnings().into_iter().map(|(code, message)| Warning { code, message });
         let mut summary = Summary::new(solution, ModelSize::of(problem), goal, assemble_seconds);
         summary.warnings.extend(of_rows.chain(warning));
         summary

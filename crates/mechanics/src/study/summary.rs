@@ -1,8 +1,8 @@
 //! An answer with the data of its model and of each obstacle, serialised as the JSON that the command line prints.
 
-use super::warnings::{AnswerWarning, lost_digits, opposite_sign};
+use super::warnings::{lost_digits, opposite_sign};
 use crate::fem::geometry::length;
-use crate::scene::{Answer, ContactExtent, Resultant, Segment};
+use crate::scene::{Answer, ContactExtent, Resultant, Segment, Warning};
 use serde::Serialize;
 use signorini_qp::{Certificate, ContactProblem, Goal, Seconds, Solution};
 
@@ -54,7 +54,7 @@ pub struct Summary {
     pub solution: Solution,
     /// Warnings about the numbers of this answer.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<AnswerWarning>,
+    pub warnings: Vec<Warning>,
     /// Closed rows and forces.
     pub contact: ContactSummary,
     /// Forces, moments and centres of obstacles, supports and loads; only in a scene.
@@ -364,7 +364,7 @@ pub struct Verification {
     pub model: ModelSize,
     /// Warnings about the recomputed numbers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<AnswerWarning>,
+    pub warnings: Vec<Warning>,
 }
 
 impl Verification {

@@ -3,7 +3,7 @@
 use super::materials::{BodyMaterials, Selection, centroids};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::fem::{Formulation, Integration, Mesh, Region};
+use crate::fem::{ElementKind, Formulation, Integration, Mesh, Region};
 use crate::scene::Warning;
 use crate::scene::input::body::{BodySpec, Site};
 use crate::scene::input::entry::{MeshFiles, finite, located, point, vector, wrong};
@@ -162,10 +162,16 @@ pub(crate) fn locking(body: &ElasticBody) -> Option<Warning> {
         let standard = body.phases_of(region).iter().filter(|phase| phase.integration == Integration::Standard);
         let poisson = standard.filter_map(|phase| phase.material().poisson()).reduce(f64::max)?;
         let locks = poisson > LOCKING_POISSON[usize::from(kind.is_quadratic())];
-        locks.then(|| (poisson, Warning::NearlyIncompressible { poisson, element: kind.name() }))
+        locks.then_some((poisson, kind.name()))
     };
     let locking = body.regions().iter().filter(|_| body.formulation().can_lock()).filter_map(of_region);
-    locking.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, warning)| warning)
+    let (poisson, element) = locking.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let message = format!(
+        "Poisson's ratio {poisson} locks {element} elements: pressures can come out several times too large; take \
+         `\"integration\": \"mean-dilatation\"` with {} elements, a smaller ratio, or compare with a finer mesh before using them",
+        ElementKind::of_mean_dilatation("or").to_lowercase()
+    );
+    Some(Warning::new("nearly-incompressible", message))
 }
 
 /// The warnings for bodies with materials of very different stiffness.
@@ -175,9 +181,15 @@ pub(crate) fn stiffness_jumps(body: &ElasticBody) -> Vec<Warning> {
             let moduli = body.materials(region).flat_map(|material| material.young());
             moduli.reduce(of).unwrap_or(f64::NAN)
         });
-        let name = region.name().to_string();
+        let of = if region.name().is_empty() { String::new() } else { format!("of `{}` ", region.name()) };
         let is_jump = body.materials(region).count() > 1 && stiff > STIFFNESS_JUMP * soft;
-        is_jump.then_some(Warning::StiffnessJump { body: name, stiff, soft, ratio: stiff / soft })
+        let message = format!(
+            "the materials {of}have Young's moduli from {soft:e} to {stiff:e}, a factor of {:.1e}: stresses and strains of the soft one lose \
+             digits next to the stiff one, and the error of the mesh gathers at their interface; compare with a finer mesh, or take the \
+             stiff part as a support or an obstacle",
+            stiff / soft
+        );
+        is_jump.then_some(Warning::new("stiffness-jump", message))
     };
     body.regions().iter().filter_map(jump).collect()
 }
@@ -187,9 +199,13 @@ pub(crate) fn unit_of_young(body: &ElasticBody, units: &Units) -> Option<Warning
     let pascals = units.pascals()?;
     let young = body.phases().iter().flat_map(|phase| phase.material().young()).reduce(f64::max)?;
     let times = young * pascals / DIAMOND;
-    let Units { length, force } = units.clone();
+    let Units { length, force } = units;
     let [meant, steel] = [young, STEEL].map(|value| value / pascals);
-    (times > OTHER_UNIT).then_some(Warning::UnitOfYoung { young, force, length, times, meant, steel })
+    let message = format!(
+        "Young's modulus {young:e} is in {force}/{length}2, the units of this scene, {times:.0} times that of diamond: if it is given in \
+         Pa, write {meant:e}; steel has {steel:e} {force}/{length}2"
+    );
+    (times > OTHER_UNIT).then_some(Warning::new("unit-of-young", message))
 }
 
 /// The names of the components of a stress, in their order.

@@ -59,15 +59,24 @@ impl<'a> Facing<'a> {
             );
             return Err(wrong(path, message));
         }
-        let [boundary, to] = sides.map(|side| side.name.clone());
+        let [boundary, to] = sides.map(|side| &side.name);
         let apart = found.rows.iter().map(|row| row.gap.abs()).fold(0.0, f64::max);
         if apart > APART * facet {
-            let (boundary, to) = (boundary.clone(), to.clone());
-            warnings.push(Warning::TiedApart { tie: path.clone(), boundary, to, apart });
+            let message = format!(
+                "{path}: `{boundary}` and `{to}` are tied over distances up to {apart:.2e}: forces along the surfaces turn both bodies over \
+                 such a distance; move the bodies together, or give a smaller `reach`"
+            );
+            warnings.push(Warning::new("tied-apart", message));
         }
         let [share, of_other] = found.covered;
         if share < COVERED && of_other < COVERED {
-            warnings.push(Warning::PartlyTied { tie: path.clone(), boundary, to, share, of_other });
+            let message = format!(
+                "{path}: {:.1} % of the area of `{boundary}` and {:.1} % of the nodes of `{to}` are tied; the rest is free, and the bodies \
+                 can go through each other there",
+                100.0 * share,
+                100.0 * of_other
+            );
+            warnings.push(Warning::new("partly-tied", message));
         }
         Ok(Facing { body, dofs, path, sides, is_swapped, reach, found })
     }

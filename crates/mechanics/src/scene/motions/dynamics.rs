@@ -147,8 +147,14 @@ impl Scene {
         }
         let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
         let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
-        let name = scheme.name();
-        let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
+        let gains = |name: &str| {
+            let message = format!(
+                "the scheme `{name}` can gain energy at every impact: it is for comparison only; take `fox-goodwin` or \
+                 `contact-stabilised` for answers"
+            );
+            Warning::new("gains-energy", message)
+        };
+        let warnings = scheme.gains_energy().then(|| gains(scheme.name())).into_iter().collect();
         let windows = [WINDOW * crossing_time(model).unwrap_or(0.0), PEAK_CELLS * wave_time(model.body())];
         let frames = spec.frames;
         Ok(Some(Dynamics { problem, scheme, step, steps, frames, windows, watched, supports, obstacles, warnings }))

@@ -9,9 +9,9 @@ use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point
 use crate::error::Error;
 use crate::fem::ElementKind;
 use crate::fem::assembly::internal_force;
-use crate::scene::{Answer, Scene};
+use crate::scene::{Answer, Scene, Warning};
 use crate::study::warnings::{check_motion, of_refined};
-use crate::study::{AnswerWarning, ModelSize, Status};
+use crate::study::{ModelSize, Status};
 use signorini_qp as qp;
 use signorini_qp::{Method, Settings, Solution, dot, solve};
 
@@ -206,7 +206,7 @@ impl Search<'_> {
     }
 
     /// The answer on the scene's own mesh and its warnings; `None` without an answer.
-    fn own_answer(&self) -> Result<Option<(Answer, Vec<AnswerWarning>)>, Error> {
+    fn own_answer(&self) -> Result<Option<(Answer, Vec<Warning>)>, Error> {
         let Ok(solution) = solve(self.given.model.problem(), &self.given.settings.clone().exactly()) else {
             return Ok(None);
         };

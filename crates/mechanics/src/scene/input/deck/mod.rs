@@ -18,7 +18,7 @@ mod supports;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::warning::Warning;
+use super::warning::{NONLINEAR, Warning};
 use crate::error::Error;
 use crate::fem::mesh::deck::{Deck, DeckElement, Place, Space};
 use crate::scene::Scene;
@@ -124,10 +124,12 @@ impl DeckScene {
             let (file, line) = deck.source.position(place);
             (file.to_path_buf(), line)
         };
-        let warning = |(place, message): (Place, String)| Warning::Deck { place: named_line(position(place)), message };
-        let nonlinear =
-            large_displacements(&deck).map(|place| Warning::Nonlinear { place: named_line(position(place)) });
-        let warnings = nonlinear.into_iter().chain(noted.into_iter().map(warning)).collect();
+        let warning =
+            |code, place, message: &str| Warning::new(code, format!("{}: {message}", named_line(position(place))));
+        let small = "NLGEOM is answered with small displacements";
+        let nonlinear = large_displacements(&deck).map(|place| warning(NONLINEAR, place, small));
+        let noted = noted.into_iter().map(|(place, message)| warning("deck", place, &message));
+        let warnings = nonlinear.into_iter().chain(noted).collect();
         let lines = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
         Ok(DeckScene { text, warnings, references: reference_nodes, deck, lines })
     }
