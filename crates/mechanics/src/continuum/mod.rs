@@ -24,7 +24,6 @@ mod simplex;
 mod springs;
 mod stress;
 mod system;
-mod turning;
 #[cfg(test)]
 mod two_bodies;
 

@@ -4,7 +4,6 @@ pub(crate) mod compare;
 pub(crate) mod kept_answers;
 pub(crate) mod motion;
 pub(crate) mod motion_tradeoff;
-pub(crate) mod problem_sweep;
 pub(crate) mod scene;
 pub(crate) mod summary;
 mod total_error;
@@ -15,8 +14,7 @@ pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
 pub use kept_answers::ExactPath;
 pub use motion::{MotionContact, MotionSummary};
 pub use motion_tradeoff::{MotionError, MotionPoint, MotionTradeoff};
-pub use problem_sweep::{ProblemPoint, ProblemSweep};
-pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint};
+pub use scene::{ProblemPoint, ProblemSweep, Sweep, SweepCorner, SweepEvent, SweepPoint};
 pub use summary::{ContactSummary, ModelSize, ObstacleContact, RunSeconds, Status, Summary, Verification};
 pub use total_error::{
     Bound, ContinuumAnswer, Domain, Ended, Examined, Guarantee, JudgedMesh, Level, LevelKind, TotalError,
