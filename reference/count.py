@@ -18,7 +18,7 @@ VISIBLE = r"\s*(?:pub(?:\([^)]*\))? )?"
 TYPE = re.compile(VISIBLE + r"(?:struct|enum|trait) (\w+)")
 NUMBER = re.compile(VISIBLE + r"const \w+: (?:\[*[fiu]\d+|\[*usize|Twice|Duration)\b")
 DOOR = re.compile(VISIBLE + r"fn ((?:certify|examine|recomputed|prove)(?:_\w+)?)\b")
-METHODS = re.compile(r"impl(?:<.*>)? (ContactProblem|Factored)\b")
+METHODS = re.compile(r"impl(?:<.*>)? (ContactProblem|Factored|Scene|Model)\b")
 
 
 def kinds(text):
@@ -65,7 +65,7 @@ def counts(folders):
         "types": types.total(),
         "names of types defined twice": f"{len(twice)}: {' '.join(twice)}",
         "numeric constants": constants,
-        **{f"files with `impl {name}`": sum(of == name for of, _ in methods) for name in ("ContactProblem", "Factored")},
+        **{f"files with `impl {name}`": sum(of == name for of, _ in methods) for name in sorted({of for of, _ in methods})},
         "doors to certificate and proof": f"{len(doors)}: {' '.join(sorted(doors))}",
     }
 

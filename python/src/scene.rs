@@ -380,7 +380,7 @@ impl SceneSolution {
                 Self::of(py, scene.clone_ref(py), answer, solution, goal)
             })
         })?;
-        if answer.model().warnings().iter().any(|warning| warning.code() == "nonlinear") {
+        if answer.model().warnings().iter().any(|warning| warning.code == "nonlinear") {
             // The report refuses large strains and rotations of a deck that asks for large displacements.
             Summary::of_answer(&answer, solution.clone(), goal, 0.0).map_err(|error| plain_exception(py, error))?;
         }

@@ -181,7 +181,7 @@ fn two_blocks(upper: Value, lower: Value, body: Value) -> Model {
 
 #[test]
 fn each_warning_of_two_surfaces_is_provoked() {
-    let code = |model: &Model| -> Vec<&str> { model.warnings().iter().map(|warning| warning.code()).collect() };
+    let code = |model: &Model| -> Vec<&str> { model.warnings().iter().map(|warning| warning.code).collect() };
     let upper = |cells: usize| block([0.0, 1.0], [1.0, 2.0], [cells, 2]);
     let lower = |x: [f64; 2], cells: usize| block(x, [0.0, 1.0], [cells, 2]);
     assert!(code(&two_blocks(upper(3), lower([0.0, 1.0], 4), json!({}))).is_empty());

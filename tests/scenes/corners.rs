@@ -177,7 +177,7 @@ fn whole_skins_of_blocks_have_a_uniform_pressure_up_to_their_edges() {
     rest.as_object().unwrap().iter().for_each(|(key, value)| scene[key] = value.clone());
     let answer = scenes::answer(&scene);
     is_uniform(&answer, PRESSURE, 1.0);
-    let codes: Vec<String> = answer.model().warnings().iter().map(|warning| warning.code().to_string()).collect();
+    let codes: Vec<String> = answer.model().warnings().iter().map(|warning| warning.code.to_string()).collect();
     assert!(!codes.iter().any(|code| code == "sag"), "{codes:?}");
 }
 

@@ -4,7 +4,7 @@
 use std::fs;
 use std::sync::Arc;
 
-use signorini::scene::{Answer, Warning};
+use signorini::scene::Answer;
 use signorini::{Error, Scene, qp, solve_qp};
 use support::decks::Block;
 
@@ -395,7 +395,7 @@ fn what_is_answered_in_another_way_has_a_warning() {
         assert!(found.len() == 1 && found[0].contains(&format!("deck.inp:{line}: ")), "{phrase}: {said:#?}");
     }
     assert_eq!(said.len(), 4, "{said:#?}");
-    let codes: Vec<&str> = scene.noted.iter().map(Warning::code).collect();
+    let codes: Vec<&str> = scene.noted.iter().map(|warning| warning.code).collect();
     assert_eq!(codes, ["nonlinear", "deck", "deck", "deck"]);
 }
 

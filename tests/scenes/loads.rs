@@ -321,7 +321,7 @@ fn loads_on_supported_boundaries_are_warned_of() {
             {"pressure": {"boundary": "left", "value": 1, "profile": {"along": [0, 1], "places": [3, 4], "factors": [0, 1]}}}
         ]
     });
-    let codes: Vec<&str> = built(&scene).warnings().iter().map(|warning| warning.code()).collect();
+    let codes: Vec<&str> = built(&scene).warnings().iter().map(|warning| warning.code).collect();
     assert_eq!(codes, ["load-on-support", "load-on-support", "point-load"]);
 }
 

@@ -243,7 +243,7 @@ fn a_large_jump_of_stiffness_is_warned_of_with_its_values() {
     let codes = |young: f64| {
         let model = built(&changed(&halves(), "/materials/0/material/young", json!(young)));
         let warnings: Vec<String> =
-            model.warnings().iter().map(|warning| format!("{}: {warning}", warning.code())).collect();
+            model.warnings().iter().map(|warning| format!("{}: {warning}", warning.code)).collect();
         warnings
     };
     assert_eq!(codes(1e6), Vec::<String>::new());

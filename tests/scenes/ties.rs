@@ -277,7 +277,7 @@ fn the_size_of_the_coefficients_of_an_equation_holds_no_motion() {
 #[test]
 fn surfaces_that_are_apart_or_cover_each_other_in_part_are_named() {
     let stack = Stack { elements: ["q4", "q4"], counts: [4, 4] };
-    let codes = |scene: &Value| built(scene).warnings().iter().map(signorini::scene::Warning::code).collect::<Vec<_>>();
+    let codes = |scene: &Value| built(scene).warnings().iter().map(|warning| warning.code).collect::<Vec<_>>();
     assert!(codes(&stack.scene()).is_empty());
     let mut scene = stack.scene();
     scene["body"]["rectangle"]["y"] = cells(1.05, 2.05, 2);

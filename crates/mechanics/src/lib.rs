@@ -28,10 +28,12 @@
 //! | [`scene`] | scenes in JSON, their models, and the answers to them |
 //! | [`study`] | comparison of methods, sweeps, trade-offs, the error against the continuum |
 //!
-//! `signorini` re-exports these modules.
+//! `signorini` re-exports these modules. The sentence of an [`Error`] names the value that is wrong and what is
+//! allowed: functions list only the errors by which a caller may decide.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
+#![allow(clippy::missing_errors_doc, reason = "see above: the sentence of an error says what is wrong")]
 
 mod bytes;
 mod continuum;

@@ -13,8 +13,7 @@ use std::sync::OnceLock;
 
 use super::normal::null_space;
 use super::part_stress::{PartStress, QUADRATIC};
-use super::sample::{self, Sample, square};
-use super::simplex::{Point, Simplex, corners_of_side, pairs, traction};
+use super::simplex::{self, Point, Sample, Simplex, corners_of_side, pairs, square, traction};
 
 /// Gauss points in each direction: exact for degree 15, and P times a product of two quadratic functions has 13.
 const POINTS: usize = 8;
@@ -56,7 +55,7 @@ pub fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
 
 /// `r P(r) - 1 >= 0` between two radii.
 pub fn beyond(radius: f64, radii: [f64; 2]) -> f64 {
-    sample::beyond(radius, radii, places_of_zeros())
+    simplex::beyond(radius, radii, places_of_zeros())
 }
 
 /// The double zeros between -1 and 1.

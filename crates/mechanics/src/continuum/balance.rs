@@ -239,7 +239,7 @@ impl Balance {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bodies::{body, settings};
+    use super::super::bodies::{body, solved};
     use super::super::bound::Bracket;
     use super::super::problem::{ContinuumProblem, Held, Linear};
     use super::*;
@@ -249,7 +249,7 @@ mod tests {
     #[test]
     fn a_disturbed_stress_is_out_of_balance_and_is_brought_back_with_a_weaker_bound() {
         for (problem, mesh) in [body(2), body(3)] {
-            let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let mut bracket = solved(&problem, &mesh);
             let exact = bracket.distance();
             let largest = bracket.dual.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
             let disturbed: Vec<f64> = (bracket.dual.values.iter().enumerate())
@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn the_answers_of_a_penalty_method_are_made_admissible() {
         for (problem, mesh) in [body(2), body(3)] {
-            let exact = Bracket::new(&problem, &mesh, None, &settings()).unwrap().distance();
+            let exact = solved(&problem, &mesh).distance();
             let rough = Settings::with_method(Method::Penalty(Penalty { last: 1e3, ..Penalty::default() }));
             let bracket = Bracket::new(&problem, &mesh, None, &rough).unwrap();
             assert!(bracket.defect < 1e-11, "{}", bracket.defect);
@@ -297,7 +297,7 @@ mod tests {
                 assert!(!carries(&problem));
                 problem.conditions[3].held = vec![held(1)];
             }
-            let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let bracket = solved(&problem, &mesh);
             assert!(bracket.balance.is_some() && bracket.defect < 1e-10, "{}", bracket.defect);
         }
     }

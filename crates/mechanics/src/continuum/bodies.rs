@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::bound::Bracket;
 use super::mesh::{Cells, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Surface};
 use super::simplex::{Point, pairs};
-use crate::fem::geometry::COORDINATES;
+use crate::fem::geometry::{COORDINATES, midpoint};
 use crate::fem::material::{Lame, Stiffness};
 use signorini_qp::{Method, Settings};
 
@@ -20,7 +21,7 @@ impl Distance for Bowl {
         let lowest = if height == 1 { 0.98 } else { 0.9 };
         let gap = |at: Point| lowest + at[..height].iter().map(|x| (x - 0.4) * (x - 0.4)).sum::<f64>() - at[height];
         let of_pair = |[i, j]: [usize; 2]| {
-            let half = [0, 1, 2].map(|axis| (corners[i][axis] + corners[j][axis]) / 2.0);
+            let half = midpoint(corners[i], corners[j]);
             2.0 * gap(half) - (gap(corners[i]) + gap(corners[j])) / 2.0
         };
         let coefficients = pairs(corners.len()).map(of_pair).collect();
@@ -103,6 +104,18 @@ pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
         mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
     }
     (problem, mesh)
+}
+
+/// The bracket of a problem on a mesh, with settings for an exact answer.
+pub fn solved<'a>(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Bracket<'a> {
+    Bracket::new(problem, mesh, None, &settings()).unwrap()
+}
+
+/// Both energies of a bracket are this one, up to this share.
+pub fn assert_energy(bracket: &Bracket, energy: f64, share: f64) {
+    for found in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
+        assert!((found / energy - 1.0).abs() < share, "{found} {energy}");
+    }
 }
 
 /// Settings for an exact answer.

@@ -6,12 +6,11 @@ use std::collections::BTreeMap;
 use super::integration::{samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::sample::Sample;
-use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
+use super::simplex::{MOST_CORNERS, Point, Sample, Simplex, Tensor, Weights, corners_of_side, pairs, work};
 use super::stress::Place;
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, key};
+use crate::fem::geometry::{COORDINATES, key, midpoint};
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
@@ -38,7 +37,7 @@ impl<'a> Displacements<'a> {
     /// The places of the functions: a linear displacement has its values there as coefficients.
     pub fn places(&self) -> Vec<Point> {
         let nodes = &self.mesh.nodes;
-        let middle = |&[a, b]: &[usize; 2]| [0, 1, 2].map(|axis| (nodes[a][axis] + nodes[b][axis]) / 2.0);
+        let middle = |&[a, b]: &[usize; 2]| midpoint(nodes[a], nodes[b]);
         nodes.iter().copied().chain(self.mesh.edges.iter().map(middle)).collect()
     }
 

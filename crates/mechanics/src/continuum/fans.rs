@@ -21,9 +21,10 @@ const MORE_SLENDER: f64 = 0.1;
 /// Largest number of rounds of refinement before the cut.
 const ROUNDS: usize = 12;
 
-/// Nodes count as opposite to each other if they are aside by less than this share of the shorter edge, as in rows
-/// between pairs of nodes.
-const SAME_PLACE: f64 = 1e-3;
+/// Lengths below this share of the shortest edge of the facets at a node are rounding of coordinates: seven digits, as
+/// in single precision, leave 5e-7 of the size of the bodies, which is below this share of a facet if at most 2000
+/// facets lie side by side. A place nearer to an edge of a facet than this share of the edge counts as on the edge.
+pub(crate) const SAME_PLACE: f64 = 1e-3;
 
 /// An edge on a contact, along a line across the direction of the rows, or an edge on a seam, along itself.
 #[derive(Clone, Debug)]

@@ -21,7 +21,7 @@ use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
 use super::system::{Block, Numbers, Unknowns};
 use crate::error::Error;
-use crate::fem::geometry::minus;
+use crate::fem::geometry::{midpoint, minus};
 use crate::fem::threads::{both, each};
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, solve};
@@ -150,12 +150,11 @@ impl Bracket<'_> {
         let of_cells = each(self.mesh.count(), of_cell);
         let [mut square, mut base, mut of_test, mut of_bracket] =
             [0, 1, 2, 3].map(|part| of_cells.iter().map(|cell| cell[part]).sum::<f64>());
-        let half = |a: Point, b: Point| [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
         let of_pair = self.on_springs(&test.displacement, &test.facets);
         for (pair, own) in of_pair.zip(self.on_springs(&self.primal.values, &self.dual.values)) {
             let (weight, extra) = (own.at.weight, own.at.extra);
             square += pair.square_of_rest();
-            base += weight * own.product(half(own.moved, own.balanced), minus(pair.moved, pair.balanced))
+            base += weight * own.product(midpoint(own.moved, own.balanced), minus(pair.moved, pair.balanced))
                 - extra * own.product(own.balanced, pair.balanced) / 2.0;
             of_test += extra * own.product(pair.balanced, pair.balanced);
             of_bracket += extra * own.product(own.balanced, own.balanced);

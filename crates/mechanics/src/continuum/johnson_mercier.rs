@@ -15,8 +15,7 @@ use super::integration::samples;
 use super::normal::{Lower, add, null_space};
 use super::part_stress::{PartStress, QUADRATIC, quadratic_factors};
 use super::problem::{ContinuumProblem, Law, Medium};
-use super::sample::Sample;
-use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
+use super::simplex::{ENTRIES, Point, Sample, Simplex, corners_of_side, traction};
 use crate::fem::material::engineering;
 use signorini_qp::dot;
 
@@ -346,6 +345,7 @@ mod tests {
     use super::super::bodies::filled;
     use super::super::simplex::{Tensor, less};
     use super::*;
+    use crate::fem::geometry::plus;
     use crate::fem::material::Lame;
 
     /// Rounding of stresses of order one.
@@ -402,8 +402,7 @@ mod tests {
                     let slopes = simplex.part(k).slopes();
                     let mut sum = material.media[0].body_force;
                     for (corner, &slope) in slopes.iter().enumerate().take(dimension + 1) {
-                        let pull = traction(stress.corner(k, corner), slope);
-                        (0..3).for_each(|axis| sum[axis] += pull[axis]);
+                        sum = plus(sum, traction(stress.corner(k, corner), slope));
                     }
                     assert!(sum.iter().all(|part| part.abs() < 100.0 * ROUNDING), "{sum:?}");
                     for other in (0..=dimension).filter(|&other| other != k) {

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::bodies::{body, filled, settings};
+use super::bodies::{body, filled, solved};
 use super::bound::Bracket;
 use super::mesh::{Cells, SimplexMesh};
 use super::problem::{
@@ -42,6 +42,11 @@ impl Distance for Flat {
     }
 }
 
+/// A rigid plane across an axis at this distance.
+fn plane(axis: usize, distance: f64) -> Vec<Facing> {
+    vec![Facing { normal: COORDINATES[axis], surface: Surface::Rigid(Arc::new(Flat(distance))), pressed: None }]
+}
+
 fn held(axis: usize) -> Held {
     Held { direction: COORDINATES[axis], value: Linear::default() }
 }
@@ -77,9 +82,8 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
             (area * energy, strain + base)
         };
         let pressure = -(GAP + OWN / YOUNG) / (1.0 / YOUNG + 1.0 / SPRINGS);
-        problem.obstacles =
-            vec![Facing { normal: COORDINATES[up], surface: Surface::Rigid(Arc::new(Flat(GAP))), pressed: None }];
-        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+        problem.obstacles = plane(up, GAP);
+        let bracket = solved(&problem, &mesh);
         assert_exact(&bracket, stored(pressure).0);
         let [low, high] = bracket.force_interval(0.0).unwrap().unwrap();
         assert!(
@@ -89,7 +93,7 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
         // Half of the force as a load on the plane, which travels until the head balances it.
         let force = area * pressure / 2.0;
         problem.obstacles[0].pressed = Some(Pressed { force, cosine: 1.0 });
-        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+        let bracket = solved(&problem, &mesh);
         let (energy, head) = stored(pressure / 2.0);
         assert_exact(&bracket, energy - force * (GAP - head));
         assert_eq!(bracket.force_interval(0.0).unwrap(), Some([force; 2]));
@@ -105,7 +109,7 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
         problem.rigid_faces = vec![RigidFace { prescribed: [Linear::default(); 3], free }];
         problem.conditions[2] = Condition { rigid_face: Some(0), ..Condition::default() };
         problem.obstacles = Vec::new();
-        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+        let bracket = solved(&problem, &mesh);
         assert_exact(&bracket, energy + force * head);
     }
 }
@@ -119,7 +123,7 @@ fn the_intervals_of_the_force_of_a_body_on_springs_overlap() {
         problem.conditions[0] = Condition { springs, ..Condition::default() };
         let intervals: Vec<[f64; 2]> = (0..4)
             .map(|_| {
-                let interval = Bracket::new(&problem, &mesh, None, &settings()).unwrap().force_interval(0.0).unwrap();
+                let interval = solved(&problem, &mesh).force_interval(0.0).unwrap();
                 mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
                 interval.unwrap()
             })
@@ -146,9 +150,9 @@ fn axes_that_turn_do_not_enlarge_the_norm() {
         vec![Medium { stiffness, ..plain.media[0].clone() }]
     };
     turning.media = of(Cylinder::new([-0.02, 0.4, 0.0], COORDINATES[2]));
-    let turned = Bracket::new(&turning, &mesh, None, &settings()).unwrap();
+    let turned = solved(&turning, &mesh);
     let plain = ContinuumProblem { media: of(None), ..plain };
-    let mut bracket = Bracket::new(&plain, &mesh, None, &settings()).unwrap();
+    let mut bracket = solved(&plain, &mesh);
     bracket.primal.values.clone_from(&turned.primal.values);
     bracket.measure();
     assert!((turned.energy / bracket.energy - 1.0).abs() < 1e-12, "{} {}", turned.energy, bracket.energy);
@@ -185,10 +189,9 @@ fn layers_of_two_media_share_their_shortening() {
     let [lower, upper] = [2.0, 8.0];
     let (mut problem, mesh) = layers([medium(lower), medium(upper)], Condition::default());
     problem.conditions[1].obstacles = vec![0];
-    problem.obstacles =
-        vec![Facing { normal: COORDINATES[1], surface: Surface::Rigid(Arc::new(Flat(-0.1))), pressed: None }];
+    problem.obstacles = plane(1, -0.1);
     let pressure = 0.1 / (0.5 / lower + 0.5 / upper);
-    assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), 0.1 * pressure / 2.0);
+    assert_exact(&solved(&problem, &mesh), 0.1 * pressure / 2.0);
 }
 
 /// A traction t on the edge between the layers stretches the lower one by `t/E` and moves the upper one; a support
@@ -200,12 +203,11 @@ fn loads_and_supports_on_edges_inside_are_exact() {
     between.pull_along([Linear::default(), Linear::constant(pull), Linear::default()]);
     let (problem, mesh) = layers([medium(YOUNG), medium(YOUNG)], between);
     assert!(mesh.surface().any(|outer| mesh.cells_at()[outer.facet][1].is_some()));
-    assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), -pull * pull / (4.0 * YOUNG));
+    assert_exact(&solved(&problem, &mesh), -pull * pull / (4.0 * YOUNG));
     let moved = pull / YOUNG / 2.0;
-    let support = Held { direction: COORDINATES[1], value: Linear::constant(moved) };
-    let (problem, mesh) =
-        layers([medium(YOUNG), medium(YOUNG)], Condition { held: vec![support], ..Condition::default() });
-    assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), YOUNG * moved * moved);
+    let held = vec![Held { value: Linear::constant(moved), ..held(1) }];
+    let (problem, mesh) = layers([medium(YOUNG), medium(YOUNG)], Condition { held, ..Condition::default() });
+    assert_exact(&solved(&problem, &mesh), YOUNG * moved * moved);
 }
 
 /// Along an axis of an orthotropic sheet that may bulge freely its own modulus counts.
@@ -219,11 +221,8 @@ fn an_orthotropic_column_has_the_modulus_along_its_axis() {
     problem.conditions[0].held = vec![held(1)];
     problem.conditions[4].held = vec![held(0)];
     problem.conditions[1].obstacles = vec![0];
-    problem.obstacles =
-        vec![Facing { normal: COORDINATES[1], surface: Surface::Rigid(Arc::new(Flat(-0.1))), pressed: None }];
-    let energy = young[1] * 0.1 * 0.1 / 2.0;
-    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-    assert_exact(&bracket, energy);
+    problem.obstacles = plane(1, -0.1);
+    assert_exact(&solved(&problem, &mesh), young[1] * 0.1 * 0.1 / 2.0);
 }
 
 /// A column with linear supports and tractions whose displacement is linear: `u = G x`.
@@ -236,17 +235,15 @@ fn linear_profiles_are_exact() {
         let gradient = [[0.02, -0.01, 0.015], [0.03, 0.01, -0.02], [-0.01, 0.02, 0.025]];
         let moved =
             |axis: usize, place: Point| (0..dimension).map(|along| gradient[axis][along] * place[along]).sum::<f64>();
-        let all = (0..dimension)
-            .map(|axis| Held { direction: COORDINATES[axis], value: Linear::of(|place| moved(axis, place)) });
-        let all: Vec<Held> = all.collect();
-        problem.conditions = vec![Condition { held: all, ..Condition::default() }; 4];
+        let all = (0..dimension).map(|axis| Held { value: Linear::of(|place| moved(axis, place)), ..held(axis) });
+        problem.conditions = vec![Condition { held: all.collect(), ..Condition::default() }; 4];
         let strain = |i: usize, j: usize| (gradient[i][j] + gradient[j][i]) / 2.0;
         let mut tensor = [0.0; 6];
         for (entry, [i, j]) in [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]].into_iter().enumerate() {
             tensor[entry] = if i < dimension && j < dimension { strain(i, j) } else { 0.0 };
         }
         let energy = problem.thickness * problem.law(0, [0.0; 3]).square(tensor) / 2.0;
-        assert_exact(&Bracket::new(&problem, &mesh, None, &settings()).unwrap(), energy);
+        assert_exact(&solved(&problem, &mesh), energy);
     }
 }
 
@@ -312,7 +309,7 @@ fn a_turned_body_has_the_same_bounds() {
         let mut turned_mesh = mesh.clone();
         turned_mesh.nodes.iter_mut().for_each(|node| *node = turn.by(*node));
         let of = |problem: &ContinuumProblem, mesh: &SimplexMesh| {
-            let bracket = Bracket::new(problem, mesh, None, &settings()).unwrap();
+            let bracket = solved(problem, mesh);
             assert!(bracket.balance.is_some() && bracket.defect < 1e-10, "{}", bracket.defect);
             let [low, high] = bracket.force_interval(0.0).unwrap().unwrap();
             [bracket.energy_of_stress(), bracket.energy_of_displacement(), bracket.distance(), low, high]

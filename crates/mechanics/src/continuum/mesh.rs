@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::simplex::{MOST_CORNERS, Point, Simplex, pairs};
-use crate::fem::geometry::{distance, key};
+use crate::fem::geometry::{distance, key, midpoint};
+use crate::fem::mesh::axis::Lattice;
 use crate::fem::mesh::bisection::Tetrahedra;
-use crate::fem::mesh::lattice::Lattice;
 
 /// Corners of a facet in space.
 const OF_FACET: usize = MOST_CORNERS - 1;
@@ -359,7 +359,7 @@ impl SimplexMesh {
             let [a, b, _] = *facet;
             let mut ends = vec![*facet];
             if let Some(middle) = halved.get_mut(&[a, b]) {
-                let half = [0, 1, 2].map(|axis| (nodes[a][axis] + nodes[b][axis]) / 2.0);
+                let half = midpoint(nodes[a], nodes[b]);
                 ends = vec![filled([a, nodes.len()]), filled([b, nodes.len()])];
                 *middle = Some(nodes.len());
                 nodes.push(condition.map_or(half, |condition| placed(condition, half)));

@@ -13,27 +13,24 @@ mod fans;
 mod force;
 mod integration;
 mod johnson_mercier;
-mod judge;
 #[cfg(test)]
 mod keys;
 mod mesh;
 mod normal;
 mod part_stress;
 mod problem;
-mod sample;
 mod seams;
 mod simplex;
 mod springs;
 mod stress;
 mod system;
-mod turning;
 #[cfg(test)]
 mod two_bodies;
 
-pub use answer::ContinuumAnswer;
+pub use answer::{ContinuumAnswer, Judged, Strain};
 pub use bound::Bracket;
+pub(crate) use fans::SAME_PLACE;
 pub use fans::Unjoined;
-pub use judge::{Judged, Strain};
 pub use mesh::{Cells, SimplexMesh};
 pub use problem::{
     Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace, Surface,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::simplex::{ENTRIES, Point, Tensor, pairs, work};
-use crate::fem::geometry::{COORDINATES, distance, dot, minus};
+use crate::fem::geometry::{COORDINATES, distance, dot, minus, plus};
 use crate::fem::material::{Lame, Matrix, Stiffness, back, engineering, local};
 
 /// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
@@ -146,7 +146,7 @@ impl Linear {
 
     /// The sum of two functions.
     pub fn plus(&self, other: Linear) -> Self {
-        let slope = [0, 1, 2].map(|axis| self.slope[axis] + other.slope[axis]);
+        let slope = plus(self.slope, other.slope);
         Linear { at_origin: self.at_origin + other.at_origin, slope }
     }
 }

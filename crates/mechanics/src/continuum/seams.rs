@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::fans::{Cut, Edge};
 use super::problem::{Condition, ContinuumProblem};
 use super::simplex::{Point, size_of_facet};
-use crate::fem::geometry::{distance, dot, minus, unit};
+use crate::fem::geometry::{distance, dot, minus, shifted, sorted, unit};
 
 /// Points closer than this share of an edge are one: far above the rounding of coordinates.
 const ONE_PLACE: f64 = 1e-9;
@@ -92,7 +92,7 @@ impl Cut {
                 let ends = facing.ends().map(|end| facing.at(&self.cells.nodes, end));
                 let places = ends.map(|end| dot(along, minus(end, from)));
                 let is_aside = |k: usize| {
-                    let foot = [0, 1, 2].map(|axis| from[axis] + places[k] * along[axis]);
+                    let foot = shifted(from, places[k], along);
                     distance(foot, ends[k]) > margin
                 };
                 let [low, high] = [places[0].min(places[1]).max(0.0), places[0].max(places[1]).min(own.length())];
@@ -158,8 +158,7 @@ impl Cut {
         self.cells.cells.iter_mut().flatten().for_each(|node| *node = number[*node]);
         let mut found: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
         for (facet, condition) in &self.cells.surface {
-            let mut facet: Vec<usize> = facet.iter().map(|&node| number[node]).collect();
-            facet.sort_unstable();
+            let facet = sorted(facet.iter().map(|&node| number[node]));
             found.entry(facet).or_default().push(*condition);
         }
         let (mut surface, mut joined) = (HashMap::new(), Vec::new());

@@ -1,6 +1,7 @@
-//! A triangle in the plane or a tetrahedron in space, by its corners. The order of the corners does not matter: sizes
-//! are positive.
+//! A triangle in the plane or a tetrahedron in space, by its corners, and points of integration on it. The order of the
+//! corners does not matter: sizes are positive.
 
+use crate::fem::element::gauss_legendre;
 use crate::fem::geometry::{Symmetric, cross, distance, dot, length, minus};
 
 /// Coordinates or components `[x, y, z]`; in the plane z is zero.
@@ -170,9 +171,45 @@ pub fn middle(a: Tensor, b: Tensor) -> Tensor {
     std::array::from_fn(|entry| (a[entry] + b[entry]) / 2.0)
 }
 
+/// A point of integration on a simplex or on a facet.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Its barycentric coordinates.
+    pub weights: Weights,
+    pub place: Point,
+    /// Its volume, or its area.
+    pub weight: f64,
+    /// What counts in addition, because a polynomial P stands for a power of a radius r: about an axis, for squares of
+    /// a hoop strain or of a stress, its volume times `r P(r) - 1`; where axes turn, for squares of any strain or
+    /// stress, its volume times `r^4 P(r^2)^2 - 1`.
+    pub extra: f64,
+}
+
+/// `x P(x) - 1 >= 0` for the polynomial `P(x) >= 1/x` between a and b with
+/// `1 - x P = (x - a) (x - b) prod (x - c)^2 / a b prod c^2`. `places` are those of the c, -1 at the smaller end and 1
+/// at the larger one.
+pub fn beyond(x: f64, [one, other]: [f64; 2], places: &[f64]) -> f64 {
+    let (low, high) = (one.min(other), one.max(other));
+    let ends = (x - low) / low * ((high - x) / high);
+    let middle = [low + high, high - low].map(|sum| sum / 2.0);
+    let zeros = places.iter().map(|place| middle[0] + middle[1] * place);
+    zeros.fold(ends.max(0.0), |product, zero| product * (x / zero - 1.0).powi(2))
+}
+
+/// The given number of Gauss points between 0 and 1, with their weights.
+pub fn line(points: usize) -> impl Iterator<Item = (f64, f64)> {
+    gauss_legendre(points).map(|(x, weight)| ((x + 1.0) / 2.0, weight / 2.0))
+}
+
+/// The given number of Gauss points along each side of the unit square, with their weights.
+pub fn square(points: usize) -> Vec<([f64; 2], f64)> {
+    line(points).flat_map(|(t, of_t)| line(points).map(move |(y, of_y)| ([t, y], of_t * of_y))).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::geometry::shifted;
 
     /// A triangle and a tetrahedron.
     fn simplices() -> [Simplex; 2] {
@@ -201,7 +238,7 @@ mod tests {
                 let (normal, size) = simplex.outward(corner);
                 let on_side = simplex.corners()[(corner + 1) % count];
                 assert!(dot(normal, minus(simplex.corners()[corner], on_side)) < 0.0);
-                (0..3).for_each(|axis| sum[axis] += size * normal[axis]);
+                sum = shifted(sum, size, normal);
                 assert!((simplex.part(corner).size() * count as f64 / simplex.size() - 1.0).abs() < 1e-14);
                 let weights = [0.1, 0.2, 0.3, 0.4].map(|weight| if count == 3 { weight / 0.6 } else { weight });
                 let weights = if count == 3 { [weights[0], weights[1], weights[2], 0.0] } else { weights };

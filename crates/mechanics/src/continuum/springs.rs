@@ -5,8 +5,7 @@ use super::bound::Bracket;
 use super::displacement::on_facet;
 use super::integration::samples_on_facet;
 use super::problem::Foundation;
-use super::sample::Sample;
-use super::simplex::Point;
+use super::simplex::{Point, Sample};
 use crate::fem::geometry::{dot, minus};
 
 /// A point of a facet on springs under a displacement and a stress.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::bodies::{body, clamped, filled, settings};
+use super::bodies::{assert_energy, body, clamped, filled, solved};
 use super::bound::Bracket;
 use super::fans::Unjoined;
 use super::mesh::{Cells, SimplexMesh};
@@ -102,19 +102,21 @@ fn unjoined_blocks(
     (problem, SimplexMesh::new(2, cells).unwrap())
 }
 
-/// The bracket of a column contains its energy and its force: without Poisson's ratio
-/// `q = 0.02 / (h_1 / E_1 + h_2 / E_2)`.
+/// The pressure of two columns that are shortened by one: without Poisson's ratio `q = 1 / (h_1 / E_1 + h_2 / E_2)`.
+fn pressure_of(young: [f64; 2]) -> f64 {
+    1.0 / young.iter().map(|young| 0.5 / young).sum::<f64>()
+}
+
+/// The bracket of a column contains its energy and its force.
 #[test]
 fn columns_of_two_bodies_are_exact_on_meshes_that_do_not_match_and_refined() {
     for (divisions, young) in [([[3, 2], [4, 1]], [2.0, 2.0]), ([[2, 2], [5, 3]], [2.0, 20.0])] {
         let (problem, mut mesh) = blocks(divisions, young, 0.0, |_| 0.0);
-        let pressure = 0.02 / young.iter().map(|young| 0.5 / young).sum::<f64>();
+        let pressure = 0.02 * pressure_of(young);
         for level in 0..3 {
-            let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let bracket = solved(&problem, &mesh);
             assert!(bracket.balance.is_some() && bracket.defect < ROUNDING, "{}", bracket.defect);
-            for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
-                assert!((energy / (0.01 * pressure) - 1.0).abs() < ROUNDING, "{energy}");
-            }
+            assert_energy(&bracket, 0.01 * pressure, ROUNDING);
             let [low, high] = bracket.force_interval(0.0).unwrap().unwrap();
             assert!((low / pressure - 1.0).abs() < 1e-9 && (high / pressure - 1.0).abs() < 1e-9, "{low} {high}");
             let marked: Vec<bool> = (0..mesh.count()).map(|cell| cell % 3 == level).collect();
@@ -133,12 +135,9 @@ fn columns_of_a_tenth_of_a_millimetre_are_exact() {
     cells.nodes.iter_mut().flatten().for_each(|part| *part *= UNIT);
     problem.conditions[1].held.iter_mut().for_each(|held| held.value = held.value.times(UNIT));
     let (mesh, _) = SimplexMesh::new(2, cells).unwrap().joined(&mut problem).unwrap();
-    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+    let bracket = solved(&problem, &mesh);
     assert!(bracket.balance.is_some() && bracket.defect < ROUNDING, "{}", bracket.defect);
-    let energy = 0.01 * 0.02 * UNIT * UNIT / young.iter().map(|young| 0.5 / young).sum::<f64>();
-    for found in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
-        assert!((found / energy - 1.0).abs() < ROUNDING, "{found}");
-    }
+    assert_energy(&bracket, 0.01 * 0.02 * UNIT * UNIT * pressure_of(young), ROUNDING);
 }
 
 /// Two cubes of side 3 in space, tied face to face and pulled apart; their nodes on the seam differ by rounding.
@@ -177,13 +176,10 @@ fn tied_cubes_in_space_are_exact() {
         vec![problem.conditions[0].clone(), free.clone(), tied(0), free.clone(), tied(1), free.clone(), moved, free];
     let (mesh, joined) = SimplexMesh::new(3, both).unwrap().joined(&mut problem).unwrap();
     assert!(joined.iter().flatten().all(|share| (share - 1.0).abs() < ROUNDING), "{joined:?}");
-    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+    let bracket = solved(&problem, &mesh);
     assert!(bracket.balance.is_some() && bracket.defect < 1e-10, "{}", bracket.defect);
     // Young's moduli 2 and 8, heights 3, an area of 9.
-    let energy = 0.03 * 9.0 * 0.06 / (3.0 / 2.0 + 3.0 / 8.0);
-    for found in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
-        assert!((found / energy - 1.0).abs() < 1e-10, "{found} {energy}");
-    }
+    assert_energy(&bracket, 0.03 * 9.0 * 0.06 / (3.0 / 2.0 + 3.0 / 8.0), 1e-10);
     let faces = problem.conditions.iter().position(|condition| condition.seams == [0]).unwrap();
     assert!(mesh.surface().all(|outer| outer.condition != faces));
 }
@@ -206,13 +202,11 @@ fn tied_columns_are_exact() {
         let mut problem = tied(uncut);
         let (mut mesh, joined) = first.joined(&mut problem).unwrap();
         assert!(joined.iter().flatten().all(|share| (share - 1.0).abs() < ROUNDING), "{joined:?}");
-        let pressure = 0.02 / young.iter().map(|young| 0.5 / young).sum::<f64>();
+        let pressure = 0.02 * pressure_of(young);
         for level in 0..3 {
-            let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let bracket = solved(&problem, &mesh);
             assert!(bracket.balance.is_some() && bracket.defect < ROUNDING, "{}", bracket.defect);
-            for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
-                assert!((energy / (0.01 * pressure) - 1.0).abs() < ROUNDING, "{energy}");
-            }
+            assert_energy(&bracket, 0.01 * pressure, ROUNDING);
             // The second body has nodes of its own on the seam; the displacement is linear in each body.
             let answer = bracket.answer();
             for (node, moved) in answer.nodes.iter().zip(&answer.displacement) {
@@ -228,11 +222,8 @@ fn tied_columns_are_exact() {
         }
         problem.conditions[1] = Condition::default();
         problem.conditions[1].pressure = Linear::constant(-0.5);
-        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-        let energy = -0.125 * young.iter().map(|young| 0.5 / young).sum::<f64>();
-        for found in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
-            assert!((found / energy - 1.0).abs() < ROUNDING, "{found}");
-        }
+        let bracket = solved(&problem, &mesh);
+        assert_energy(&bracket, -0.125 / pressure_of(young), ROUNDING);
     }
 }
 
@@ -263,11 +254,7 @@ fn only_what_lies_on_each_other_is_joined_and_nothing_acts_there() {
 fn columns_of_slender_triangles_are_nearly_exact() {
     let young = [2.0, 20.0];
     let (problem, mesh) = blocks([[1, 150], [1, 150]], young, 0.0, |_| 0.0);
-    let pressure = 0.02 / young.iter().map(|young| 0.5 / young).sum::<f64>();
-    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-    for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
-        assert!((energy / (0.01 * pressure) - 1.0).abs() < 1e-8, "{energy}");
-    }
+    assert_energy(&solved(&problem, &mesh), 0.01 * 0.02 * pressure_of(young), 1e-8);
 }
 
 /// An interference of 0.01 and a body that stands back by 0.002 press as if the upper block were lowered by 0.028.
@@ -276,11 +263,9 @@ fn an_interference_adds_to_what_presses_and_a_shift_takes_from_it() {
     let young = [2.0, 20.0];
     let (mut problem, mesh) = blocks([[3, 2], [4, 1]], young, 0.0, |_| 0.0);
     problem.obstacles[0].surface = Surface::Body { reach: 1.0, fit: Some(-0.01), shift: 0.002 };
-    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
-    let pressure = 0.028 / young.iter().map(|young| 0.5 / young).sum::<f64>();
-    for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
-        assert!((energy / (0.014 * pressure) - 1.0).abs() < ROUNDING, "{energy}");
-    }
+    let bracket = solved(&problem, &mesh);
+    let pressure = 0.028 * pressure_of(young);
+    assert_energy(&bracket, 0.014 * pressure, ROUNDING);
     assert!((bracket.force() / pressure - 1.0).abs() < ROUNDING, "{}", bracket.force());
 }
 
@@ -290,13 +275,11 @@ fn a_block_that_rests_on_another_one_between_guides_is_exact() {
     let (mut problem, mesh) = blocks([[3, 2], [4, 1]], [2.0, 20.0], 0.0, |_| 0.0);
     problem.conditions[1] = Condition { pressure: Linear::constant(0.1), ..Condition::default() };
     problem.conditions[2].held = vec![Held { direction: COORDINATES[0], value: Linear::default() }];
-    let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+    let bracket = solved(&problem, &mesh);
     assert!(bracket.balance.is_none() && bracket.defect < ROUNDING, "{}", bracket.defect);
     // The energy of the pressure q over the heights is minus that stored, q^2 h / 2E.
     let exact = -0.01 / 2.0 * (0.5 / 2.0 + 0.5 / 20.0);
-    for energy in [bracket.energy_of_stress(), bracket.energy_of_displacement()] {
-        assert!((energy / exact - 1.0).abs() < ROUNDING, "{energy} {exact}");
-    }
+    assert_energy(&bracket, exact, ROUNDING);
     let force = bracket.force_interval(0.0).unwrap().unwrap();
     assert!(force.iter().all(|force| (force / 0.1 - 1.0).abs() < 1e-9), "{force:?}");
 }
@@ -309,7 +292,7 @@ fn energies_and_forces_of_blocks_whose_meshes_do_not_match_meet() {
         let of = |cells: [usize; 2]| {
             let divisions = cells.map(|up| [2 * up, up]);
             let (problem, mesh) = blocks(divisions, young, 0.3, |x| (x - 0.5).abs() / 20.0);
-            let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let bracket = solved(&problem, &mesh);
             assert!(bracket.defect < 1e-9, "{}", bracket.defect);
             let force = bracket.force_interval(0.0).unwrap().unwrap();
             (bracket.bound(), [bracket.energy_of_stress(), bracket.energy_of_displacement()], force)
@@ -330,7 +313,7 @@ fn blocks_of_many_cells() {
         for cells in [[8, 8], [8, 11], [16, 16], [16, 21], [32, 32], [32, 43], [32, 12]] {
             let divisions = cells.map(|up| [2 * up, up]);
             let (problem, mesh) = blocks(divisions, young, 0.3, |x| (x - 0.5) * (x - 0.5) / 2.0);
-            let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+            let bracket = solved(&problem, &mesh);
             let force = bracket.force_interval(0.0).unwrap().unwrap();
             println!(
                 "{young:?} {cells:?} {} {} {:.3} % {force:?}",
@@ -366,13 +349,13 @@ fn edges_that_lie_opposite_to_each_other_stay_so() {
 fn what_the_check_finds_between_two_bodies() {
     let (problem, mesh) = blocks([[6, 3], [8, 4]], [1.0, 2.0], 0.3, |x| (x - 0.5) * (x - 0.5) / 2.0);
     let refusal = |bracket: &Bracket| bracket.check().unwrap_err().to_string();
-    let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+    let mut bracket = solved(&problem, &mesh);
     assert!(bracket.contact_share > 0.0);
     let pressed = (0..bracket.pulls.len()).max_by(|&a, &b| bracket.pulls[b].total_cmp(&bracket.pulls[a])).unwrap();
     bracket.pulls[pressed] *= 1.001;
     assert!(refusal(&bracket).contains("out of balance"));
     // The lower body stays where it is, the upper one moves by a thousandth.
-    let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
+    let mut bracket = solved(&problem, &mesh);
     let of_upper: Vec<usize> =
         (0..mesh.nodes.len()).filter(|&node| mesh.nodes[node][1] > 0.5 && mesh.nodes[node][1] < 0.8).collect();
     of_upper.iter().for_each(|&node| bracket.primal.values[2 * node + 1] -= 1e-3);
@@ -406,5 +389,5 @@ fn small_cells_on_large_ones_make_no_slender_triangle() {
     };
     let worst = (0..mesh.count()).map(slenderness).fold(0.0, f64::max);
     assert!(mesh.count() < 5000 && worst < 7.2, "{} {worst}", mesh.count());
-    assert!(Bracket::new(&problem, &mesh, None, &settings()).unwrap().defect < 1e-9);
+    assert!(solved(&problem, &mesh).defect < 1e-9);
 }

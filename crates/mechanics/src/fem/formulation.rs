@@ -41,9 +41,6 @@ pub enum Formulation {
 
 impl Formulation {
     /// Checks area or thickness.
-    ///
-    /// # Errors
-    /// [`linear::Error::Setting`] if it is not positive and finite.
     pub fn check(&self) -> Result<(), Error> {
         let (name, value) = match *self {
             Formulation::Bar { area } => ("area", area),

@@ -29,6 +29,23 @@ pub fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+/// The sum of two vectors.
+#[inline]
+pub(crate) fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// The point at this share of a way from another point.
+#[inline]
+pub(crate) fn shifted(from: [f64; 3], share: f64, way: [f64; 3]) -> [f64; 3] {
+    [from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]]
+}
+
+/// The middle of two points.
+pub(crate) fn midpoint(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0, (a[2] + b[2]) / 2.0]
+}
+
 /// The Euclidean norm of a vector `[x, y, z]`, in its unit: how far its end lies from its beginning.
 pub fn length(vector: [f64; 3]) -> f64 {
     vector[0].hypot(vector[1]).hypot(vector[2])
@@ -121,6 +138,13 @@ pub(crate) fn rotation(a: f64, b: f64, both: f64) -> (f64, f64) {
     let tangent = 1.0_f64.copysign(cotangent) / (cotangent.abs() + (1.0 + cotangent * cotangent).sqrt());
     let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
     (cosine, tangent * cosine)
+}
+
+/// Nodes in increasing order: the same for a face of any orientation.
+pub(crate) fn sorted(nodes: impl IntoIterator<Item = usize>) -> Vec<usize> {
+    let mut nodes: Vec<usize> = nodes.into_iter().collect();
+    nodes.sort_unstable();
+    nodes
 }
 
 /// The key of an edge: its two nodes, increasing.

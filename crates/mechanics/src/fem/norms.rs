@@ -42,9 +42,6 @@ const HALVINGS: usize = 12;
 /// are halved further as long as the halves change the sum: four digits are correct, also if the exact strain is
 /// singular at a point. The errors are infinite or NaN if the exact solution is zero.
 ///
-/// # Errors
-/// [`linear::Error::Length`](signorini_linear::Error::Length) if the displacement does not have `dim` entries per node.
-///
 /// ```
 /// use signorini_mechanics::fem::ElasticBody;
 /// use signorini_mechanics::fem::Formulation;
@@ -84,9 +81,6 @@ pub fn error_norms(
 
 /// The same with one fixed quadrature rule for elements of one kind, whose integration error is not corrected; the
 /// displacement has an entry per nodal dof, in length.
-///
-/// # Errors
-/// As [`error_norms`].
 pub fn error_norms_by(
     rule: &[QuadraturePoint],
     body: &ElasticBody,

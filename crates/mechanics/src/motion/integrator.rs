@@ -155,9 +155,6 @@ impl Integrator {
     }
 
     /// Continues from a state of an earlier integrator of the same problem, scheme and step.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`] for a state of another problem.
     pub fn resume(&mut self, state: State) -> Result<(), Error> {
         let (dofs, rows) = (self.problem.statics().dofs(), self.problem.statics().rows());
         let lengths = [

@@ -24,21 +24,15 @@
 //! # Ok::<(), signorini_mechanics::Error>(())
 //! ```
 
-mod balance;
 mod integrator;
 mod problem;
 mod scheme;
-mod state;
 mod step;
-mod time_function;
 
-pub(crate) use balance::Balance;
 pub use integrator::Integrator;
-pub use problem::DynamicProblem;
-pub(crate) use scheme::MOST_IN_CONTACT;
+pub(crate) use problem::between;
+pub use problem::{DynamicProblem, TimeFunction};
+pub(crate) use scheme::{MOST_IN_CONTACT, frequency_bound, stable_step};
 pub use scheme::{Scheme, SchemeSpec};
-pub(crate) use scheme::{frequency_bound, stable_step};
-pub use state::{Observation, State};
-pub use step::Parameter;
-pub use time_function::TimeFunction;
-pub(crate) use time_function::between;
+pub(crate) use step::Balance;
+pub use step::{Observation, Parameter, State};

@@ -156,9 +156,6 @@ impl Scene {
 
 impl ModalAnalysis {
     /// The same for the model that a scene with a request for modes built.
-    ///
-    /// # Errors
-    /// As [`Scene::modal_analysis`].
     pub fn of(model: Arc<Model>, count: usize, settings: &Settings) -> Result<Self, Error> {
         if !(1..=MOST_MODES).contains(&count) {
             let message = format!("{count} is not allowed: it must be from 1 to {MOST_MODES}");

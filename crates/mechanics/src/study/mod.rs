@@ -1,15 +1,9 @@
 //! Studies that take more than one solve, and the numbers of a report.
 
 pub(crate) mod compare;
-pub(crate) mod exact_path;
-pub(crate) mod front;
 pub(crate) mod kept_answers;
 pub(crate) mod motion;
-pub(crate) mod motion_error;
 pub(crate) mod motion_tradeoff;
-pub(crate) mod moving_mean;
-pub(crate) mod obstacles;
-pub(crate) mod problem_sweep;
 pub(crate) mod scene;
 pub(crate) mod summary;
 mod total_error;
@@ -17,17 +11,13 @@ pub(crate) mod tradeoff;
 pub(crate) mod warnings;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
-pub use exact_path::ExactPath;
+pub use kept_answers::ExactPath;
 pub use motion::{MotionContact, MotionSummary};
-pub use motion_error::MotionError;
-pub use motion_tradeoff::{MotionPoint, MotionTradeoff};
-pub use problem_sweep::{ProblemPoint, ProblemSweep};
-pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint};
-pub use summary::ObstacleContact;
-pub use summary::{ContactSummary, ModelSize, RunSeconds, Status, Summary, Verification};
+pub use motion_tradeoff::{MotionError, MotionPoint, MotionTradeoff};
+pub use scene::{ProblemPoint, ProblemSweep, Sweep, SweepCorner, SweepEvent, SweepPoint};
+pub use summary::{ContactSummary, ModelSize, ObstacleContact, RunSeconds, Status, Summary, Verification};
 pub use total_error::{
     Bound, ContinuumAnswer, Domain, Ended, Examined, Guarantee, JudgedMesh, Level, LevelKind, TotalError,
     TotalErrorGoal, total_error,
 };
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint};
-pub use warnings::AnswerWarning;

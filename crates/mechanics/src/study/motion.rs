@@ -1,11 +1,11 @@
-//! The numbers of a motion for the report of a run, gathered step by step.
+//! The numbers of a motion for the report of a run, gathered step by step; the largest mean over any window of time.
 
-use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
 
-use super::moving_mean::MovingMean;
-use super::warnings::{AnswerWarning, FEW_NODES};
+use super::warnings::FEW_NODES;
 use crate::motion::Observation;
-use crate::scene::Model;
+use crate::scene::{Model, Warning};
+use serde::{Deserialize, Serialize};
 
 /// Largest allowed growth of the energy, relative to the initial energy and the work of the loads; a motion beyond it
 /// is not reliable.
@@ -242,12 +242,12 @@ impl MotionSummary {
     }
 
     /// Warnings for this motion of a model.
-    pub fn warnings(&self, model: &Model) -> Vec<AnswerWarning> {
+    pub fn warnings(&self, model: &Model) -> Vec<Warning> {
         [self.unstable(), self.takes_energy(), self.few_rows(model)].into_iter().flatten().collect()
     }
 
     /// Warns of a contact that closes one or two nodes in every step: its force depends on the mesh.
-    fn few_rows(&self, model: &Model) -> Option<AnswerWarning> {
+    fn few_rows(&self, model: &Model) -> Option<Warning> {
         let is_small = |(index, one): &(usize, &MotionContact)| {
             let rows = 1..=FEW_NODES.min(model.obstacles()[*index].candidates().len().saturating_sub(1));
             rows.contains(&one.rows_max)
@@ -259,11 +259,11 @@ impl MotionSummary {
             "the contact of obstacles[{index}] closes at most {nodes} in a step. Peak force and times depend on the mesh there: \
              refine it near the contact and compare"
         );
-        Some(AnswerWarning { code: "mesh-dependent", message })
+        Some(Warning { code: "mesh-dependent", message })
     }
 
     /// Warns of a scheme that takes a visible share of the energy, once a contact is over.
-    fn takes_energy(&self) -> Option<AnswerWarning> {
+    fn takes_energy(&self) -> Option<Warning> {
         let share = self.taken_by_scheme() / self.energy_scale;
         let message = || {
             format!(
@@ -274,12 +274,11 @@ impl MotionSummary {
                 self.energy_scale
             )
         };
-        (share > MOST_TAKEN && self.contact.run == 0)
-            .then(|| AnswerWarning { code: "takes-energy", message: message() })
+        (share > MOST_TAKEN && self.contact.run == 0).then(|| Warning { code: "takes-energy", message: message() })
     }
 
     /// Warns of an energy that grows by more than 1 %.
-    fn unstable(&self) -> Option<AnswerWarning> {
+    fn unstable(&self) -> Option<Warning> {
         if !self.is_unstable() {
             return None;
         }
@@ -293,7 +292,7 @@ impl MotionSummary {
             self.work_max,
             100.0 * MOST_GROWTH
         );
-        Some(AnswerWarning { code: "unstable", message })
+        Some(Warning { code: "unstable", message })
     }
 
     /// The present sum of the energies minus the initial sum, over the largest kinetic and strain energy.
@@ -309,5 +308,72 @@ impl MotionSummary {
     fn relative(&self, energy: f64) -> f64 {
         let change = energy - self.energy_first.iter().sum::<f64>();
         if change == 0.0 { 0.0 } else { change / self.energy_scale }
+    }
+}
+
+/// Bins of a window: with more steps, several steps share a bin. The window then moves by 1/64 of its length, and its
+/// memory does not grow with the number of steps.
+const MOST_BINS: usize = 64;
+
+/// The mean over a window that moves with time, and the largest mean so far. Before the first step the force is zero.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct MovingMean {
+    /// Steps of a bin.
+    per_bin: usize,
+    /// Bins of a window.
+    bins: usize,
+    /// Sums of the forces of complete bins in the window, the oldest first.
+    sums: VecDeque<f64>,
+    /// Steps in the current bin, and the sum of their forces.
+    filling: (usize, f64),
+    /// The mean over the last window, and the largest so far.
+    pub latest: f64,
+    pub largest: f64,
+}
+
+impl MovingMean {
+    /// The mean over the whole number of steps nearest to `steps`, at least one; a bin of several has an even number of
+    /// them.
+    pub fn over(steps: f64) -> Self {
+        let steps = (steps.round() as usize).max(1);
+        let per_bin = match steps.div_ceil(MOST_BINS) {
+            1 => 1,
+            several => several.next_multiple_of(2),
+        };
+        MovingMean { per_bin, bins: (steps / per_bin).max(1), ..MovingMean::default() }
+    }
+
+    /// The number of steps of the window.
+    pub fn steps(&self) -> usize {
+        self.per_bin * self.bins
+    }
+
+    /// Adds the force of one more step.
+    pub fn add(&mut self, force: f64) {
+        let (count, sum) = (self.filling.0 + 1, self.filling.1 + force);
+        if count < self.per_bin {
+            self.filling = (count, sum);
+            return;
+        }
+        self.filling = (0, 0.0);
+        self.sums.push_back(sum);
+        if self.sums.len() > self.bins {
+            self.sums.pop_front();
+        }
+        self.latest = self.sums.iter().sum::<f64>() / self.steps() as f64;
+        self.largest = self.largest.max(self.latest);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_BINS, MovingMean};
+
+    #[test]
+    fn a_window_of_many_steps_keeps_few_sums_and_the_mean_of_a_plateau() {
+        let mut mean = MovingMean::over(100_000.0);
+        (0..300_000).for_each(|step| mean.add(if step == 150_000 { 9e9 } else { 3.0 }));
+        assert!(mean.sums.len() <= MOST_BINS && mean.steps().abs_diff(100_000) <= 100_000 / MOST_BINS);
+        assert!((mean.largest - 3.0 - 9e9 / mean.steps() as f64).abs() < 1e-3, "{}", mean.largest);
     }
 }

@@ -1,21 +1,17 @@
-//! Answers to a scene: its summary, and a sweep over the scene-wide gap.
+//! Answers to a scene: its summary, and sweeps over gaps and forces; a problem that moves to another end.
 
 use std::sync::Arc;
 use std::time::Instant;
 
-use serde::Serialize;
-
-use super::exact_path::ExactPath;
-use super::kept_answers::{KeptAnswers, points};
-use super::summary::{LargestDisplacement, OF_MESHED_PART, Status};
-use super::warnings::{
-    AnswerWarning, BEYOND, check_approach, check_deformation, initial_overlap, of_scene, point_support,
-};
-use super::{ModelSize, Summary, obstacles::contact_on_obstacles};
+use super::kept_answers::{ExactPath, KeptAnswers, points};
+use super::summary::{LargestDisplacement, OF_MESHED_PART, Status, contact_on_obstacles};
+use super::warnings::{BEYOND, check_approach, check_deformation, initial_overlap, of_scene, point_support};
+use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::scene::{Answer, ContactExtent, Model};
-use signorini_qp::{ContactSet, Goal, Prepared, Settings, Solution, Start, solve};
+use crate::scene::{Answer, ContactExtent, Model, Warning};
+use serde::Serialize;
+use signorini_qp::{ContactProblem, ContactSet, Goal, Prepared, Settings, Solution, Start, solve};
 
 /// Gaps at the middle that differ by more than this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT_LINE: f64 = 1e-12;
@@ -33,7 +29,7 @@ impl Summary {
         assemble_seconds: f64,
     ) -> Summary {
         let warning = super::warnings::untouched(problem, &solution);
-        let of_rows = problem.warnings().into_iter().map(|(code, message)| AnswerWarning { code, message });
+        let of_rows = problem.warnings().into_iter().map(|(code, message)| Warning { code, message });
         let mut summary = Summary::new(solution, ModelSize::of(problem), goal, assemble_seconds);
         summary.warnings.extend(of_rows.chain(warning));
         summary
@@ -340,4 +336,73 @@ fn corners(path: &ExactPath, model: &Model) -> Result<Vec<SweepCorner>, Error> {
         }
     }
     Ok(corners)
+}
+
+/// The answer to a problem whose gaps and load lie between those of a directory and those of its other end.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProblemPoint {
+    /// Position on the path: 0 for the problem itself, 1 for its other end.
+    pub t: f64,
+    /// The answer at this point of the path with its certificate, forces and warnings.
+    #[serde(flatten)]
+    pub summary: Summary,
+}
+
+/// A row that touches or releases on the path.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ProblemEvent {
+    /// The exact position.
+    pub t: f64,
+    /// The contact row.
+    pub row: usize,
+    /// `true` if the row closes as t grows, `false` if it opens.
+    pub touches: bool,
+}
+
+/// The answers of a problem directory at several points of the way to its other end.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProblemSweep {
+    /// The answers at the points, from 0 to 1.
+    pub points: Vec<ProblemPoint>,
+    /// The events between the points; `None` if they are not known: the load changes, or the problem is not condensed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub events: Option<Vec<ProblemEvent>>,
+}
+
+impl ProblemSweep {
+    /// Solves `first` at `count` points of the path to `last`, the same body and rows with other gaps, another load, or
+    /// both. An answer that is not certified counts as an answer here.
+    ///
+    /// The body is factorised once, or a hierarchy is built once, and every solve starts from the last answer. An
+    /// interrupted sweep holds the points that were solved before.
+    ///
+    /// # Errors
+    /// As [`solve`](signorini_qp::solve()); [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no point
+    /// was solved.
+    pub fn of(first: &ContactProblem, last: &ContactProblem, count: usize, settings: &Settings) -> Result<Self, Error> {
+        let kept = KeptAnswers::of(count, first.dofs(), settings);
+        let settings = &kept.settings(settings);
+        let prepared = Prepared::for_gaps(first, count, settings).map_err(|error| kept.explain(error.into()))?;
+        let same_load = first.load() == last.load();
+        let solved_at = |t: f64, known: Start| {
+            let problem = first.towards(last, t)?;
+            let prepared = match same_load {
+                true => prepared.starting_from(known),
+                false => prepared.with_load(problem.load().to_vec())?.starting_from(known),
+            };
+            let solved = prepared.solve(problem.gap()).map_err(|error| kept.explain(error.into()));
+            Ok((problem, solved))
+        };
+        let point = |t: f64, problem: ContactProblem, solution: Solution| {
+            Ok(ProblemPoint { t, summary: Summary::of_problem(&problem, solution, settings.goal(), 0.0) })
+        };
+        let points = points("point", &Sweep::even_gaps(0.0, 1.0, count), settings, solved_at, point)?;
+        let is_known = same_load && !settings.watch.acknowledge() && prepared.hierarchy().is_none();
+        let path = if is_known { prepared.path(first.gap(), last.gap()).ok() } else { None };
+        let of_path = path.as_ref().map(|path| path.events().iter());
+        let events = of_path.map(|events| {
+            events.map(|event| ProblemEvent { t: event.at, row: event.row, touches: event.touches }).collect()
+        });
+        Ok(ProblemSweep { points, events })
+    }
 }

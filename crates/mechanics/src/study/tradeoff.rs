@@ -3,13 +3,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use serde::Serialize;
-use signorini_qp as qp;
-
-use super::front::on_front;
+use super::motion_tradeoff::on_front;
 use super::warnings::check_approach;
 use crate::error::Error;
 use crate::scene::{Answer, Scene};
+use serde::Serialize;
+use signorini_qp as qp;
 use signorini_qp::{
     Condense, ContactProblem, InteriorPoint, Method, Penalty, Prepared, Settings, Solution, Watch, dot, solve,
 };

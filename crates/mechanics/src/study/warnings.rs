@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, dot};
 use crate::scene::answers::deformation;
+use crate::scene::input::warning::NONLINEAR;
 use crate::scene::models::overlap::Overlap;
 use crate::scene::models::parts::Origin;
 use crate::scene::models::rigid_body_modes::soft::SoftMotion;
@@ -70,17 +69,8 @@ const UNCERTAIN: f64 = 0.5;
 /// Codes of the warnings that a finer mesh settles.
 const OF_MESH: [&str; 3] = ["nothing-touches", "mesh-dependent", "between-nodes"];
 
-/// A fact about an answer that its reader should know, certified or not.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct AnswerWarning {
-    /// The name of the kind of warning about an answer, the same in every version.
-    pub code: &'static str,
-    /// The fact with its numbers, its likely cause, and a remedy.
-    pub message: String,
-}
-
 /// Warns that the entries of the stiffness determine few digits of the answer, even with a good certificate.
-pub(super) fn lost_digits(solution: &Solution) -> Option<AnswerWarning> {
+pub(super) fn lost_digits(solution: &Solution) -> Option<Warning> {
     let (digits, pivot) = (solution.digits_of_stiffness()?, solution.lost_pivot()?);
     let digits = match digits {
         0 => "hardly a digit".to_string(),
@@ -93,11 +83,11 @@ pub(super) fn lost_digits(solution: &Solution) -> Option<AnswerWarning> {
          slender bodies (take fewer elements along the thickness, quadratic elements, or a beam), or contrast of \
          stiff parts on soft ones"
     );
-    Some(AnswerWarning { code: "lost-digits", message })
+    Some(Warning { code: "lost-digits", message })
 }
 
 /// Warns that multipliers have the sign of rows that pull.
-pub(super) fn opposite_sign(certificate: &Certificate, multiplier: &[f64], tolerance: f64) -> Option<AnswerWarning> {
+pub(super) fn opposite_sign(certificate: &Certificate, multiplier: &[f64], tolerance: f64) -> Option<Warning> {
     let count = |sign: f64| multiplier.iter().filter(|&&lambda| sign * lambda > 0.0).count();
     let (pulling, pushing) = (count(1.0), count(-1.0));
     if certificate.adhesion <= tolerance || pulling <= pushing {
@@ -108,11 +98,11 @@ pub(super) fn opposite_sign(certificate: &Certificate, multiplier: &[f64], toler
          If your convention is K u + B' lambda = f with lambda >= 0, change the sign of lambda",
         pulling + pushing
     );
-    Some(AnswerWarning { code: "opposite-sign", message })
+    Some(Warning { code: "opposite-sign", message })
 }
 
 /// The warnings about an answer to a scene.
-pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment]) -> Vec<AnswerWarning> {
+pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment]) -> Vec<Warning> {
     let model = answer.model();
     let of_model = model.warnings().iter().map(|warning| of_model(answer, warning));
     let of_answer = [
@@ -129,7 +119,7 @@ pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment
 }
 
 /// Warns of means between curved surfaces whose forces turn both bodies together.
-fn unbalanced_moment(answer: &Answer) -> Option<AnswerWarning> {
+fn unbalanced_moment(answer: &Answer) -> Option<Warning> {
     let model = answer.model();
     let defect = |index: usize| Some((index, model.moment_defect(index, answer.multiplier())?));
     let defects = (0..model.obstacles().len()).filter_map(defect);
@@ -138,12 +128,12 @@ fn unbalanced_moment(answer: &Answer) -> Option<AnswerWarning> {
         "the contact forces of obstacles[{index}] on both bodies have a moment of {defect:.1e} of their sum times the size of the mesh: \
          means over curved surfaces miss it. Refine both surfaces and compare the moments"
     );
-    (defect > TURNING).then_some(AnswerWarning { code: "moment-defect", message })
+    (defect > TURNING).then_some(Warning { code: "moment-defect", message })
 }
 
 /// Warns of rigid motions of bodies that contact without friction hardly resists and no force drives: they follow the
 /// rounding of the mesh, or the moment of loads.
-fn softly_held(answer: &Answer) -> Vec<AnswerWarning> {
+fn softly_held(answer: &Answer) -> Vec<Warning> {
     let (model, displacement) = (answer.model(), answer.displacement());
     let closed: Vec<(&ContactRow, f64)> = answer
         .contact_set()
@@ -168,13 +158,13 @@ fn softly_held(answer: &Answer) -> Vec<AnswerWarning> {
             amount.trim_end(),
             100.0 * moved / largest
         );
-        AnswerWarning { code: "softly-held", message }
+        Warning { code: "softly-held", message }
     };
     visible.map(warning).collect()
 }
 
 /// Warns that two displaced bodies go through each other, with what helps.
-fn overlap(answer: &Answer) -> Option<AnswerWarning> {
+fn overlap(answer: &Answer) -> Option<Warning> {
     let model = answer.model();
     let Overlap { node, depth, bodies, has_rows } = model.overlap(answer.displacement(), answer.unknowns())?;
     let name = |body: usize| match model.body().regions()[body].name() {
@@ -198,11 +188,11 @@ fn overlap(answer: &Answer) -> Option<AnswerWarning> {
         model.units().length,
         model.node_in_words(node)
     );
-    Some(AnswerWarning { code: "bodies-overlap", message: message.replace("  ", " ") })
+    Some(Warning { code: "bodies-overlap", message: message.replace("  ", " ") })
 }
 
 /// The warnings about an answer on a first mesh that is refined further.
-pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<AnswerWarning>, Error> {
+pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<Warning>, Error> {
     check_approach(answer.model(), &solution.multiplier)?;
     check_deformation(answer)?;
     let warnings = of_scene(answer, solution, &[]);
@@ -224,7 +214,7 @@ pub(super) fn check_motion(model: &Model, largest: f64) -> Result<(), Error> {
 }
 
 /// Warns that a support on a single node carries a force.
-pub(super) fn point_support(answer: &Answer, resultants: &[Resultant]) -> Option<AnswerWarning> {
+pub(super) fn point_support(answer: &Answer, resultants: &[Resultant]) -> Option<Warning> {
     let size = |one: &Resultant| one.force.iter().fold(0.0, |size: f64, part| size.hypot(*part));
     // The contact forces all around a shaft have no resultant.
     let of_contact: f64 = answer.multiplier().iter().map(|lambda| lambda.abs()).sum();
@@ -236,7 +226,7 @@ pub(super) fn point_support(answer: &Answer, resultants: &[Resultant]) -> Option
         found.of,
         size(found)
     );
-    Some(AnswerWarning { code: "point-support", message })
+    Some(Warning { code: "point-support", message })
 }
 
 /// The rows that carry a force.
@@ -250,7 +240,7 @@ fn loaded_rows<'a>(model: &'a Model, multiplier: &[f64]) -> Vec<&'a ContactRow> 
 }
 
 /// Warns that rows with force deviate from the boundary's normals.
-fn across_approach(answer: &Answer) -> Option<AnswerWarning> {
+fn across_approach(answer: &Answer) -> Option<Warning> {
     let loaded = loaded_rows(answer.model(), answer.multiplier());
     let lean = |row: &ContactRow| dot(row.normal, row.outward);
     let row = loaded.into_iter().min_by(|a, b| lean(a).total_cmp(&lean(b))).filter(|row| lean(row) < ASIDE)?;
@@ -261,11 +251,11 @@ fn across_approach(answer: &Answer) -> Option<AnswerWarning> {
         row.obstacle,
         lean(row).clamp(-1.0, 1.0).acos().to_degrees()
     );
-    Some(AnswerWarning { code: "across-approach", message })
+    Some(Warning { code: "across-approach", message })
 }
 
 /// Warns that the body penetrates an obstacle between its nodes: only nodes have rows.
-fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
+fn between_nodes(answer: &Answer) -> Option<Warning> {
     let model = answer.model();
     let (nodes, dimension) = (model.mesh().nodes(), model.mesh().dimension());
     let moved = |node: usize| model.at_node(answer.displacement(), node);
@@ -298,11 +288,11 @@ fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
          it: the obstacle is smaller than the cells; refine the mesh there",
         100.0 * deep / depth
     );
-    Some(AnswerWarning { code: "between-nodes", message })
+    Some(Warning { code: "between-nodes", message })
 }
 
 /// Warns that no row of a problem without a scene is closed and none carries a force; names the nearest row.
-pub(super) fn untouched(problem: &ContactProblem, solution: &Solution) -> Option<AnswerWarning> {
+pub(super) fn untouched(problem: &ContactProblem, solution: &Solution) -> Option<Warning> {
     if is_touched(solution) || (problem.inequalities() == 0 && problem.equality_rows() > 0) {
         return None;
     }
@@ -311,7 +301,7 @@ pub(super) fn untouched(problem: &ContactProblem, solution: &Solution) -> Option
         None if problem.rows() == 0 => "no row is closed: the problem has none".to_string(),
         None => "no row is closed: every gap is infinite".to_string(),
     };
-    Some(AnswerWarning { code: "nothing-touches", message })
+    Some(Warning { code: "nothing-touches", message })
 }
 
 fn is_touched(solution: &Solution) -> bool {
@@ -336,7 +326,7 @@ fn written(gap: f64) -> String {
 
 /// Warns that rows along the approach direction carry force on an inclined surface: the force of a frictionless contact
 /// is along its normal.
-fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
+fn leaning_normals(answer: &Answer) -> Option<Warning> {
     let model = answer.model();
     let nodes = model.mesh().nodes();
     let loaded = loaded_rows(model, answer.multiplier());
@@ -368,12 +358,12 @@ fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
          `approach` takes that force along the approach direction, and keeps the node from sliding along the surface. Take rule \
          `closest-point`, whose rows follow the normals"
     );
-    Some(AnswerWarning { code: "leaning-normals", message })
+    Some(Warning { code: "leaning-normals", message })
 }
 
 /// Warns that the mesh is too coarse for the numbers of the contact: segments of one or two nodes or without an inner
 /// node, a peak that is uncertain or that grows without end.
-fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> {
+fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<Warning> {
     if model.mesh().dimension() == 1 {
         return None;
     }
@@ -417,7 +407,7 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
     let reasons = others.iter().fold(first.clone(), |all, other| format!("{all}; {other}"));
     let message =
         format!("{reasons}. Peak pressure and extent depend on the mesh there: refine it near the contact and compare");
-    Some(AnswerWarning { code: "mesh-dependent", message })
+    Some(Warning { code: "mesh-dependent", message })
 }
 
 /// The deepest place of the undeformed body in an obstacle, in words; `None` if it lies in none. An obstacle that a
@@ -433,7 +423,7 @@ pub(super) fn initial_overlap(model: &Model) -> Option<String> {
 }
 
 /// Warns that no row is closed and none carries a force; names the nearest row.
-fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> {
+fn nothing_touches(model: &Model, solution: &Solution) -> Option<Warning> {
     if is_touched(solution) {
         return None;
     }
@@ -453,7 +443,7 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> 
         None if model.obstacles().is_empty() => "nothing touches: the scene has no obstacle".to_string(),
         None => "nothing touches: no obstacle faces a node of its boundary".to_string(),
     };
-    Some(AnswerWarning { code: "nothing-touches", message })
+    Some(Warning { code: "nothing-touches", message })
 }
 
 /// The remark that the obstacle of an open row lies behind the boundary, if its direction points into the body.
@@ -469,10 +459,10 @@ fn behind(model: &Model, row: &ContactRow) -> String {
 }
 
 /// Warns that strains are too large for the equations of small strains, or far beyond them.
-fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
+fn large_strain(answer: &Answer) -> Option<Warning> {
     let (model, body) = (answer.model(), answer.model().body());
     if let Some(message) = answer.beyond_small_displacements() {
-        return Some(AnswerWarning { code: BEYOND, message });
+        return Some(Warning { code: BEYOND, message });
     }
     let deformation = answer.deformation()?;
     let (strain, element) = deformation.strain;
@@ -481,7 +471,7 @@ fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
             "{deformation}, on less than a thousandth of each body, as about a singular point: the numbers there mean nothing, and the \
              rest of the answer hardly depends on them"
         );
-        return Some(AnswerWarning { code: "large-strain", message });
+        return Some(Warning { code: "large-strain", message });
     }
     if strain <= LARGE_STRAIN {
         return None;
@@ -493,24 +483,22 @@ fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
         100.0 * strain,
         100.0 * LARGE_STRAIN
     );
-    Some(AnswerWarning { code: "large-strain", message })
+    Some(Warning { code: "large-strain", message })
 }
 
 /// The warning of a model about an answer: one about large displacements has their size.
-fn of_model(answer: &Answer, warning: &Warning) -> AnswerWarning {
-    let deformation = match warning {
-        Warning::Nonlinear { .. } => answer.deformation(),
-        _ => None,
-    };
-    let message = deformation.map_or_else(|| warning.to_string(), |deformation| format!("{warning}: {deformation}"));
-    AnswerWarning { code: warning.code(), message }
+fn of_model(answer: &Answer, warning: &Warning) -> Warning {
+    match (warning.code == NONLINEAR).then(|| answer.deformation()).flatten() {
+        Some(deformation) => Warning::new(NONLINEAR, format!("{warning}: {deformation}")),
+        None => warning.clone(),
+    }
 }
 
 /// Refuses an answer with large strains or rotations to a deck that asks for large displacements, unless small ones are
 /// wanted.
 pub(super) fn check_deformation(answer: &Answer) -> Result<(), Error> {
-    for warning in answer.model().warnings().iter().filter(|_| !answer.model().is_linear()) {
-        let Warning::Nonlinear { .. } = warning else { continue };
+    let of_deck = answer.model().warnings().iter().filter(|warning| warning.code == NONLINEAR);
+    for warning in of_deck.filter(|_| !answer.model().is_linear()) {
         let Some(deformation) = answer.deformation() else { continue };
         if deformation.widespread > LARGE_DEFORMATION {
             let message = format!(

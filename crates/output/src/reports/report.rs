@@ -3,9 +3,9 @@
 use super::certificate::{CertificateWords, conditions};
 use super::means::{between_text, means_text};
 use crate::text::printable;
-use signorini_mechanics::scene::{ContactExtent, Resultant, Rule, Segment, Units};
+use signorini_mechanics::scene::{ContactExtent, Resultant, Rule, Segment, Units, Warning};
 use signorini_mechanics::study::{
-    Agreement, AnswerWarning, ContactSummary, ObstacleContact, Summary, Sweep, SweepEvent, SweepPoint, Verification,
+    Agreement, ContactSummary, ObstacleContact, Summary, Sweep, SweepEvent, SweepPoint, Verification,
 };
 use signorini_qp::memory::in_words as memory;
 use signorini_qp::{Certificate, Goal, ProvenSet, Why};
@@ -320,7 +320,7 @@ pub(crate) fn proven_text(proven: &ProvenSet) -> String {
 }
 
 /// The warnings in full sentences.
-pub(crate) fn warnings_text(warnings: &[AnswerWarning]) -> String {
+pub(crate) fn warnings_text(warnings: &[Warning]) -> String {
     warnings.iter().map(|warning| entries("warning", wrapped(&printable(&warning.message)))).collect()
 }
 

@@ -1,12 +1,12 @@
-//! Free and supported dofs: eliminate, and expand again.
+//! Free and supported dofs: eliminate, and expand again; the frames of nodes at inclined supports; rigid-body modes.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use super::{Frame, PositiveBasis};
+use super::PositiveBasis;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::COORDINATES;
+use crate::fem::geometry::{COORDINATES, dot, shifted, unit};
 use crate::fem::mesh::Mesh;
 use signorini_linear as linear;
 
@@ -50,9 +50,6 @@ pub struct Along {
 impl DofMap {
     /// From one entry per nodal dof, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`: the prescribed
     /// displacement, in length along the positive axis, or `None` for a free dof.
-    ///
-    /// # Errors
-    /// [`linear::Error::NotFinite`] for a prescribed displacement that is not finite.
     pub fn new(prescribed: Vec<Option<f64>>) -> Result<Self, Error> {
         let (mut number, mut free) = (Vec::with_capacity(prescribed.len()), Vec::new());
         for (dof, value) in prescribed.iter().enumerate() {
@@ -231,18 +228,12 @@ impl DofMap {
 
     /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs (`free`, one entry per free
     /// dof, in length); supported dofs take their prescribed values.
-    ///
-    /// # Errors
-    /// [`linear::Error::Length`] if `free` does not have one entry per free dof.
     pub fn expand(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
         self.expand_with(free, |dof| self.prescribed(dof).unwrap_or(0.0))
     }
 
     /// A nodal motion, length `dim * n_nodes`, from that of the free dofs (`free`, one entry per free dof), both in
     /// length, or in length over time; supported dofs stay at zero.
-    ///
-    /// # Errors
-    /// As [`DofMap::expand`].
     pub fn expand_motion(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
         self.expand_with(free, |_| 0.0)
     }
@@ -258,9 +249,6 @@ impl DofMap {
 
     /// The entries of nodal forces (`nodal`, length `dim * n_nodes`, in force) at the free dofs: one entry per free
     /// dof, in force.
-    ///
-    /// # Errors
-    /// [`linear::Error::Length`] if `nodal` does not have one entry per nodal dof.
     pub fn restrict(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
         let local = self.turned_in(nodal)?;
         Ok(self.free.iter().map(|&dof| local[dof]).collect())
@@ -268,9 +256,6 @@ impl DofMap {
 
     /// The part of nodal forces (`nodal`, length `dim * n_nodes`, in force) along the supported dofs, of the same
     /// length: the reactions among the forces on all nodes.
-    ///
-    /// # Errors
-    /// As [`DofMap::restrict`].
     pub fn supported_part(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
         self.part(nodal, |dof| self.number(dof).is_none())
     }
@@ -302,4 +287,104 @@ impl DofMap {
             frame.turn_back(&mut local[self.dimension * node..self.dimension * (node + 1)]);
         }
     }
+}
+
+/// Given axes of unit length at right angles are accepted to within this.
+const ORTHONORMAL: f64 = 1e-12;
+
+/// The orthonormal axes along which the local dofs of a node are counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    axes: [[f64; 3]; 3],
+}
+
+impl Frame {
+    /// The frame of a node in `dimension` coordinates with first axes `given`: dimensionless unit vectors [x, y, z] at
+    /// right angles, zero beyond the dimension.
+    pub fn completing(given: &[[f64; 3]], dimension: usize) -> Result<Self, Error> {
+        let wrong =
+            |value: f64| linear::Error::Setting { name: "frame", value, allowed: "orthonormal: off by 1e-12 at most" };
+        let dimension = dimension.min(3);
+        if given.len() > dimension {
+            let allowed = "of as many axes as there are coordinates at most";
+            return Err(linear::Error::Setting { name: "frame", value: given.len() as f64, allowed }.into());
+        }
+        for (i, a) in given.iter().enumerate() {
+            for (j, b) in given[..=i].iter().enumerate() {
+                let off = dot(*a, *b) - f64::from(u8::from(i == j));
+                if off.is_nan() || off.abs() > ORTHONORMAL {
+                    return Err(wrong(off).into());
+                }
+            }
+            if let Some(&beyond) = a[dimension..].iter().find(|part| **part != 0.0) {
+                return Err(wrong(beyond).into());
+            }
+        }
+        let mut axes = given.to_vec();
+        for space in [dimension, 3] {
+            while axes.len() < space {
+                // Take the coordinate axis with the largest component perpendicular to the axes so far.
+                let rests = COORDINATES[..space].iter().map(|&axis| perpendicular(axis, &axes));
+                let Some(rest) = rests.max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b))) else { break };
+                axes.push(unit(perpendicular(unit(rest), &axes)));
+            }
+        }
+        let mut frame = Frame { axes: [[0.0; 3]; 3] };
+        frame.axes.iter_mut().zip(axes).for_each(|(place, axis)| *place = axis);
+        Ok(frame)
+    }
+
+    /// The axes, unit vectors [x, y, z]; in a plane model the third is normal to the plane.
+    pub fn axes(&self) -> &[[f64; 3]; 3] {
+        &self.axes
+    }
+
+    /// Turns the entries of a node, one per axis, from the coordinate axes to the axes of the frame.
+    pub(super) fn turn_in(&self, entries: &mut [f64]) {
+        let local = self.axes.map(|axis| entries.iter().zip(axis).map(|(entry, part)| entry * part).sum());
+        entries.iter_mut().zip(local).for_each(|(entry, value): (_, f64)| *entry = value);
+    }
+
+    /// Turns the entries of a node from the axes of the frame back to the coordinate axes.
+    pub(super) fn turn_back(&self, entries: &mut [f64]) {
+        let mut global = [0.0; 3];
+        for (&entry, axis) in entries.iter().zip(self.axes) {
+            global.iter_mut().zip(axis).for_each(|(sum, part)| *sum += entry * part);
+        }
+        entries.iter_mut().zip(global).for_each(|(entry, value)| *entry = value);
+    }
+}
+
+/// The component of a vector perpendicular to orthonormal `axes`.
+pub(crate) fn perpendicular(vector: [f64; 3], axes: &[[f64; 3]]) -> [f64; 3] {
+    axes.iter().fold(vector, |rest, &axis| shifted(rest, -dot(rest, axis), axis))
+}
+
+/// The rigid-body modes at the free dofs, one vector each, one entry per free dof: the translations, then the rotations
+/// about the centre of the mesh, divided by half its size so that all are dimensionless and of order one.
+///
+/// A body of revolution is treated as its half plane: the distance from the axis is ignored.
+pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
+    let (mesh, dimension) = (body.mesh(), body.dimension());
+    let (least, most) = mesh.extent();
+    let size = mesh.size();
+    let rotations: &[[usize; 2]] = match dimension {
+        1 => &[],
+        2 => &[[0, 1]],
+        _ => &[[1, 2], [2, 0], [0, 1]],
+    };
+    let mut motions = vec![Vec::with_capacity(dofs.free().len()); dimension + rotations.len()];
+    for &dof in dofs.free() {
+        let (node, axis) = (dof / dimension, dof % dimension);
+        let direction = dofs.axes(node)[axis];
+        let place = dofs.basis.place(mesh.nodes(), node);
+        let from_middle = [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size);
+        for (translation, motion) in motions[..dimension].iter_mut().enumerate() {
+            motion.push(direction[translation]);
+        }
+        for (&[first, second], motion) in rotations.iter().zip(&mut motions[dimension..]) {
+            motion.push(from_middle[first] * direction[second] - from_middle[second] * direction[first]);
+        }
+    }
+    motions
 }

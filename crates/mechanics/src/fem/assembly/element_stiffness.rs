@@ -1,11 +1,9 @@
-//! The stiffness of one element by the isotropic block formula: `K_ab[i][j] = sum_q w (lambda d_a[i] d_b[j] + mu g_a[j]
-//! g_b[i] + mu delta_ij g_a . g_b)`, g = grad N, d the dilatation of a unit displacement.
+//! The stiffness of one element, block by block, and changes of its shape functions.
 
-use super::element_blocks::{Block, ElementStiffness, pair};
-use super::general_stiffness::general_stiffness;
 use crate::fem::body::{BodyElement, ElasticBody, Integration, LocalPoint};
-use crate::fem::element::Tabulated;
-use crate::fem::material::{Lame, Stiffness};
+use crate::fem::element::{Cell, Tabulated};
+use crate::fem::geometry::{Symmetric, turned};
+use crate::fem::material::{Lame, Matrices, Stiffness};
 
 /// The stiffness of an element of `body`; `table` has its shape functions at the quadrature points of the formulation.
 pub fn element_stiffness(body: &ElasticBody, element: &BodyElement, table: &Tabulated) -> ElementStiffness {
@@ -163,4 +161,122 @@ impl Radial {
         }
         dilatation
     }
+}
+
+// The stiffness of one element of any material: `K_ab = sum_q w B_a' C B_b`, B_a the engineering strains of a unit
+// displacement of node a along each axis.
+
+/// The blocks of all pairs of nodes, for the stiffness C. Where its axes turn, strains are turned into them.
+pub(super) fn general_stiffness(body: &ElasticBody, matrices: &Matrices, table: &Tabulated, cell: &Cell) -> Vec<Block> {
+    let nodes = table.reference.nodes.len();
+    // Gradients are per unit of the cell and determinants in powers of the unit: this is the remaining power.
+    let scale = cell.unit().powi(table.reference.dimension as i32 - 2);
+    let mut blocks = vec![[[0.0; 3]; 3]; pair(nodes, 0)];
+    for at in &table.points {
+        let point = body.point(cell, at);
+        let weight = point.weight * scale;
+        let mut strains: Vec<[Symmetric; 3]> = (0..nodes).map(|node| unit_strains(&point, node)).collect();
+        if let Some(axes) = matrices.axes(|| cell.place(&at.shape)) {
+            strains.iter_mut().flatten().for_each(|strain| *strain = along(*strain, &axes));
+        }
+        for (a, of_a) in strains.iter().enumerate() {
+            let stresses = of_a.map(|strain| {
+                let stress =
+                    matrices.stiffness.map(|row| row.iter().zip(strain).map(|(entry, part)| entry * part).sum::<f64>());
+                stress.map(|component| weight * component)
+            });
+            for (b, of_b) in strains.iter().enumerate().take(a + 1) {
+                let block = &mut blocks[pair(a, b)];
+                for (row, stress) in block.iter_mut().zip(&stresses) {
+                    for (entry, strain) in row.iter_mut().zip(of_b) {
+                        *entry += stress.iter().zip(strain).map(|(stress, part)| stress * part).sum::<f64>();
+                    }
+                }
+            }
+        }
+    }
+    blocks
+}
+
+/// Engineering strains along axes.
+fn along([xx, yy, zz, xy, yz, zx]: Symmetric, axes: &[[f64; 3]; 3]) -> Symmetric {
+    let [xx, yy, zz, xy, yz, zx] = turned([xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0], axes);
+    [xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]
+}
+
+/// The engineering strains of a unit displacement of a node along x, y and z.
+fn unit_strains(point: &LocalPoint, node: usize) -> [Symmetric; 3] {
+    let [x, y, z] = point.gradients[node];
+    [[x, 0.0, point.hoop[node], y, 0.0, z], [0.0, y, 0.0, x, z, 0.0], [0.0, 0.0, z, 0.0, y, x]]
+}
+
+/// A block for a pair of nodes: row axis, column axis.
+pub(super) type Block = [[f64; 3]; 3];
+
+/// The stiffness of one element, in force per length: a block for every pair of its nodes.
+#[derive(Clone, Debug)]
+pub struct ElementStiffness {
+    blocks: Vec<Block>,
+}
+
+impl ElementStiffness {
+    /// From the blocks of nodes a >= b, pair by pair.
+    pub(super) fn of(blocks: Vec<Block>) -> Self {
+        ElementStiffness { blocks }
+    }
+
+    /// The block of local nodes `a >= b`: entry `[i][j]` is the force on `a` along axis i per displacement of `b` along
+    /// axis j. The block of (b, a) is its transpose.
+    #[inline]
+    pub fn block(&self, a: usize, b: usize) -> &Block {
+        &self.blocks[pair(a, b)]
+    }
+
+    /// Adds `factor` times the function of local node `other` to that of `node`, in rows and columns of the stiffness.
+    pub(super) fn add_function(&mut self, node: usize, other: usize, factor: f64) {
+        let nodes = (0..).take_while(|&count| pair(count, 0) < self.blocks.len()).count();
+        let of = |blocks: &[Block], a: usize, b: usize| match a >= b {
+            true => blocks[pair(a, b)],
+            false => transposed(&blocks[pair(b, a)]),
+        };
+        let own = of(&self.blocks, node, node);
+        let (across, beyond) = (of(&self.blocks, node, other), of(&self.blocks, other, other));
+        for third in (0..nodes).filter(|&third| third != node) {
+            let (mut sum, part) = (of(&self.blocks, node, third), of(&self.blocks, other, third));
+            each(&mut sum, |i, j, entry| *entry += factor * part[i][j]);
+            match node >= third {
+                true => self.blocks[pair(node, third)] = sum,
+                false => self.blocks[pair(third, node)] = transposed(&sum),
+            }
+        }
+        let mut sum = own;
+        each(&mut sum, |i, j, entry| *entry += factor * (across[i][j] + across[j][i] + factor * beyond[i][j]));
+        self.blocks[pair(node, node)] = sum;
+    }
+
+    /// Multiplies the function of a local node.
+    pub(super) fn scale_function(&mut self, node: usize, factor: f64) {
+        let nodes = (0..).take_while(|&count| pair(count, 0) < self.blocks.len()).count();
+        for other in 0..nodes {
+            let square = if other == node { factor } else { 1.0 };
+            each(&mut self.blocks[pair(node.max(other), node.min(other))], |_, _, entry| *entry *= factor * square);
+        }
+    }
+}
+
+fn transposed(block: &Block) -> Block {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| block[j][i]))
+}
+
+/// Changes every entry of a block, given with its row and its column.
+fn each(block: &mut Block, mut change: impl FnMut(usize, usize, &mut f64)) {
+    for (i, row) in block.iter_mut().enumerate() {
+        row.iter_mut().enumerate().for_each(|(j, entry)| change(i, j, entry));
+    }
+}
+
+/// The index of nodes a >= b among the pairs of an element.
+#[inline]
+pub(super) fn pair(a: usize, b: usize) -> usize {
+    a * (a + 1) / 2 + b
 }

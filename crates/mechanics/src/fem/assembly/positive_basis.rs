@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::element_blocks::ElementStiffness;
+use super::element_stiffness::ElementStiffness;
 use crate::fem::element::{POSITIVE_SHARE as WEIGHT, ReferenceElement, positive_coefficient};
 use crate::fem::mesh::Boundary;
 

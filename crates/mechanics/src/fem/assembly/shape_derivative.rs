@@ -10,11 +10,13 @@
 
 use std::ops::Range;
 
+use super::load::{FacetPoint, Kinks, for_each_fine_point, for_each_point};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody, Integration, LocalPoint};
 use crate::fem::element::{MAX_NODES, PerKind, PerNode, Tabulated, TabulatedPoint};
-use crate::fem::geometry::{COORDINATES, Symmetric, dot, minus, trace};
+use crate::fem::geometry::{COORDINATES, Symmetric, dot, minus, shifted, trace};
 use crate::fem::material::{Stiffness, engineering};
+use crate::fem::mesh::Boundary;
 use crate::fem::threads::in_order;
 
 /// A tensor: row, column.
@@ -228,11 +230,7 @@ fn work_by_places(
 
 /// A field at a point of a cell with this number of nodes, from its values there.
 pub(crate) fn interpolated(values: &PerNode<[f64; 3]>, shape: &PerNode<f64>, nodes: usize) -> [f64; 3] {
-    values
-        .iter()
-        .zip(shape)
-        .take(nodes)
-        .fold([0.0; 3], |sum, (value, share)| [0, 1, 2].map(|axis| sum[axis] + share * value[axis]))
+    values.iter().zip(shape).take(nodes).fold([0.0; 3], |sum, (&value, share)| shifted(sum, *share, value))
 }
 
 pub(super) fn add(body: &ElasticBody, nodes: &[usize], vectors: &PerNode<[f64; 3]>, nodal: &mut [f64]) {
@@ -245,3 +243,113 @@ pub(super) fn add(body: &ElasticBody, nodes: &[usize], vectors: &PerNode<[f64; 3
 
 #[cfg(test)]
 mod tests;
+
+/// The energy that a body held in its undeformed shape has by its temperatures and initial stresses, in force times
+/// length.
+pub(crate) fn own_energy(body: &ElasticBody) -> f64 {
+    sum_over_points(body, |_, element, at| {
+        element.own_strain(at).map_or(0.0, |[stress, strain]| work(&stress, &strain) / 2.0)
+    })
+}
+
+/// The change of [`own_energy`] with a parameter; `derivative` is the body of the derivatives of stresses with respect
+/// to it.
+///
+/// With the strain `e = C^-1 sigma_0` it is the integral of `e : d sigma_0 - e : dC : e / 2`.
+pub(crate) fn own_energy_change(body: &ElasticBody, derivative: &ElasticBody) -> f64 {
+    sum_over_points(body, |index, element, at| {
+        let (Some([_, strain]), Some(change)) = (element.own_strain(at), derivative.element(index)) else { return 0.0 };
+        let of_own = change.own_stress(at).map_or(0.0, |own| work(&own, &strain));
+        let stiffer = change.phase.law.stress(&strain, trace(&strain), || element.cell.place(&at.shape));
+        of_own - work(&stiffer, &strain) / 2.0
+    })
+}
+
+/// The integral of a density over the body; zero without own stress.
+fn sum_over_points(body: &ElasticBody, density: impl Fn(usize, &BodyElement, &TabulatedPoint) -> f64) -> f64 {
+    if !body.has_own_stress() {
+        return 0.0;
+    }
+    let tables = body.tabulated();
+    let of_element = |(index, element): (usize, BodyElement)| {
+        let points = tables.at(element.kind).points.iter();
+        let sum: f64 = points.map(|at| body.point(&element.cell, at).weight * density(index, &element, at)).sum();
+        sum * element.cell.unit().powi(body.dimension() as i32)
+    };
+    body.elements().enumerate().map(of_element).sum()
+}
+
+/// A density over a boundary at one of its points, per area, and its change at the same reference coordinates.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Density {
+    pub value: f64,
+    /// With the place of the point, per length.
+    pub by_place: [f64; 3],
+    /// With the outward unit normal there; the part along the normal does not count.
+    pub by_normal: [f64; 3],
+}
+
+/// The points at which a boundary is integrated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Points<'a> {
+    /// Those of constant tractions, of areas and of foundations.
+    Own,
+    /// Those of fields: five in each direction of every piece of a facet between kinks.
+    Fine(Kinks<'a>),
+}
+
+impl Points<'_> {
+    fn visit(self, body: &ElasticBody, boundary: &Boundary, visit: &mut dyn FnMut(&FacetPoint)) {
+        match self {
+            Points::Own => for_each_point(body, boundary, visit),
+            Points::Fine(kinks) => for_each_fine_point(body, boundary, kinks, visit),
+        }
+    }
+}
+
+/// The area of a boundary, and the integral of `value` over it.
+pub(crate) fn area_and_integral(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    points: Points,
+    value: impl Fn(&FacetPoint) -> f64,
+) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    points.visit(body, boundary, &mut |point| {
+        sums[0] += point.area;
+        sums[1] += point.area * value(point);
+    });
+    sums
+}
+
+/// Adds to `gradient` (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`) the change of the integral of a density
+/// over a boundary with each coordinate of the nodes, in length.
+///
+/// It is the derivative of the sum over the points. A density with kinks must be continuous there: a facet is then cut
+/// at other reference coordinates when its nodes move, which changes the integral by nothing as long as the pieces are
+/// integrated exactly, as those of straight edges, plane triangles and parallelograms are; on other facets it changes
+/// it by less than the error of the integral.
+pub(crate) fn integral_by_places(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    points: Points,
+    density: impl Fn(&FacetPoint) -> Density,
+    gradient: &mut [f64],
+) {
+    let by_radius = body.formulation().measure_by_x();
+    points.visit(body, boundary, &mut |point| {
+        let Density { value, by_place, by_normal } = density(point);
+        let (cell, normal) = (point.cell, point.normal);
+        let vector = cell.area_vector(point.derivative);
+        // The area vector may point inwards.
+        let size = dot(vector, normal);
+        let (turning, factor) = (value - dot(by_normal, normal), point.area / (size * cell.unit()));
+        let along = [0, 1, 2].map(|axis| factor * (by_normal[axis] + turning * normal[axis]));
+        let mut of_nodes = cell.area_vector_by_places(point.derivative, along);
+        for (of_node, share) in of_nodes.iter_mut().zip(point.shape) {
+            of_node.iter_mut().zip(by_place).for_each(|(sum, slope)| *sum += share * point.area * slope);
+            of_node[0] += share * point.extent * value * by_radius;
+        }
+        add(body, point.nodes, &of_nodes, gradient);
+    });
+}

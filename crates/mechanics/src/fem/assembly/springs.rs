@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use super::DofMap;
-use super::element_blocks::Block;
-use super::surface::for_each_point;
+use super::element_stiffness::Block;
+use super::load::for_each_point;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{COORDINATES, length, unit};

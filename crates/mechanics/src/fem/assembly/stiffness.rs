@@ -3,14 +3,14 @@
 
 use std::ops::Range;
 
-use super::congruent::Congruent;
-use super::element_blocks::{Block, ElementStiffness};
-use super::pattern::lower_pattern;
+use super::element_stiffness::{Block, ElementStiffness};
 use super::{DofMap, Frame, element_stiffness};
 use crate::error::Error;
-use crate::fem::body::ElasticBody;
-use crate::fem::element::MAX_NODES;
-use crate::fem::threads::{on_parts, parts};
+use crate::fem::body::{ElasticBody, Strained};
+use crate::fem::element::{MAX_NODES, Tabulated};
+use crate::fem::geometry::{Around, Symmetric};
+use crate::fem::mesh::Mesh;
+use crate::fem::threads::{in_order, on_parts, parts};
 use signorini_linear as linear;
 use signorini_linear::{SparseMatrix, SymmetricMatrix};
 
@@ -41,10 +41,6 @@ impl<'a> FreeAxes<'a> {
 }
 
 /// The stiffness K of the free dofs (n x n), in force per length; only its lower triangle is ever built.
-///
-/// # Errors
-/// [`linear::Error::Length`] if `dofs` does not belong to the mesh, [`linear::Error::NotFinite`] if the stiffness
-/// overflows.
 pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let (starts, rows) = lower_pattern(body.mesh(), dofs);
@@ -172,4 +168,215 @@ fn turn(block: &Block, of_rows: Option<&Frame>, of_columns: Option<&Frame>) -> B
         }
     }
     turned
+}
+
+/// No node has visited this one yet.
+const NEVER: u32 = u32::MAX;
+
+/// The nodes around one node after another.
+struct Neighbours<'a> {
+    mesh: &'a Mesh,
+    around: &'a Around,
+    /// The node that has visited each node last.
+    seen: Vec<u32>,
+    found: Vec<usize>,
+}
+
+impl Neighbours<'_> {
+    /// The nodes with the same or a larger number that share an element with a node, unsorted.
+    fn of(&mut self, node: usize) -> &mut [usize] {
+        self.found.clear();
+        for &element in self.around.at(node) {
+            for &other in self.mesh.element(element as usize) {
+                if other >= node && self.seen[other] != node as u32 {
+                    self.seen[other] = node as u32;
+                    self.found.push(other);
+                }
+            }
+        }
+        &mut self.found
+    }
+}
+
+/// Column starts and sorted rows of the lower triangle in the free dofs.
+///
+/// A mesh has so few nodes that their numbers, and those of the elements around them, fit 32 bits.
+pub(super) fn lower_pattern(mesh: &Mesh, dofs: &DofMap) -> (Vec<usize>, Vec<u32>) {
+    let (dimension, count) = (mesh.dimension(), mesh.nodes().len());
+    let of_elements = (0..mesh.element_count()).map(|element| mesh.element(element).iter().copied());
+    let around = Around::new(count, of_elements);
+    let neighbours = || Neighbours { mesh, around: &around, seen: vec![NEVER; count], found: Vec::new() };
+    let free_axes = |node: usize| (dimension * node..dimension * (node + 1)).filter_map(|dof| dofs.number(dof));
+    let parts = parts(count);
+    let nodes: Vec<usize> = (0..=parts).map(|part| count * part / parts).collect();
+    // The entries of the first column of each node.
+    let mut lengths = vec![0_u32; count];
+    on_parts(&mut lengths, &nodes, |part, lengths| {
+        let mut neighbours = neighbours();
+        for (node, length) in (nodes[part]..).zip(lengths) {
+            if free_axes(node).next().is_some() {
+                *length = neighbours.of(node).iter().map(|&other| free_axes(other).count() as u32).sum();
+            }
+        }
+    });
+    let (mut starts, mut entries, mut bounds) = (Vec::with_capacity(dofs.free().len() + 1), 0, Vec::new());
+    starts.push(0);
+    for (node, &length) in lengths.iter().enumerate() {
+        if nodes.get(bounds.len()) == Some(&node) {
+            bounds.push(entries);
+        }
+        for column in 0..free_axes(node).count() {
+            entries += length as usize - column;
+            starts.push(entries);
+        }
+    }
+    bounds.push(entries);
+    let mut rows = vec![0_u32; entries];
+    on_parts(&mut rows, &bounds, |part, rows| {
+        let (mut neighbours, mut rest) = (neighbours(), rows.iter_mut());
+        for node in nodes[part]..nodes[part + 1] {
+            let own = free_axes(node).count();
+            if own > 0 {
+                let around = neighbours.of(node);
+                around.sort_unstable();
+                for column in 0..own {
+                    let of_column = around.iter().flat_map(|&other| free_axes(other)).skip(column);
+                    of_column.zip(rest.by_ref()).for_each(|(row, place)| *place = row as u32);
+                }
+            }
+        }
+    });
+    (starts, rows)
+}
+
+/// Coordinates are known to this many units in the last place: they are products and sums of the numbers of a scene.
+const COORDINATE_ULPS: f64 = 4.0;
+
+/// For each element one before it, or itself, whose stiffness it has to the rounding of coordinates.
+pub(super) struct Congruent {
+    representative: Vec<u32>,
+}
+
+impl Congruent {
+    /// Compares each element with the representative of the element before it. Elements of a body of revolution, or
+    /// with axes that turn, have their own stiffness each.
+    pub fn of(body: &ElasticBody) -> Self {
+        let has_turning_axes = body.phases().iter().any(|phase| phase.law.turns());
+        let is_alone = body.formulation().is_axisymmetric() || has_turning_axes;
+        let mut last = 0;
+        let mut representative_of = |element: usize| {
+            if is_alone || !are_congruent(body, last, element) {
+                last = element;
+            }
+            last as u32
+        };
+        Congruent { representative: (0..body.mesh().element_count()).map(&mut representative_of).collect() }
+    }
+
+    /// The element whose stiffness `element` has.
+    pub fn representative(&self, element: usize) -> u32 {
+        self.representative[element]
+    }
+}
+
+/// Returns `true` if one element is the other one moved by a translation.
+fn are_congruent(body: &ElasticBody, one: usize, other: usize) -> bool {
+    let mesh = body.mesh();
+    let of_one_kind =
+        mesh.kind_of(one) == mesh.kind_of(other) && std::ptr::eq(body.phase_of(one), body.phase_of(other));
+    let mut pairs =
+        mesh.element(one).iter().zip(mesh.element(other)).map(|pair| (mesh.nodes()[*pair.0], mesh.nodes()[*pair.1]));
+    let Some(first) = pairs.next().filter(|_| of_one_kind) else { return false };
+    pairs.all(|(one, other)| {
+        (0..3).all(|axis| {
+            let [a, b, c, d] = [one[axis], first.0[axis], other[axis], first.1[axis]];
+            let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs());
+            ((a - b) - (c - d)).abs() <= COORDINATE_ULPS * f64::EPSILON * size
+        })
+    })
+}
+
+/// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`
+/// (length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length).
+///
+/// Computed from the strains, element by element: a rigid translation gives exactly zero. Exceptions: a radial
+/// translation of a body of revolution is not rigid, and temperatures and initial stresses give a stress without
+/// strain.
+pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f64>, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let tables = body.tabulated();
+    let mut force = vec![0.0; displacement.len()];
+    let of_run = |run: Range<usize>| {
+        let mut forces = Vec::new();
+        for element in run.clone().filter_map(|index| body.element(index)) {
+            let first = forces.len();
+            forces.resize(first + element.nodes.len(), [0.0; 3]);
+            let strained = body.strained(&tables, displacement, &element);
+            of_cell(&strained, tables.at(element.kind), &mut forces[first..], |_| {});
+        }
+        (run, forces)
+    };
+    in_order(body.mesh().element_count(), of_run, |(run, forces)| add_to_nodes(body, run, &forces, &mut force));
+    Ok(force)
+}
+
+/// Adds the forces on the nodes of an element to `forces`; `seen` takes the stress at each quadrature point, in order.
+#[inline]
+pub(crate) fn of_cell(
+    strained: &Strained,
+    table: &Tabulated,
+    forces: &mut [[f64; 3]],
+    mut seen: impl FnMut(&Symmetric),
+) {
+    for at in &table.points {
+        let point = strained.displaced(at);
+        let stress = strained.stress(at, &point);
+        point.add_forces(at, &stress, forces);
+        seen(&stress);
+    }
+    let scale = strained.unit_of_force();
+    forces.iter_mut().flatten().for_each(|component| *component *= scale);
+}
+
+/// Adds the forces on the nodes of some elements, one element after another, to those of the body.
+pub(crate) fn add_to_nodes(body: &ElasticBody, elements: Range<usize>, forces: &[[f64; 3]], sum: &mut [f64]) {
+    let dimension = body.dimension();
+    let nodes = elements.flat_map(|index| body.mesh().element(index));
+    for (&node, force) in nodes.zip(forces) {
+        let of_node = &mut sum[dimension * node..dimension * (node + 1)];
+        of_node.iter_mut().zip(force).for_each(|(sum, component)| *sum += component);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fem::element::ElementKind;
+    use crate::fem::formulation::Formulation;
+    use crate::fem::material::Material;
+    use crate::fem::mesh::Mesh;
+
+    /// The representatives of a row of unit squares whose corners lie at `place(x, y)`.
+    fn representatives(formulation: Formulation, place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<u32> {
+        let node = |index: usize| place((index / 2) as f64, (index % 2) as f64);
+        let nodes = (0..12).map(|index| [node(index)[0], node(index)[1], 0.0]).collect();
+        let connectivity = (0..5).flat_map(|cell| [0, 2, 3, 1].map(|corner| 2 * cell + corner)).collect();
+        let bilinear = ElementKind::ALL.into_iter().find(|kind| kind.dimension() == 2 && kind.nodes() == 4).unwrap();
+        let mesh = Mesh::new(nodes, bilinear, connectivity, Vec::new()).unwrap();
+        let body = ElasticBody::new(mesh, Material::new(1.0, 0.3).unwrap(), formulation).unwrap();
+        let soft = Material::new(0.5, 0.3).unwrap();
+        let body = body.with_material(&[4], soft).unwrap();
+        Congruent::of(&body).representative
+    }
+
+    #[test]
+    fn cells_of_a_lattice_have_one_stiffness_and_others_their_own() {
+        let plane = || Formulation::PlaneStrain { thickness: 1.0 };
+        // A tenth is no binary number: cells differ by rounding.
+        assert_eq!(representatives(plane(), |x, y| [0.1 * x + 3.0, 0.1 * y]), [0, 0, 0, 0, 4]);
+        let stretched = |x: f64, y: f64| [x + if x > 2.5 { 1e-9 } else { 0.0 }, y];
+        assert_eq!(representatives(plane(), stretched), [0, 0, 2, 3, 4]);
+        let around_the_axis = Formulation::Axisymmetric;
+        assert_eq!(representatives(around_the_axis, |x, y| [x, y]), [0, 1, 2, 3, 4]);
+    }
 }

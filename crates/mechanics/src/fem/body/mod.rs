@@ -1,16 +1,13 @@
 //! The elastic body: a mesh, its elements, their materials, a formulation; strains and stresses in it.
 
-mod integration;
 mod phase;
 mod phases;
 mod point;
-mod region;
 
-pub use integration::Integration;
 pub(crate) use phase::PhaseNumber;
-pub use phase::{Phase, Temperature};
+pub use phase::{Phase, Region};
+pub use point::Integration;
 pub(crate) use point::{Displaced, LocalPoint};
-pub use region::Region;
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -29,8 +26,8 @@ use crate::fem::mesh::{Boundary, Mesh, fail};
 use crate::fem::mortar::Skin;
 use crate::fem::threads::in_order;
 
-/// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
-const ON_THE_AXIS: f64 = 1e-12;
+/// Radii of a body of revolution below this times its size, of either sign, are rounding of zero: on its axis.
+pub(crate) const ON_THE_AXIS: f64 = 1e-12;
 
 /// An elastic body of one material or several, or several bodies that only contact couples; checked once, when it is
 /// built.
@@ -320,15 +317,6 @@ impl ElasticBody {
         self.of_elements[element]
     }
 
-    /// The coordinates of up to [`MAX_NODES`] nodes.
-    pub(crate) fn coordinates(&self, nodes: &[usize]) -> PerNode<[f64; 3]> {
-        let mut coordinates = [[0.0; 3]; MAX_NODES];
-        for (at, &node) in coordinates.iter_mut().zip(nodes) {
-            *at = self.mesh.nodes()[node];
-        }
-        coordinates
-    }
-
     /// The entries of a nodal vector (`dimension` per node) that belong to the nodes of an element.
     pub(crate) fn gather(&self, nodal: &[f64], nodes: &[usize]) -> PerNode<[f64; 3]> {
         let dimension = self.dimension();
@@ -382,8 +370,8 @@ impl ElasticBody {
     /// linear in the place.
     pub(crate) fn is_parallelogram(&self, element: usize) -> bool {
         let nodes = self.mesh.element(element);
-        let at = self.coordinates(nodes);
-        let is_parallel = |axis: usize| at[0][axis] - at[1][axis] == at[3][axis] - at[2][axis];
+        let at = |local: usize, axis: usize| self.mesh.nodes()[nodes[local]][axis];
+        let is_parallel = |axis: usize| at(0, axis) - at(1, axis) == at(3, axis) - at(2, axis);
         let ReferenceElement { dimension, corners, mid_sides, .. } = self.mesh.kind_of(element).reference();
         (*dimension, *corners) == (2, 4) && mid_sides.is_empty() && is_parallel(0) && is_parallel(1)
     }
@@ -391,7 +379,7 @@ impl ElasticBody {
     /// The strain of a nodal displacement in an element, at points given in coordinates off an axis of revolution.
     pub(crate) fn strain_in(&self, displacement: &[f64], element: usize) -> impl Fn([f64; 3]) -> Symmetric {
         let (reference, nodes) = (self.mesh.kind_of(element).reference(), self.mesh.element(element));
-        let cell = Cell::new(reference, &self.coordinates(nodes));
+        let cell = Cell::at(reference, |local| self.mesh.nodes()[nodes[local]]);
         let own = self.gather(displacement, nodes);
         move |at| {
             let at = TabulatedPoint::new(reference, cell.reference_coordinates(at), 0.0);

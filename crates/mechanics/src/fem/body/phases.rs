@@ -1,6 +1,7 @@
 //! The phases of a body: the material of each element.
 
-use super::{ElasticBody, Phase, PhaseNumber, Region, Temperature};
+use super::ElasticBody;
+use super::phase::{Phase, PhaseNumber, Region, Temperature};
 use crate::error::Error;
 use crate::fem::geometry::Symmetric;
 use crate::fem::material::Material;

@@ -1,7 +1,10 @@
-//! A point in an element: gradients, hoop terms, weight; the strain of a displacement there.
+//! A point in an element: gradients, hoop terms, weight; the strain of a displacement there; how elements are
+//! integrated.
 
 use crate::fem::element::{Inverse, PerNode, TabulatedPoint};
 use crate::fem::geometry::{Symmetric, dot};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The shape functions at a point of an element with coordinates, in the unit of the cell.
 #[derive(Clone, Copy, Debug)]
@@ -58,4 +61,17 @@ impl Displaced {
     pub fn rotation(&self) -> [f64; 3] {
         [(1, 2), (2, 0), (0, 1)].map(|(i, j)| (self.slope[j][i] - self.slope[i][j]) / 2.0)
     }
+}
+
+/// The integration of the stiffness of an element: in full, or with a dilatation that cannot lock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "IntegrationSpec")]
+#[serde(rename_all = "kebab-case")]
+pub enum Integration {
+    /// The full strain at all quadrature points.
+    #[default]
+    Standard,
+    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock if
+    /// Poisson's ratio is near 0.5.
+    MeanDilatation,
 }

@@ -1,7 +1,7 @@
 //! One cell in place: x = sum N_a x_a, the Jacobian J = dx/dxi, gradients dN/dx, area vectors.
 
 use super::{MAX_NODES, PerNode, ReferenceElement, Tabulated};
-use crate::fem::geometry::{COORDINATES, cross, dot};
+use crate::fem::geometry::{COORDINATES, cross, dot, plus, shifted};
 
 /// The Jacobian of an element that is inverted or has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -63,13 +63,7 @@ pub struct Inverse {
 }
 
 impl Cell {
-    /// The cell `reference` at `coordinates` (x, y, z of its nodes, in its order).
-    #[inline]
-    pub fn new(reference: &'static ReferenceElement, coordinates: &PerNode<[f64; 3]>) -> Self {
-        Self::at(reference, |local| coordinates[local])
-    }
-
-    /// The same, with a function from local nodes to coordinates.
+    /// The cell `reference` at the `coordinates` (x, y, z) of its nodes, by their local numbers.
     #[inline]
     pub fn at(reference: &'static ReferenceElement, coordinates: impl Fn(usize) -> [f64; 3]) -> Self {
         let origin = coordinates(0);
@@ -106,11 +100,9 @@ impl Cell {
     pub fn place(&self, shape: &PerNode<f64>) -> [f64; 3] {
         let mut at = [0.0; 3];
         for (value, node) in shape.iter().zip(&self.coordinates).take(self.reference.nodes.len()) {
-            for axis in 0..3 {
-                at[axis] += value * node[axis];
-            }
+            at = shifted(at, *value, *node);
         }
-        [0, 1, 2].map(|axis| self.origin[axis] + self.unit * at[axis])
+        shifted(self.origin, self.unit, at)
     }
 
     /// The values of the shape functions at a point, one for each node; `None` if the point is outside the cell by more
@@ -136,10 +128,9 @@ impl Cell {
             let gradients = self.map(&(reference.derivative)(at)).gradients;
             let mut change = [0.0; 3];
             for (node, gradient) in reference.nodes.iter().zip(gradients) {
-                let along = dot(gradient, away);
-                (0..3).for_each(|axis| change[axis] += node[axis] * along);
+                change = shifted(change, dot(gradient, away), *node);
             }
-            (0..3).for_each(|axis| at[axis] += change[axis]);
+            at = plus(at, change);
             if change.iter().all(|step| step.abs() <= LOCATED) {
                 break;
             }

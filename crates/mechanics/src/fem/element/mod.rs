@@ -1,47 +1,22 @@
 //! Reference cells, their quadrature, and their map into space.
 //!
-//! An element is a [`ReferenceElement`] in its own file and a line in [`ElementKind`], which is defined here; all other
+//! An element is a [`ReferenceElement`] and a line in [`ElementKind`], which is defined here; all other
 //! code works for any element. Reference coordinates are `[xi, eta, zeta]`; those beyond the dimension of the cell are
 //! zero.
 
 mod cell;
-mod hex20;
-mod hex8;
-mod levels;
-mod line2;
-mod line3;
-mod point1;
-mod positive;
-mod product;
-mod q4;
-mod q8;
+mod functions;
 mod quadrature;
 mod reference;
-mod simplex;
-mod t3;
-mod t6;
-mod tabulated;
-mod tet10;
-mod tet4;
+mod shapes;
 
-pub use cell::{Cell, Inverse};
-pub use levels::between_levels;
-pub(crate) use positive::{POSITIVE_SHARE, positive_coefficient, positive_functions};
-pub use quadrature::{Part, gauss_legendre};
+pub use cell::{Cell, Inverse, NonPositiveJacobian};
+pub(crate) use functions::{POSITIVE_SHARE, positive_coefficient, positive_functions};
+pub use functions::{Rule, Tabulated, TabulatedPoint};
+pub use quadrature::{Part, between_levels, gauss_legendre};
 pub use reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, QuadraturePoint, ReferenceElement, Shape};
-pub use tabulated::{Rule, Tabulated, TabulatedPoint};
 
-use hex8::HEX8;
-use hex20::HEX20;
-use line2::LINE2;
-use line3::LINE3;
-use point1::POINT1;
-use q4::Q4;
-use q8::Q8;
-use t3::T3;
-use t6::T6;
-use tet4::TET4;
-use tet10::TET10;
+use shapes::{HEX8, HEX20, LINE2, LINE3, POINT1, Q4, Q8, T3, T6, TET4, TET10};
 
 /// The elements of which a mesh can consist, by the number of their nodes: a letter for the shape and the count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,17 +1,13 @@
 //! Homogeneous linear elasticity: materials, isotropic or orthotropic, with density and thermal expansion.
 
-mod cylinder;
 mod law;
-mod orthotropic;
 
-pub use cylinder::Cylinder;
-pub use law::{Lame, Law, Matrices, Matrix, Stiffness, back, engineering, local};
-use orthotropic::Orthotropic;
-use signorini_linear as linear;
-
+use super::formulation::{Formulation, positive};
+use super::geometry::Symmetric;
 use crate::error::Error;
-use crate::fem::formulation::{Formulation, positive};
-use crate::fem::geometry::Symmetric;
+use law::Orthotropic;
+pub use law::{Cylinder, Lame, Law, Matrices, Matrix, Stiffness, back, engineering, local};
+use signorini_linear as linear;
 
 /// A linear elastic material, checked once, when it is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,10 +46,6 @@ impl Material {
     /// `[nu12, nu23, nu13]` and shear moduli `[G12, G23, G13]` (force per area) along the coordinate axes.
     ///
     /// Tension along i contracts the material along j by nu_ij times its extension, and `nu_ij / E_i = nu_ji / E_j`.
-    ///
-    /// # Errors
-    /// [`linear::Error::Setting`] for a modulus that is not positive and finite, or a stiffness that is not positive
-    /// definite.
     pub fn orthotropic(young: [f64; 3], poisson: [f64; 3], shear: [f64; 3]) -> Result<Self, Error> {
         let elasticity = Elasticity::Orthotropic(Orthotropic::new(young, poisson, shear)?);
         Ok(Material { elasticity, density: None, expansion: None })
@@ -62,9 +54,6 @@ impl Material {
     /// The same material with its first axis along a vector, and its second one in the plane of both vectors and at
     /// right angles to the first. The vectors have the order [x, y, z], no unit, and any length but zero. An isotropic
     /// material has no axes, and stays as it is.
-    ///
-    /// # Errors
-    /// [`linear::Error::Setting`] for vectors that span no plane.
     pub fn along(self, first: [f64; 3], second: [f64; 3]) -> Result<Self, Error> {
         let elasticity = match self.elasticity {
             Elasticity::Orthotropic(own) => Elasticity::Orthotropic(own.along(first, second)?),
@@ -76,9 +65,6 @@ impl Material {
     /// The same material with axes that turn around a line: axis 1 leads away from it, 2 around it, 3 along it. `point`
     /// [x, y, z] is on the line, in length, and `along` a vector of any length but zero. An isotropic material has no
     /// axes, and stays as it is.
-    ///
-    /// # Errors
-    /// [`linear::Error::Setting`] for a point or a vector that is not finite, and for a vector without a length.
     pub fn around(self, point: [f64; 3], along: [f64; 3]) -> Result<Self, Error> {
         let (name, allowed) = ("orthotropic.around", "finite, with a direction that has a length");
         if let Some(&value) = point.iter().chain(&along).find(|part| !part.is_finite()) {
@@ -93,9 +79,6 @@ impl Material {
     }
 
     /// The same material with a density (mass per volume), which motions and inertia forces need.
-    ///
-    /// # Errors
-    /// [`linear::Error::Setting`] for a density that is not positive and finite.
     pub fn with_density(self, density: f64) -> Result<Self, Error> {
         positive("density", density)?;
         Ok(Material { density: Some(density), ..self })
@@ -103,9 +86,6 @@ impl Material {
 
     /// The same material with three coefficients of thermal expansion, in strain per degree, along its axes, for an
     /// isotropic material along x, y and z; temperatures need them.
-    ///
-    /// # Errors
-    /// [`linear::Error::Setting`] for a coefficient that is not finite.
     pub fn with_expansion(self, along: [f64; 3]) -> Result<Self, Error> {
         match along.iter().find(|value| !value.is_finite()) {
             Some(&value) => Err(linear::Error::Setting { name: "expansion", value, allowed: "finite" }.into()),

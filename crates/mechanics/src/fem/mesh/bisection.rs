@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use super::pieces::Pieces;
 use super::{Boundary, ElementKind, Mesh};
 use crate::error::Error;
-use crate::fem::geometry::{cross, distance, dot, key, minus};
+use crate::fem::geometry::{cross, distance, dot, key, midpoint, minus};
 
 /// A mesh of tetrahedra with the data that bisection needs of each.
 ///
@@ -143,7 +143,7 @@ impl Tetrahedra {
         let [a, b, c, d] = cell.nodes;
         let nodes = &mut self.nodes;
         let middle = *middles.entry(key(a, b)).or_insert_with(|| {
-            nodes.push([0, 1, 2].map(|axis| (nodes[a][axis] + nodes[b][axis]) / 2.0));
+            nodes.push(midpoint(nodes[a], nodes[b]));
             nodes.len() - 1
         });
         for third in [c, d] {
@@ -222,7 +222,7 @@ fn volume([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fem::geometry::length;
+    use crate::fem::geometry::{length, plus};
     use crate::fem::mesh::gmsh::GmshFile;
 
     /// The ratio of the radii of inscribed and circumscribed sphere, times three: 1 for the regular tetrahedron, 0 for
@@ -284,10 +284,7 @@ mod tests {
             let on = |mesh: &Mesh, boundary: &Boundary| {
                 let corner = |node: usize| mesh.nodes()[node];
                 let side = |f: &[usize], to: usize| minus(corner(f[to]), corner(f[0]));
-                boundary
-                    .facets()
-                    .map(|f| cross(side(f, 1), side(f, 2)))
-                    .fold([0.0; 3], |sum, one| [0, 1, 2].map(|k| sum[k] + one[k]))
+                boundary.facets().map(|f| cross(side(f, 1), side(f, 2))).fold([0.0; 3], plus)
             };
             // The vector of area: size and side of the facets.
             let (one, two) = (on(&first, before), on(&refined, after));

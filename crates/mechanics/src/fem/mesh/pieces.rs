@@ -4,14 +4,14 @@ use std::collections::{HashMap, HashSet};
 
 use super::{Mesh, fail};
 use crate::error::Error;
-use crate::fem::geometry::{cross, distance, dot, minus};
+use crate::fem::geometry::{cross, distance, dot, midpoint, minus, sorted};
 
 /// A mid-edge node that lies off the chord by less than this, relative to the chord, is rounding.
 const STRAIGHT: f64 = 1e-9;
 
 /// A hexahedron cut into tetrahedra around its diagonal from corner 0 to corner 6. Opposite faces are cut in the same
-/// direction, so that those of a lattice match.
-const OF_HEXAHEDRON: [[usize; 4]; 6] =
+/// direction, from their lowest to their highest corner, so that those of a lattice match.
+pub(crate) const OF_HEXAHEDRON: [[usize; 4]; 6] =
     [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
 
 /// Straight triangles or tetrahedra that make up the elements of a mesh: of the corners alone if all edges are
@@ -65,14 +65,8 @@ impl Pieces {
 
     /// The facets of pieces, each by its nodes, increasing.
     pub fn facets(&self) -> impl Iterator<Item = Vec<usize>> + '_ {
-        self.cells.iter().flat_map(|cell| {
-            (0..cell.len()).map(move |opposite| {
-                let mut facet = cell.clone();
-                facet.remove(opposite);
-                facet.sort_unstable();
-                facet
-            })
-        })
+        let without = |cell: &[usize], opposite: usize| sorted([&cell[..opposite], &cell[opposite + 1..]].concat());
+        self.cells.iter().flat_map(move |cell| (0..cell.len()).map(move |opposite| without(cell, opposite)))
     }
 
     /// Returns `true` if the pieces meet in whole facets: all that belong to one piece only lie on the surface of the
@@ -111,12 +105,6 @@ impl Pieces {
         let facets = mesh.boundary(boundary).into_iter().flat_map(|boundary| boundary.facets());
         facets.flat_map(of_facet).collect()
     }
-}
-
-fn sorted(nodes: impl Iterator<Item = usize>) -> Vec<usize> {
-    let mut nodes: Vec<usize> = nodes.collect();
-    nodes.sort_unstable();
-    nodes
 }
 
 /// A triangle itself, or the triangles of three corners of a quadrilateral.
@@ -177,7 +165,7 @@ fn is_straight(mesh: &Mesh) -> bool {
         let (corners, middles) = parts(mesh, element);
         middles.iter().zip(mesh.kind_of(element).reference().mid_sides).all(|(&middle, ends)| {
             let [from, to] = ends.map(|corner| nodes[corners[corner]]);
-            let half = [0, 1, 2].map(|axis| (from[axis] + to[axis]) / 2.0);
+            let half = midpoint(from, to);
             distance(nodes[middle], half) <= STRAIGHT * distance(from, to)
         })
     })
@@ -251,7 +239,7 @@ mod tests {
         let pieces = Pieces::of(&mesh).unwrap();
         assert_eq!((pieces.cells.len(), twice_size(&pieces)), (12, 6.0 * 2.0));
         let mut all: Vec<Vec<usize>> = pieces.facets().collect();
-        let on_top = pieces.facets_of(&mesh, "top").into_iter().map(|facet| sorted(facet.into_iter()));
+        let on_top = pieces.facets_of(&mesh, "top").into_iter().map(sorted);
         let on_top = on_top.filter(|facet| all.contains(facet)).count();
         assert_eq!(on_top, 4);
         all.sort_unstable();

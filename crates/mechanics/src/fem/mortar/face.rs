@@ -273,7 +273,7 @@ impl<'a> Projected<'a> {
         let found: Vec<_> = facet.pieces.iter().filter_map(piece).collect();
         let area = found.iter().map(|(_, area)| area).sum();
         let pieces = found.into_iter().map(|(polygon, _)| polygon).collect();
-        let cell = Cell::new(facet.reference(), &facet.corners);
+        let cell = Cell::at(facet.reference(), |local| facet.corners[local]);
         let ratio = facet.is_flat().then(|| 1.0 / dot(facet.normal, direction));
         Projected { facet, direction, inverse: Inverse::of(facet, &plane), plane, pieces, area, cell, ratio }
     }

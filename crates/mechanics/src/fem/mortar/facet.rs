@@ -1,7 +1,7 @@
 //! The facets of two surfaces, and the points at which the integrals over what both share are taken.
 
 use crate::fem::element::{Cell, FacetKind, MAX_NODES, PerNode, ReferenceElement};
-use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
+use crate::fem::geometry::{cross, distance, dot, length, midpoint, minus, plus, unit};
 
 /// Two facets face each other if the angle between one normal and the opposite of the other is below 60 degrees.
 const FACING: f64 = 0.5;
@@ -57,7 +57,7 @@ impl<'a> Facet<'a> {
         facet.pieces = facet.pieces();
         facet.normal = unit(facet.pieces.iter().fold([0.0; 3], |sum, piece| {
             let vector = area_vector(piece);
-            [0, 1, 2].map(|axis| sum[axis] + vector[axis])
+            plus(sum, vector)
         }));
         facet
     }
@@ -80,7 +80,7 @@ impl<'a> Facet<'a> {
     fn is_straight(&self) -> bool {
         let (reference, places) = (self.reference(), self.places());
         reference.mid_sides.iter().zip(&places[reference.corners..]).all(|(&[a, b], &place)| {
-            let middle = [0, 1, 2].map(|axis| (places[a][axis] + places[b][axis]) / 2.0);
+            let middle = midpoint(places[a], places[b]);
             distance(place, middle) <= STRAIGHT * self.radius
         })
     }
@@ -114,7 +114,7 @@ impl<'a> Facet<'a> {
     /// Adds its part to the normals of its nodes, with weights that leave no error on circles and spheres, however much
     /// the facets around a node differ: `|a x b| / (a.a b.b)` at a corner with the edges a and b.
     pub fn add_normals(&self, sums: &mut [[f64; 3]]) {
-        let (reference, cell) = (self.reference(), Cell::new(self.reference(), &self.corners));
+        let (reference, cell) = (self.reference(), Cell::at(self.reference(), |local| self.corners[local]));
         for (local, &node) in self.nodes.iter().enumerate() {
             let normal = unit(cell.area_vector(&(reference.derivative)(reference.nodes[local])));
             let weight = self.weight(local);

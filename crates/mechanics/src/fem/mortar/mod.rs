@@ -21,23 +21,26 @@
 //! 4 (1999) 1-6 (weights of normals); A. Popp, A. Seitz, M. W. Gee, W. A. Wall, Comput. Methods Appl. Mech. Engrg. 264
 //! (2013) 67-80 (nodes that are dropped).
 
-mod corners;
 mod coverage;
 mod data;
 mod face;
 mod facet;
 mod line;
 mod search;
-mod shared;
 mod skin;
-mod smooth;
 #[cfg(test)]
 mod tests;
 
 use std::collections::BTreeSet;
 
-use corners::{Sided, named};
+use super::element::positive_coefficient;
+use super::formulation::Formulation;
+use super::geometry::{dot, minus, unit};
+use super::mesh::Boundary;
+use crate::error::Error;
+use crate::fem::geometry::shifted;
 use coverage::{Covered, Part, kept, parts};
+use data::{Sided, named};
 use facet::{Facet, SurfaceMesh};
 use search::{Distances, Sides, Sight};
 use signorini_linear::SparseMatrix;
@@ -45,12 +48,6 @@ use signorini_linear::SparseMatrix;
 pub(crate) use data::{Found, MortarRow, Opposite};
 pub use data::{Mortar, MortarRows};
 pub(crate) use skin::{Skin, TwoSkins};
-
-use crate::error::Error;
-use crate::fem::element::positive_coefficient;
-use crate::fem::formulation::Formulation;
-use crate::fem::geometry::{dot, minus, unit};
-use crate::fem::mesh::Boundary;
 
 /// A share below this is rounding of zero; one this close to 1 is 1.
 const ROUNDING: f64 = 1e-12;
@@ -324,9 +321,7 @@ impl<'a> Mortar<'a> {
         let (slave, mut master) = (shares(part.slave), shares(part.master));
         master.sort_unstable_by_key(|entry| entry.0);
         // Negative shares count: only all of them together are as exact as the rows where the normals turn.
-        let outward = master
-            .iter()
-            .fold([0.0; 3], |sum, &(other, share)| [0, 1, 2].map(|axis| sum[axis] + share * others[other][axis]));
+        let outward = master.iter().fold([0.0; 3], |sum, &(other, share)| shifted(sum, share, others[other]));
         let mean = unit(minus(own[node], unit(outward)));
         let normal = self.direction.unwrap_or(mean);
         // Relative to the node, so that surfaces far from the origin lose no digits.

@@ -3,15 +3,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::coverage::Covered;
+use super::coverage::{Covered, MOST, Shared};
 use super::data::{Mortar, MortarRow, Opposite};
 use super::face::Projected;
 use super::facet::{self, Facet, SharedPoint, SurfaceMesh};
 use super::line;
-use super::shared::{MOST, Shared};
-use super::smooth::Curve;
+use super::skin::Curve;
 use crate::fem::element::{MAX_NODES, PerNode, positive_coefficient, positive_functions};
-use crate::fem::geometry::{dot, length, minus, unit};
+use crate::fem::geometry::{dot, length, minus, shifted, unit};
 use crate::fem::surface::Tree;
 
 /// A place outside a facet by less than this, in reference coordinates, is on its edge.
@@ -119,7 +118,7 @@ impl<'f> Site<'f> {
         let sum = |value: &dyn Fn(usize) -> [f64; 3]| {
             (0..facet.nodes.len()).fold([0.0; 3], |sum, local| {
                 let value = value(local);
-                [0, 1, 2].map(|axis| sum[axis] + shape[local] * value[axis])
+                shifted(sum, shape[local], value)
             })
         };
         let normal = unit(sum(&|local| directions[local]));
@@ -180,7 +179,7 @@ impl<'a> Distances<'a> {
             // The line meets the curve above another point of the facet than the facet itself.
             let mut gap = met.gap;
             for _ in 0..MEETING_STEPS {
-                let at = [0, 1, 2].map(|axis| from[axis] + gap * way[axis]);
+                let at = shifted(from, gap, way);
                 let below = across.opposite(0, at, f64::INFINITY).unwrap_or_else(|| met.clone());
                 let mut shape: PerNode<f64> = [0.0; MAX_NODES];
                 shape.iter_mut().zip(&below.slave).for_each(|(value, entry)| *value = entry.1);
@@ -231,7 +230,7 @@ impl Mortar<'_> {
                     let found = met.insert(node).then(|| site.opposite(node, place, self.reach)).flatten();
                     let Some(found) = found else { continue };
                     let is_nearest = nearest.get(&node).is_none_or(|nearest| found.gap.abs() < nearest.gap.abs());
-                    let foot = [0, 1, 2].map(|axis| place[axis] - found.gap * found.normal[axis]);
+                    let foot = shifted(place, -found.gap, found.normal);
                     if is_nearest && is_clear([foot, place], found.normal) {
                         nearest.insert(node, found);
                     }

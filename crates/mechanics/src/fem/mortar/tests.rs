@@ -3,6 +3,7 @@
 use super::face::Projected;
 use super::*;
 use crate::fem::element::FacetKind::{self, Line2, Line3, Q4, Q8, T3, T6};
+use crate::fem::geometry::midpoint;
 
 const SPACE: Formulation = Formulation::Space;
 const PLANE: Formulation = Formulation::PlaneStrain { thickness: 1.0 };
@@ -13,10 +14,6 @@ const ROUNDING_OF_SHARES: f64 = 4e-15;
 /// A surface of a test: nodes and facets.
 #[derive(Clone, Copy)]
 struct Sheet<'a>(&'a [[f64; 3]], FacetKind, &'a [usize]);
-
-fn surface<'a>(nodes: &'a [[f64; 3]], kind: FacetKind, facets: &'a [usize]) -> Sheet<'a> {
-    Sheet(nodes, kind, facets)
-}
 
 impl<'a> Sheet<'a> {
     fn mesh(self) -> SurfaceMesh<'a> {
@@ -52,7 +49,7 @@ fn assert_equal(found: &[f64], exact: &[f64]) {
 #[test]
 fn an_edge_against_two_has_the_fractions_of_the_formula() {
     let (upper, lower) = ([[0.0; 3], [1.0, 0.0, 0.0]], [[0.0; 3], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
-    let found = between(surface(&upper, Line2, &[0, 1]), surface(&lower, Line2, &[2, 1, 1, 0]), PLANE).found().unwrap();
+    let found = between(Sheet(&upper, Line2, &[0, 1]), Sheet(&lower, Line2, &[2, 1, 1, 0]), PLANE).found().unwrap();
     let [own, other] = shares(&found, 0, 2, 3);
     assert_equal(&own, &[1.0, 0.0]);
     assert_equal(&other, &[0.75, 0.5, -0.25]);
@@ -62,7 +59,7 @@ fn an_edge_against_two_has_the_fractions_of_the_formula() {
 #[test]
 fn the_end_of_a_surface_inside_an_edge_has_the_fractions_of_the_formula() {
     let (upper, lower) = ([[0.0; 3], [1.0, 0.0, 0.0]], [[0.0; 3], [0.6, 0.0, 0.0]]);
-    let found = between(surface(&upper, Line2, &[0, 1]), surface(&lower, Line2, &[1, 0]), PLANE).found().unwrap();
+    let found = between(Sheet(&upper, Line2, &[0, 1]), Sheet(&lower, Line2, &[1, 0]), PLANE).found().unwrap();
     assert_equal(&found.rows.iter().map(|row| row.area).collect::<Vec<_>>(), &[21.0 / 50.0, 9.0 / 50.0]);
     assert_equal(&shares(&found, 0, 2, 2)[1], &[1.0, 0.0]);
     assert_equal(&shares(&found, 1, 2, 2)[1], &[-2.0 / 3.0, 5.0 / 3.0]);
@@ -74,7 +71,7 @@ fn the_end_of_a_surface_inside_an_edge_has_the_fractions_of_the_formula() {
 fn a_node_that_is_hardly_covered_hands_its_function_over() {
     let end = 1.0 / 40.0_f64.sqrt();
     let (upper, lower) = ([[0.0; 3], [1.0, 0.0, 0.0]], [[0.0; 3], [end, 0.0, 0.0]]);
-    let found = between(surface(&upper, Line2, &[0, 1]), surface(&lower, Line2, &[1, 0]), PLANE).found().unwrap();
+    let found = between(Sheet(&upper, Line2, &[0, 1]), Sheet(&lower, Line2, &[1, 0]), PLANE).found().unwrap();
     let [own, other] = shares(&found, 0, 2, 2);
     assert_equal(&own, &[1.0 - end / 2.0, end / 2.0]);
     assert_equal(&other, &[0.5, 0.5]);
@@ -88,20 +85,20 @@ fn faces_in_space_have_the_fractions_of_the_formulas() {
     let grid: Vec<[f64; 3]> = (0..9).map(|at| [f64::from(at % 3) / 2.0, f64::from(at / 3) / 2.0, 0.0]).collect();
     let cells: Vec<usize> =
         [0, 1, 3, 4].into_iter().flat_map(|first| [first, first + 3, first + 4, first + 1]).collect();
-    let found = between(surface(&square, Q4, &[0, 1, 2, 3]), surface(&grid, Q4, &cells), SPACE).found().unwrap();
+    let found = between(Sheet(&square, Q4, &[0, 1, 2, 3]), Sheet(&grid, Q4, &cells), SPACE).found().unwrap();
     let exact = [9.0, 6.0, -3.0, 6.0, 4.0, -2.0, -3.0, -2.0, 1.0].map(|share: f64| share / 16.0);
     assert_equal(&shares(&found, 0, 4, 9)[1], &exact);
 
     let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let halves = [0, 2, 1, 0, 3, 2];
-    let found = between(surface(&triangle, T3, &[0, 1, 2]), surface(&square, T3, &halves), SPACE).found().unwrap();
+    let found = between(Sheet(&triangle, T3, &[0, 1, 2]), Sheet(&square, T3, &halves), SPACE).found().unwrap();
     assert_equal(&shares(&found, 0, 3, 4)[1], &[1.0, 0.0, 0.0, 0.0]);
     assert_equal(&shares(&found, 1, 3, 4)[1], &[0.25, 0.75, 0.25, -0.25]);
 
     let mut quadratic = triangle.to_vec();
     quadratic.extend([[0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.0]]);
-    let slave = surface(&quadratic, T6, &[0, 1, 2, 3, 4, 5]);
-    let found = between(slave, surface(&square, T3, &halves), SPACE).found().unwrap();
+    let slave = Sheet(&quadratic, T6, &[0, 1, 2, 3, 4, 5]);
+    let found = between(slave, Sheet(&square, T3, &halves), SPACE).found().unwrap();
     assert_equal(&found.rows.iter().map(|row| row.area).collect::<Vec<_>>(), &[1.0 / 12.0; 6]);
     assert_equal(&shares(&found, 1, 6, 4)[1], &[-0.125, 1.125, -0.125, 0.125]);
     assert_equal(&shares(&found, 4, 6, 4)[1], &[1.0, -0.5, 1.0, -0.5]);
@@ -145,7 +142,7 @@ fn sheet(
             .iter()
             .map(|&[a, b]| {
                 let (a, b) = (nodes[corners[a]], nodes[corners[b]]);
-                let middle = [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
+                let middle = midpoint(a, b);
                 nodes.iter().position(|&node| node == middle).unwrap_or_else(|| {
                     nodes.push(middle);
                     nodes.len() - 1
@@ -194,7 +191,7 @@ fn rows_of_any_two_sheets_carry_a_uniform_pressure_and_no_rigid_motion() {
                 let (master, of_master) = sheet(other, [2, 5], 1.0, jitter, false, &mut state);
                 let [slave, master] = [slave, master]
                     .map(|nodes| turned(&nodes, scale, 0.35, [0.3, 2.0, -1.0].map(|x| 10.0 * x * scale)));
-                let (first, second) = (surface(&slave, own, &of_slave), surface(&master, other, &of_master));
+                let (first, second) = (Sheet(&slave, own, &of_slave), Sheet(&master, other, &of_master));
                 let rows = between(first, second, SPACE).rows().unwrap();
                 let found = between(first, second, SPACE).found().unwrap();
                 // Quadrilaterals that are no parallelograms take 8 points in each direction.
@@ -264,7 +261,7 @@ fn equal_meshes_give_pairs() {
         let reversed = FacetKind::reference(kind).mirrored();
         let of_master: Vec<usize> =
             of_slave.chunks(kind.nodes()).flat_map(|facet| reversed.iter().map(|&local| facet[local])).collect();
-        let rows = between(surface(&slave, kind, &of_slave), surface(&slave, kind, &of_master), SPACE).rows().unwrap();
+        let rows = between(Sheet(&slave, kind, &of_slave), Sheet(&slave, kind, &of_master), SPACE).rows().unwrap();
         let motion: Vec<f64> = (0..3 * slave.len()).map(|_| random(&mut state)).collect();
         for value in rows.contact.mul(&[motion.clone(), motion].concat()) {
             assert!(value.abs() < 1e-10, "{kind:?}: {value:e}");
@@ -296,7 +293,7 @@ fn edges_of_all_kinds_carry_a_uniform_pressure_in_the_plane_and_about_the_axis()
                 };
                 let (slave, of_slave) = line(own, counts[0], 1.0, false, &mut state);
                 let (master, of_master) = line(other, counts[1], end, true, &mut state);
-                let (first, second) = (surface(&slave, own, &of_slave), surface(&master, other, &of_master));
+                let (first, second) = (Sheet(&slave, own, &of_slave), Sheet(&master, other, &of_master));
                 let rows = between(first, second, formulation).rows().unwrap();
                 let name = format!("{own:?} on {other:?}, {counts:?} to {end}, {formulation:?}");
                 let exact = if formulation == PLANE { end } else { std::f64::consts::PI * end * end };
@@ -331,7 +328,7 @@ fn edges_of_all_kinds_carry_a_uniform_pressure_in_the_plane_and_about_the_axis()
 fn a_facet_over_a_step_touches_the_near_part_alone() {
     let slave = [[0.0; 3], [1.0, 0.0, 0.0]];
     let master = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5, -0.2, 0.0], [1.0, -0.2, 0.0]];
-    let (slave, with_wall) = (surface(&slave, Line2, &[0, 1]), surface(&master, Line2, &[1, 0, 2, 1, 3, 2]));
+    let (slave, with_wall) = (Sheet(&slave, Line2, &[0, 1]), Sheet(&master, Line2, &[1, 0, 2, 1, 3, 2]));
     let found = between(slave, with_wall, PLANE).found().unwrap();
     assert_equal(&found.rows.iter().map(|row| row.gap).collect::<Vec<_>>(), &[0.0, 0.0]);
     assert_equal(&found.covered[..1], &[0.5]);
@@ -350,7 +347,7 @@ fn normals_at_nodes_are_those_of_circles_and_spheres() {
         .extend(around.map(|(tilt, turn): (f64, f64)| [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()]));
     let fan: Vec<usize> = (0..5).flat_map(|at| [0, 1 + at, 1 + (at + 1) % 5]).collect();
     for (sheet, formulation, inner) in
-        [(surface(&on_circle, Line2, &edges), PLANE, 1..5), (surface(&on_sphere, T3, &fan), SPACE, 0..1)]
+        [(Sheet(&on_circle, Line2, &edges), PLANE, 1..5), (Sheet(&on_sphere, T3, &fan), SPACE, 0..1)]
     {
         let sides = Sides::of(&between(sheet, sheet, formulation));
         for node in inner {
@@ -363,13 +360,13 @@ fn normals_at_nodes_are_those_of_circles_and_spheres() {
 fn a_surface_in_several_layers_and_facets_that_do_not_fit_are_refused() {
     let slave = [[0.0; 3], [1.0, 0.0, 0.0]];
     let master = [[0.0, -0.1, 0.0], [1.0, -0.1, 0.0], [0.0, -0.5, 0.0], [1.0, -0.5, 0.0]];
-    let (slave, master) = (surface(&slave, Line2, &[0, 1]), surface(&master, Line2, &[1, 0, 3, 2]));
+    let (slave, master) = (Sheet(&slave, Line2, &[0, 1]), Sheet(&master, Line2, &[1, 0, 3, 2]));
     let refused = between(slave, master, PLANE).rows().unwrap_err().to_string();
     assert!(refused.contains("several layers") && refused.contains("2.000 times"), "{refused}");
     assert_eq!(between(slave, master, PLANE).within(0.3).rows().unwrap().gap, [0.1, 0.1]);
     let refused = between(slave, master, SPACE).rows().unwrap_err().to_string();
     assert!(refused.contains("are no surface of space"), "{refused}");
-    let missing = surface(slave.0, Line2, &[0, 5]);
+    let missing = Sheet(slave.0, Line2, &[0, 5]);
     let refused = between(missing, master, PLANE).rows().unwrap_err().to_string();
     assert!(refused.contains("node 5"), "{refused}");
 }
@@ -398,7 +395,7 @@ fn gaps_are_those_of_the_circles_for_which_edges_stand() {
         let [shaft, hub] = [circle(1.0, counts[0]), circle(1.0 + play, counts[1])];
         let outer: Vec<usize> = (0..counts[0]).flat_map(|at| [at, (at + 1) % counts[0]]).collect();
         let inner: Vec<usize> = (0..counts[1]).flat_map(|at| [(at + 1) % counts[1], at]).collect();
-        let sheets = [surface(&shaft, Line2, &outer), surface(&hub, Line2, &inner)];
+        let sheets = [Sheet(&shaft, Line2, &outer), Sheet(&hub, Line2, &inner)];
         for [own, other] in [sheets, [sheets[1], sheets[0]]] {
             let pair = between(own, other, PLANE).within(0.1);
             let errors = errors_of_gaps(&pair, play, |_| true);
@@ -433,7 +430,7 @@ fn gaps_are_those_of_the_spheres_for_which_faces_stand() {
             (nodes.map(place).collect(), facets.collect())
         };
         let (ball, cup) = (patch(1.0, 0.4, 7, false), patch(1.0 + play, 0.5, 10, true));
-        let sheets = [surface(&ball.0, kind, &ball.1), surface(&cup.0, kind, &cup.1)];
+        let sheets = [Sheet(&ball.0, kind, &ball.1), Sheet(&cup.0, kind, &cup.1)];
         for [own, other] in [sheets, [sheets[1], sheets[0]]] {
             let pair = between(own, other, SPACE).within(0.1);
             let errors = errors_of_gaps(&pair, play, |[x, y, _]| x.abs().max(y.abs()) < 0.2);
@@ -448,14 +445,11 @@ fn gaps_are_those_of_the_spheres_for_which_faces_stand() {
 fn corners_are_not_rounded() {
     let square = |half: f64| [[-half, -half, 0.0], [half, -half, 0.0], [half, half, 0.0], [-half, half, 0.0]];
     let [pin, hole] = [square(1.0), square(1.1)];
-    let pair = between(
-        surface(&pin, Line2, &[0, 1, 1, 2, 2, 3, 3, 0]),
-        surface(&hole, Line2, &[1, 0, 2, 1, 3, 2, 0, 3]),
-        PLANE,
-    );
+    let pair =
+        between(Sheet(&pin, Line2, &[0, 1, 1, 2, 2, 3, 3, 0]), Sheet(&hole, Line2, &[1, 0, 2, 1, 3, 2, 0, 3]), PLANE);
     assert_eq!(pair.found().unwrap().sag, 0.0);
     let sides = Sides::of(&pair);
-    let curve = smooth::Curve::of(&pair.slave, &sides.slave, &sides.normals[0]);
+    let curve = super::skin::Curve::of(&pair.slave, &sides.slave, &sides.normals[0]);
     let middle = (Line2.reference().shape)([0.0; 3]);
     assert!(sides.slave.iter().all(|facet| curve.beyond(facet, &middle) == 0.0));
 }

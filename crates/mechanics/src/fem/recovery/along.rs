@@ -4,7 +4,7 @@ use super::{Stress, finished};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::{Cell, PerNode, ReferenceElement, TabulatedPoint};
-use crate::fem::geometry::{cross, dot, length, minus};
+use crate::fem::geometry::{cross, dot, length, minus, shifted};
 
 /// Points of a piece in an element whose stress is not constant.
 const POINTS: usize = 5;
@@ -64,10 +64,6 @@ impl ElasticBody {
     /// The pieces of a line between two points, in length, in the elements of the body under the nodal displacement
     /// `displacement` (`dim` a node): region by region, in the order of the line. Along a common side of several
     /// elements of one region, the piece of one of them alone.
-    ///
-    /// # Errors
-    /// [`linear::Error::Length`](signorini_linear::Error::Length) if the displacement does not have `dim` entries per
-    /// node.
     pub fn along(&self, displacement: &[f64], ends: [[f64; 3]; 2]) -> Result<Vec<PathPiece>, Error> {
         self.check_nodal("nodal displacement", displacement.len())?;
         let Some(line) = Line::within(ends, self.mesh().extent(), self.mesh().size()) else { return Ok(Vec::new()) };
@@ -150,7 +146,7 @@ impl Line {
     }
 
     fn at(&self, distance: f64) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.from[axis] + distance * self.way[axis])
+        shifted(self.from, distance, self.way)
     }
 
     fn distance(&self, place: [f64; 3]) -> f64 {
@@ -189,9 +185,9 @@ impl Line {
         let near = self.distance(body.mesh().nodes()[element.nodes[0]]);
         let mut met: Vec<f64> = vec![0.0, self.length];
         for face in kind.reference().faces {
-            let nodes: Vec<usize> = face.iter().map(|&at| element.nodes[at]).collect();
-            let places = body.coordinates(&nodes).map(|place| minus(place, self.at(near)));
-            let (reference, cell) = (kind.facet().reference(), Cell::new(kind.facet().reference(), &places));
+            let reference = kind.facet().reference();
+            let place = |local: usize| minus(body.mesh().nodes()[element.nodes[face[local]]], self.at(near));
+            let cell = Cell::at(reference, place);
             let starts = reference.nodes.iter().copied().chain([reference.centroid()]);
             let found = starts.filter_map(|start| self.meets(reference, &cell, start));
             met.extend(found.map(|from_near| (near + from_near).clamp(0.0, self.length)));

@@ -2,12 +2,10 @@
 //! it.
 
 pub(crate) mod along;
-pub(crate) mod discretisation;
-mod patches;
-pub(crate) mod points;
+pub(crate) mod patches;
 pub(crate) mod state;
 
-pub use discretisation::discretisation_error;
+pub use patches::discretisation_error;
 pub use state::stress;
 
 use std::collections::{BTreeMap, BTreeSet};

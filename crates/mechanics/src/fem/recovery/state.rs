@@ -1,23 +1,25 @@
-//! What one pass over the elements of a displaced body gives: stresses, the forces that hold it, its largest strain.
+//! What one pass over the elements of a displaced body gives: stresses, the forces that hold it, its largest strain;
+//! strain and stress at points of elements.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::{Stress, StressField, add, carry, finished};
+use super::{Stress, StressField, add, carried_to_nodes, carry, finished};
 use crate::error::Error;
 use crate::fem::assembly::{add_to_nodes, of_cell};
-use crate::fem::body::ElasticBody;
+use crate::fem::body::{ElasticBody, Phase};
+use crate::fem::element::TabulatedPoint;
+use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, length};
+use crate::fem::material::Law;
 use crate::fem::threads::{each, in_order};
+use signorini_linear as linear;
 
 /// The stress in `body` (force per area, tension positive) at the nodal displacement `displacement` (length
 /// `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length).
 ///
 /// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in
 /// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
-///
-/// # Errors
-/// [`linear::Error::Length`](signorini_linear::Error::Length) if the displacement does not have `dim` entries per node.
 pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
     Ok(State::of(body, displacement)?.stress)
 }
@@ -110,9 +112,6 @@ struct Run {
 
 impl State {
     /// The state at the nodal displacement `displacement` (length `dim * n_nodes`, in length).
-    ///
-    /// # Errors
-    /// As [`stress`].
     pub fn of(body: &ElasticBody, displacement: &[f64]) -> Result<Self, Error> {
         body.check_nodal("nodal displacement", displacement.len())?;
         let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
@@ -180,6 +179,67 @@ fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
         }
     }
     found
+}
+
+/// The strain at each node, of all elements around it: recovered as the stress of [`super::StressField`].
+pub(crate) fn nodal_strain(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<Symmetric>, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let (tables, extrapolations) = (body.tabulated(), body.extrapolations());
+    let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); body.mesh().nodes().len()];
+    for element in body.elements() {
+        let strained = body.strained(&tables, displacement, &element);
+        let strain = |at: &TabulatedPoint| strained.strain_and_stress(at)[0];
+        let of_nodes = carried_to_nodes(tables.at(element.kind), extrapolations.at(element.kind), strain);
+        element.nodes.iter().zip(&of_nodes).for_each(|(&node, strain)| add(&mut sums[node], strain));
+    }
+    Ok(sums.into_iter().map(|(sum, count)| sum.map(|component| component / count as f64)).collect())
+}
+
+/// Strain and stress in some elements at the points of CalculiX, layer by layer.
+pub(crate) fn at_points(
+    body: &ElasticBody,
+    displacement: &[f64],
+    elements: &[usize],
+) -> Result<Vec<Vec<[Symmetric; 2]>>, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let tables = body.tabulated();
+    let points = body.per_kind(|reference| -> Vec<TabulatedPoint> {
+        reference.calculix.points.iter().map(|point| TabulatedPoint::new(reference, point.at, point.weight)).collect()
+    });
+    let values = |&index: &usize| {
+        let allowed = "smaller than the number of elements (indices from 0)";
+        let missing = linear::Error::Setting { name: "element", value: index as f64, allowed };
+        let element = body.element(index).ok_or(missing)?;
+        let strained = body.strained(&tables, displacement, &element);
+        let layer: Vec<[Symmetric; 2]> =
+            points.at(element.kind).iter().map(|at| strained.strain_and_stress(at)).collect();
+        Ok(layer.repeat(element.kind.reference().calculix.layers))
+    };
+    elements.iter().map(values).collect()
+}
+
+/// The volume of each element, and its energy `1/2 sigma : C^-1 : sigma` with the law in space: in the plane, stress
+/// and strain across it do work as well.
+pub(crate) fn volume_and_energy(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<[f64; 2]>, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let tables = body.tabulated();
+    // An incompressible material has a law in plane stress only, and no stress works across its plane.
+    let in_space = |phase: &Phase| phase.material().law(&Formulation::Space).unwrap_or_else(|_| phase.law.clone());
+    let laws: Vec<Law> = body.phases().iter().map(in_space).collect();
+    let of_element = |index: usize| {
+        let Some(element) = body.element(index) else { return [0.0; 2] };
+        let strained = body.strained(&tables, displacement, &element);
+        let (mut volume, mut energy) = (0.0, 0.0);
+        for at in &tables.at(element.kind).points {
+            let (weight, stress) = strained.at(at);
+            volume += weight;
+            let law = &laws[element.phase_number as usize];
+            energy += weight * law.complementary_energy(&stress, || element.cell.place(&at.shape)) / 2.0;
+        }
+        let scale = element.cell.unit().powi(body.dimension() as i32);
+        [scale * volume, scale * energy]
+    };
+    Ok(each(body.mesh().element_count(), of_element))
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The closest point of a surface, the normal there, and the signed distance.
 
-use super::closed::ClosedSurface;
-use super::triangle::Part;
-use crate::fem::geometry::{distance, dot, length, minus, unit};
+use super::facets::Part;
+use super::tree::ClosedSurface;
+use crate::fem::geometry::{distance, dot, length, minus, plus, shifted, unit};
 
 /// With this many closest points a node has them all around, like the centre of a ball: any one of these points can be
 /// used.
@@ -59,7 +59,7 @@ impl ClosedSurface {
         let sign = if self.contains(point) { -1.0 } else { 1.0 };
         let apart = Self::apart(&feet, point, tolerance);
         let seen = |foot: &Foot| self.seen(foot, point, sign);
-        let sum = apart.iter().map(seen).fold([0.0; 3], |sum, one| [0, 1, 2].map(|axis| sum[axis] + one.outward[axis]));
+        let sum = apart.iter().map(seen).fold([0.0; 3], |sum, one| plus(sum, one.outward));
         let cancels = length(sum) < CANCELLED * apart.len() as f64;
         let candidates = if apart.len() < MOST_FEET { &apart } else { &feet };
         let most = candidates
@@ -129,7 +129,7 @@ impl ClosedSurface {
         let corners = self.corners_of(foot.triangle);
         let weighted = |sum: [f64; 3], triangle: u32, weight: f64| {
             let normal = self.triangle(triangle).normal();
-            [0, 1, 2].map(|axis| sum[axis] + weight * normal[axis])
+            shifted(sum, weight, normal)
         };
         match foot.part {
             Part::Face => self.triangle(foot.triangle).normal(),

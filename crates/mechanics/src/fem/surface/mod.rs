@@ -4,21 +4,15 @@
 //! need two things that libraries of collision detection leave out: edges without leaks, and all closest points at
 //! equal distance.
 
-mod closed;
 mod closest;
-mod crossings;
 mod facets;
-mod obj;
-mod stl;
 mod tree;
-mod triangle;
 
 use std::path::Path;
 
-pub use closed::ClosedSurface;
-pub(crate) use crossings::Crossing;
-pub(crate) use tree::Tree;
-pub(crate) use triangle::distance_from;
+pub(crate) use facets::distance_from;
+pub use tree::ClosedSurface;
+pub(crate) use tree::{Crossing, Tree};
 
 use crate::error::Error;
 use crate::fem::formulation::positive;
@@ -41,8 +35,8 @@ impl ClosedSurface {
         positive("scale", scale)?;
         let ending = file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
         let parse = match ending.as_deref() {
-            Some("stl") => stl::read,
-            Some("obj") => obj::read,
+            Some("stl") => facets::read_stl,
+            Some("obj") => facets::read_obj,
             _ => {
                 let message = "its name must end in `.stl` or `.obj`, the form of its content".to_string();
                 return Err(linear::Error::FileSyntax { file: file.into(), line: 1, message }.into());

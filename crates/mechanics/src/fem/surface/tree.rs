@@ -1,6 +1,9 @@
-//! A tree of boxes around triangles, halved at the median along their longest extent.
+//! A tree of boxes around triangles, halved at the median along their longest extent; whether a surface is closed.
 
-use crate::fem::geometry::{distance, dot, length, minus};
+use super::facets::{Facets, Triangle};
+use crate::error::Error;
+use crate::fem::geometry::{Around, distance, dot, length, midpoint, minus};
+use robust::{Coord, orient2d};
 
 /// Triangles of a leaf: with fewer triangles more boxes are tested than triangles are saved.
 const LEAF: usize = 4;
@@ -141,7 +144,7 @@ impl Tree {
         let mut open = if self.order.is_empty() { Vec::new() } else { vec![0] };
         while let Some(place) = open.pop() {
             let branch = self.branches[place];
-            let middle = [0, 1, 2].map(|axis| (branch.low[axis] + branch.high[axis]) / 2.0);
+            let middle = midpoint(branch.low, branch.high);
             let half = distance(branch.high, middle);
             let away = minus(middle, point);
             let far = dot(away, along);
@@ -168,4 +171,201 @@ impl Branch {
         let beyond = [0, 1, 2].map(|axis| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0));
         beyond.iter().map(|part| part * part).sum()
     }
+}
+
+// The crossings of a line along an axis with a surface, without leaks: the line is moved aside by two infinitely small
+// steps, so that it meets no edge and no corner; the side of an edge on which it runs is decided exactly.
+
+/// A crossing of a line with a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crossing {
+    /// The coordinate along the axis.
+    pub at: f64,
+    /// Change of the number of solids around the line at the crossing, in the direction of the axis: 1 into a solid, -1
+    /// out of a solid.
+    pub turns: i32,
+}
+
+impl ClosedSurface {
+    /// The crossings of the line along `axis` through a point, increasing.
+    pub(crate) fn crossings(&self, axis: usize, point: [f64; 3]) -> Vec<Crossing> {
+        let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
+        let across = |at: [f64; 3]| Coord { x: at[first], y: at[second] };
+        let mut crossings = Vec::new();
+        self.tree.along(axis, point, |triangle| {
+            let corners = self.triangle(triangle).0;
+            let sides = [0, 1, 2].map(|corner| {
+                side(across(corners[(corner + 1) % 3]), across(corners[(corner + 2) % 3]), across(point))
+            });
+            let turns = match sides.map(|side| side.0) {
+                [1, 1, 1] => -1,
+                [-1, -1, -1] => 1,
+                _ => return,
+            };
+            // The area on each side is the weight of the opposite corner.
+            let sum: f64 = sides.iter().map(|side| side.1).sum();
+            let share = |corner: usize| if sum == 0.0 { 0.0 } else { sides[corner].1 / sum };
+            let [a, b, c] = corners.map(|corner| corner[axis]);
+            crossings.push(Crossing { at: a + share(1) * (b - a) + share(2) * (c - a), turns });
+        });
+        crossings.sort_by(|a, b| a.at.total_cmp(&b.at));
+        crossings
+    }
+
+    /// Returns `true` for a point inside a solid.
+    pub(super) fn contains(&self, point: [f64; 3]) -> bool {
+        // The choice of the axis does not matter.
+        let before = self.crossings(2, point).into_iter().filter(|crossing| crossing.at < point[2]);
+        before.map(|crossing| crossing.turns).sum::<i32>() > 0
+    }
+}
+
+/// The side of the line from `a` to `b` on which the point lies after an infinitely small step along x and an
+/// infinitely smaller step along y: 1 left, -1 right, 0 if `a` and `b` are the same; and twice the area of their
+/// triangle before these steps.
+fn side(a: Coord<f64>, b: Coord<f64>, point: Coord<f64>) -> (i32, f64) {
+    let area = orient2d(a, b, point);
+    let moved = if area != 0.0 {
+        area
+    } else if a.y != b.y {
+        a.y - b.y
+    } else {
+        b.x - a.x
+    };
+    (i32::from(moved > 0.0) - i32::from(moved < 0.0), area)
+}
+
+/// A volume below this times area and extent is rounding: a sheet folded onto itself encloses no volume.
+const NO_VOLUME: f64 = 1e-13;
+
+/// The boundary of one solid or of several, made of triangles that leave no gap, so that each place is inside or
+/// outside.
+#[derive(Debug)]
+pub struct ClosedSurface {
+    vertices: Vec<[f64; 3]>,
+    /// Counterclockwise seen from outside.
+    corners: Vec<[u32; 3]>,
+    /// The triangles around each vertex.
+    around: Around,
+    pub(super) tree: Tree,
+}
+
+impl ClosedSurface {
+    /// Checks that the triangles form closed surfaces, reverses them if all run clockwise, and builds the tree.
+    pub(super) fn new(mut facets: Facets) -> Result<Self, Error> {
+        let of_triangles = facets.corners.iter().map(|corners| corners.map(|vertex| vertex as usize));
+        let around = Around::new(facets.vertices.len(), of_triangles);
+        check_edges(&facets, &around)?;
+        let place = |corners: &[u32; 3]| Triangle(corners.map(|vertex| facets.vertices[vertex as usize]));
+        let has_area = |&triangle: &u32| place(&facets.corners[triangle as usize]).area_normal() != [0.0; 3];
+        let numbers: Vec<u32> = (0..facets.corners.len() as u32).filter(has_area).collect();
+        if numbers.is_empty() {
+            return Err(facets.fault(0, "it has no triangle with a positive area"));
+        }
+        let tree = Tree::new(&numbers, |triangle| limits(place(&facets.corners[triangle as usize])));
+        let [low, high] = tree.limits();
+        let (mut volume, mut area) = (0.0, 0.0);
+        for triangle in numbers.iter().map(|&triangle| place(&facets.corners[triangle as usize])) {
+            let normal = triangle.area_normal();
+            volume += dot(normal, minus(triangle.0[0], low)) / 6.0;
+            area += length(normal) / 2.0;
+        }
+        if volume.abs() <= NO_VOLUME * area * distance(low, high) {
+            return Err(facets.fault(0, format!("it encloses no volume: {volume:.1e}, for an area of {area:.1e}")));
+        }
+        if volume < 0.0 {
+            facets.corners.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+        Ok(ClosedSurface { vertices: facets.vertices, corners: facets.corners, around, tree })
+    }
+
+    pub(super) fn triangle(&self, number: u32) -> Triangle {
+        Triangle(self.corners_of(number).map(|vertex| self.vertices[vertex as usize]))
+    }
+
+    pub(super) fn corners_of(&self, number: u32) -> [u32; 3] {
+        self.corners[number as usize]
+    }
+
+    pub(super) fn around(&self, vertex: u32) -> &[u32] {
+        self.around.at(vertex as usize)
+    }
+}
+
+fn limits(triangle: Triangle) -> Limits {
+    triangle.0.into_iter().fold(NOWHERE, |sum, corner| joined(sum, [corner; 2]))
+}
+
+/// Edges with one kind of fault.
+#[derive(Clone, Copy, Debug)]
+struct Faulty {
+    count: usize,
+    first: Along,
+}
+
+/// A triangle along an edge: its number, and the corner at which its edge begins.
+type Along = (u32, usize);
+
+/// Every edge must join two triangles, in opposite directions.
+fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
+    let [mut open, mut crowded, mut alike]: [Option<Faulty>; 3] = [None; 3];
+    let mut edges: Vec<(u32, Along)> = Vec::new();
+    for vertex in 0..facets.vertices.len() as u32 {
+        // An edge is counted at its end with the lower number, as the other end and a triangle along it. They are
+        // sorted: the tip of a cone and copies of one triangle have very many.
+        edges.clear();
+        for &triangle in around.at(vertex as usize) {
+            let corners = facets.corners[triangle as usize];
+            for (corner, from) in corners.into_iter().enumerate() {
+                let to = corners[(corner + 1) % 3];
+                if from.min(to) == vertex {
+                    edges.push((from.max(to), (triangle, corner)));
+                }
+            }
+        }
+        edges.sort_unstable();
+        for of_edge in edges.chunk_by(|one, next| one.0 == next.0) {
+            let begins = |&(_, (triangle, corner)): &(u32, Along)| facets.corners[triangle as usize][corner] == vertex;
+            let away = of_edge.iter().filter(|&along| begins(along)).count();
+            let kind = match (away, of_edge.len() - away) {
+                (1, 1) => continue,
+                (1, 0) | (0, 1) => &mut open,
+                (2, 0) | (0, 2) => &mut alike,
+                _ => &mut crowded,
+            };
+            let first = of_edge[0].1;
+            let known = kind.get_or_insert(Faulty { count: 0, first });
+            (known.count, known.first) = (known.count + 1, known.first.min(first));
+        }
+    }
+    let edges = |count: usize| if count == 1 { "1 edge".into() } else { format!("{count} edges") };
+    let (found, message) = match (open, crowded, alike) {
+        (Some(found), _, _) => {
+            let many = if found.count == 1 { "belongs" } else { "belong" };
+            let message = format!(
+                "the surface is not closed after vertices of equal coordinates are merged: {} {many} to one \
+                 triangle only, but an obstacle needs an inside",
+                edges(found.count)
+            );
+            (found, message)
+        }
+        (None, Some(found), _) => (
+            found,
+            "more than two triangles meet at an edge, so that inside and outside cannot be distinguished".into(),
+        ),
+        (None, None, Some(found)) => {
+            let message = format!(
+                "triangles on both sides of {} run along them in the same direction, so that one triangle faces \
+                 inwards; orient all triangles alike",
+                edges(found.count)
+            );
+            (found, message)
+        }
+        (None, None, None) => return Ok(()),
+    };
+    let (triangle, corner) = (found.first.0 as usize, found.first.1);
+    let corners = facets.corners[triangle];
+    let [from, to] = [corners[corner], corners[(corner + 1) % 3]].map(|vertex| facets.vertices[vertex as usize]);
+    let message = format!("{message}; the first runs from {from:?} to {to:?} at the triangle that begins here");
+    Err(facets.fault(facets.place(triangle), message))
 }

@@ -1,18 +1,11 @@
-//! The schemes: each has its own file and is named only there and here.
+//! The schemes: each is named only in its file and here.
 
 mod central_difference;
-mod contact_stabilised;
 mod fox_goodwin;
-mod hht;
 mod midpoint;
 mod newmark;
-mod penalty;
-mod penalty_loop;
-mod stable_step;
-mod trapezoidal;
 
-pub(crate) use stable_step::MOST_IN_CONTACT;
-pub(crate) use stable_step::{frequency_bound, stable_step};
+pub(crate) use central_difference::{MOST_IN_CONTACT, frequency_bound, stable_step};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -93,11 +86,11 @@ impl SchemeSpec {
         match self {
             SchemeSpec::FoxGoodwin => &fox_goodwin::ABOUT,
             SchemeSpec::Midpoint => &midpoint::ABOUT,
-            SchemeSpec::Trapezoidal => &trapezoidal::ABOUT,
-            SchemeSpec::ContactStabilised => &contact_stabilised::ABOUT,
-            SchemeSpec::Hht => &hht::ABOUT,
-            SchemeSpec::Penalty => &penalty::ABOUT,
-            SchemeSpec::PenaltyLoop => &penalty_loop::ABOUT,
+            SchemeSpec::Trapezoidal => &newmark::TRAPEZOIDAL,
+            SchemeSpec::ContactStabilised => &newmark::CONTACT_STABILISED,
+            SchemeSpec::Hht => &newmark::HHT,
+            SchemeSpec::Penalty => &newmark::PENALTY,
+            SchemeSpec::PenaltyLoop => &newmark::PENALTY_LOOP,
             SchemeSpec::CentralDifference => &central_difference::ABOUT,
         }
     }
@@ -251,9 +244,6 @@ impl Scheme {
 
     /// The times in a step at which the scheme evaluates the loads, from 0 to 1.
     /// Checks the range of the parameter.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Setting`] for a value outside its range.
     pub fn check(self) -> Result<(), Error> {
         let value = self.value();
         match self.spec().parameter() {

@@ -7,8 +7,7 @@ use super::deformation;
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
 use crate::fem::geometry::dot;
-use crate::fem::recovery::points::{at_points, nodal_strain, volume_and_energy};
-use crate::fem::recovery::state::{Deformation, State};
+use crate::fem::recovery::state::{Deformation, State, at_points, nodal_strain, volume_and_energy};
 use crate::fem::recovery::{self, StressField};
 use crate::scene::Model;
 use crate::scene::models::resultants::{Resultant, without_rounding};
@@ -81,9 +80,6 @@ impl Answer {
     }
 
     /// The same, also for an answer that small displacements do not describe.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`] if it is not an answer to this model.
     pub fn of_any_size(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
         let multiplier = [solution.multiplier.as_slice(), &solution.equality_multiplier].concat();
         Self::new(model, &solution.displacement, &multiplier, &solution.contact_set)
@@ -91,9 +87,6 @@ impl Answer {
 
     /// An answer from the displacement of the free dofs (one entry per free dof, in length) with the multiplier (one
     /// entry per contact row, then one per equation of a tie, in force) and the closed rows.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`] if a vector does not fit the model.
     pub fn new(
         model: Arc<Model>,
         displacement: &[f64],
@@ -122,9 +115,6 @@ impl Answer {
 
     /// The answer with its nodes moved by `factor` times a nodal motion (length `dim * n_nodes`, together in length):
     /// the equilibrium at a moment of a vibration. Contact rows, pressures and the values of the unknowns stay.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`] for a motion of another mesh.
     pub fn moved_by(&self, motion: &[f64], factor: f64) -> Result<Self, Error> {
         qp::LinearError::check_length("motion", motion.len(), self.displacement.len(), "nodal dofs")?;
         let displacement = self.displacement.iter().zip(motion).map(|(own, moved)| own + factor * moved).collect();
@@ -270,18 +260,12 @@ impl Answer {
 
     /// The stress in the displaced body, per element and per node, in force per area, tension positive; computed at the
     /// first call.
-    ///
-    /// # Errors
-    /// As [`Model::stress`].
     pub fn stress(&self) -> Result<&StressField, Error> {
         Ok(&self.state()?.stress)
     }
 
     /// The strain at each node, dimensionless tensor components `[xx, yy, zz, xy, yz, zx]`, extension positive, in the
     /// order of the mesh: recovered and averaged as the stress. The expansion by temperature is a part of it.
-    ///
-    /// # Errors
-    /// As [`Model::stress`].
     pub fn strain(&self) -> Result<Vec<[f64; 6]>, Error> {
         nodal_strain(self.model.body(), &self.displacement)
     }
@@ -289,25 +273,16 @@ impl Answer {
     /// Strain (dimensionless) and stress (force per area) in some elements of the mesh, numbered from 0, at the points
     /// at which CalculiX prints them, in its order: tensor components `[xx, yy, zz, xy, yz, zx]`, extension and tension
     /// positive.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Setting`] for an element that does not exist.
     pub fn strain_and_stress(&self, elements: &[usize]) -> Result<Vec<Vec<[[f64; 6]; 2]>>, Error> {
         at_points(self.model.body(), &self.displacement, elements)
     }
 
     /// The volume of each element, and its strain energy, in force times length, in the order of the mesh.
-    ///
-    /// # Errors
-    /// As [`Model::stress`].
     pub fn volume_and_energy(&self) -> Result<Vec<[f64; 2]>, Error> {
         volume_and_energy(self.model.body(), &self.displacement)
     }
 
     /// The forces on all nodes by their source; computed at the first call.
-    ///
-    /// # Errors
-    /// As [`Model::reactions`].
     pub fn forces(&self) -> Result<&Forces, Error> {
         once(&self.forces, || {
             self.model.forces(&self.displacement, &self.state()?.force, &self.multiplier, &self.of_ties)
@@ -316,9 +291,6 @@ impl Answer {
 
     /// The imbalance of all forces, as [`Model::force_balance`]; `None` if all of them are rounding of stiffness times
     /// displacement: there is nothing to balance.
-    ///
-    /// # Errors
-    /// As [`Answer::forces`].
     pub fn balance(&self) -> Result<Option<f64>, Error> {
         let Forces { contact, reactions, springs, rigid_faces, ties, balance } = self.forces()?;
         let all = [contact, reactions, springs, rigid_faces, ties].into_iter().flatten();
@@ -329,9 +301,6 @@ impl Answer {
     }
 
     /// The resultants of contact forces, support reactions and loads: obstacle by obstacle, support by support.
-    ///
-    /// # Errors
-    /// As [`Answer::forces`].
     pub fn resultants(&self) -> Result<&[Resultant], Error> {
         let found = once(&self.resultants, || {
             let mut all = self.model.contact_resultants(&self.multiplier)?;
@@ -352,9 +321,6 @@ impl Answer {
 
     /// The discretisation error, relative in energy, estimated from the stress.
     ///
-    /// # Errors
-    /// As [`Model::stress`].
-    ///
     /// # Source
     /// [`recovery::discretisation_error`].
     pub fn discretisation_error(&self) -> Result<f64, Error> {
@@ -362,17 +328,14 @@ impl Answer {
     }
 
     /// The same, and the strain energy of the meshed part, in force times length.
-    ///
-    /// # Errors
-    /// As [`discretisation_error`](Self::discretisation_error).
     pub fn error_and_energy(&self) -> Result<(f64, f64), Error> {
         let estimated = self.estimated_error()?;
         Ok((estimated.relative(), estimated.strain_energy()))
     }
 
     /// The error, element by element.
-    pub(crate) fn estimated_error(&self) -> Result<recovery::discretisation::EstimatedError, Error> {
-        recovery::discretisation::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)
+    pub(crate) fn estimated_error(&self) -> Result<recovery::patches::EstimatedError, Error> {
+        recovery::patches::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)
     }
 }
 
@@ -394,9 +357,6 @@ impl Model {
     ///
     /// They are the internal forces at the supported dofs, minus load and contact force there. The multiplier enters
     /// because a contact row may press on a supported dof.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`] if `displacement` or `multiplier` do not fit.
     pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         Ok(self.forces_at(displacement, multiplier)?.reactions)
     }
@@ -405,9 +365,6 @@ impl Model {
     /// its unit rigid-body modes (the resultant forces, and the resultant moments over half its size), relative to the
     /// sum of all force magnitudes. A body of revolution has one rigid-body mode, and its forces count along the axis.
     /// `multiplier` is that of [`Model::reactions`].
-    ///
-    /// # Errors
-    /// As [`Model::reactions`].
     pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
         Ok(self.forces_at(displacement, multiplier)?.balance)
     }
@@ -419,9 +376,6 @@ impl Model {
     }
 
     /// The stress in the displaced body, per element and per node, in force per area, tension positive.
-    ///
-    /// # Errors
-    /// As [`Model::nodal_displacement`].
     pub fn stress(&self, displacement: &[f64]) -> Result<StressField, Error> {
         Ok(self.state(&self.nodal_displacement(displacement)?)?.stress)
     }

@@ -9,7 +9,7 @@ use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::fem::assembly::facet_sizes;
-use crate::fem::geometry::{cross, distance, dot, length, minus};
+use crate::fem::geometry::{cross, distance, dot, length, minus, plus, shifted, sorted};
 use crate::scene::Answer;
 use crate::scene::models::rows::ContactRow;
 use signorini_qp::Forest;
@@ -81,11 +81,8 @@ impl<'a> Patch<'a> {
             let sizes = straight.iter().map(|cell| patch.straight_sizes(&patch.places(cell)));
             let (sum, area_sum) = sizes.fold((0.0, 0.0), |sum, (extent, area)| (sum.0 + extent, sum.1 + area));
             let ratio = |whole: f64, sum: f64| if sum > 0.0 { whole / sum } else { 1.0 };
-            let share_of = |shares: &HashMap<Vec<usize>, f64>| {
-                let mut ascending = nodes.to_vec();
-                ascending.sort_unstable();
-                shares.get(&ascending).copied().unwrap_or(0.0)
-            };
+            let share_of =
+                |shares: &HashMap<Vec<usize>, f64>| shares.get(&sorted(nodes.iter().copied())).copied().unwrap_or(0.0);
             let share = shares.map_or(1.0, share_of);
             let (stretch, enlargement) = (share * ratio(extent, sum), share * ratio(area, area_sum));
             patch.cells.extend(straight.into_iter().map(|nodes| StraightCell {
@@ -152,7 +149,7 @@ impl<'a> Patch<'a> {
     /// `1 - |n|^2` with the mean n of the outward unit normals at the nodes of a closed cell: 0 if it is flat.
     pub fn bend(&self, cell: &StraightCell) -> f64 {
         let normals = cell.nodes.iter().filter_map(|&node| self.row(node)).map(|row| row.outward);
-        let sum = normals.fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
+        let sum = normals.fold([0.0; 3], plus);
         let closed = cell.nodes.iter().filter(|&&node| self.is_closed(node)).count();
         let bend = 1.0 - (length(sum) / closed as f64).powi(2);
         if bend > ROUNDING_OF_NORMALS { bend } else { 0.0 }
@@ -241,7 +238,7 @@ impl<'a> Patch<'a> {
     pub fn place(&self, node: usize) -> [f64; 3] {
         let at = self.answer.model().mesh().nodes()[node];
         match self.moved.get() {
-            Some((moved, by)) if moved == node => [0, 1, 2].map(|axis| at[axis] + by[axis]),
+            Some((moved, by)) if moved == node => plus(at, by),
             _ => at,
         }
     }
@@ -305,7 +302,7 @@ impl<'a> Patch<'a> {
         });
         // Pressures that rise towards the edge, or fall too little for the open node, give no estimate of the edge.
         let share = reach.filter(|reach| (0.0..=FARTHEST).contains(reach)).map_or(0.5, |reach| reach.min(1.0));
-        [0, 1, 2].map(|axis| from[axis] + share * way[axis])
+        shifted(from, share, way)
     }
 }
 
@@ -316,7 +313,7 @@ fn extent(outline: &[[f64; 3]]) -> f64 {
         [a, b] => distance(*a, *b),
         [first, rest @ ..] => {
             let turned = rest.windows(2).map(|pair| cross(minus(pair[0], *first), minus(pair[1], *first)));
-            0.5 * length(turned.fold([0.0; 3], |sum, part| [0, 1, 2].map(|axis| sum[axis] + part[axis])))
+            0.5 * length(turned.fold([0.0; 3], plus))
         }
     }
 }

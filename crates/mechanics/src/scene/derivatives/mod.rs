@@ -1,7 +1,5 @@
 //! Derivatives of outputs of an answer with respect to parameters of its scene, with the verdict of the proven rows.
 
-mod differences;
-mod direct;
 mod effect;
 pub(crate) mod output;
 pub(crate) mod parameter;

@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use serde::Serialize;
-
 use super::effect::{Effect, Why, effect};
 use super::output::{Branch, Output};
 use super::parameter::{Kind, Parameter};
@@ -14,6 +12,7 @@ use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::schema::Scene;
 use crate::scene::models::model::Model;
+use serde::Serialize;
 use signorini_qp::{Adjoint, Derivative, Derivatives, Prepared, Settings, Solution};
 
 /// Derivatives of branches that are this close, relative, are one.
@@ -116,9 +115,6 @@ impl Scene {
     }
 
     /// The names of the outputs that have derivatives; `X,Y` stands for the coordinates of a place.
-    ///
-    /// # Errors
-    /// As [`Scene::build`].
     pub fn outputs(&self) -> Result<Vec<String>, Error> {
         Ok(outputs_of(&self.build()?))
     }
@@ -131,9 +127,6 @@ pub fn outputs_of(model: &Model) -> Vec<String> {
 
 impl Sensitivities {
     /// As [`Scene::sensitivity`], for a scene with its model.
-    ///
-    /// # Errors
-    /// As [`Scene::sensitivity`].
     pub fn of(
         scene: &Scene,
         model: Arc<Model>,

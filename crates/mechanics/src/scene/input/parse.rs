@@ -1,17 +1,17 @@
-//! From text to a typed scene: every failure has a path, a line and a column.
+//! From text to a typed scene: every failure has a path, a line and a column. The JSON Schema of scenes.
 
 use std::io;
 use std::path::Path;
 
-use serde::Deserialize;
-use signorini_qp as qp;
-
 use super::absent::other_format;
 use super::deck::is_deck;
-use super::json::{Typed, line_and_column, parsed, plain};
-use super::locate::MOST_OF_SCENE;
+use super::entry::Named;
+use super::json::{Typed, line_and_column, parsed, plain, start_of};
 use crate::error::Error;
 use crate::scene::Scene;
+use serde::Deserialize;
+use serde_json::Value;
+use signorini_qp as qp;
 use signorini_qp::file::read_text_capped;
 
 impl Scene {
@@ -47,4 +47,115 @@ impl Scene {
         let scene = Self::from_json(&text, &path.display().to_string())?;
         Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
     }
+}
+
+impl Scene {
+    /// The JSON Schema of scenes, as indented text: fields, choices and the ranges of single numbers. Only
+    /// [`Scene::build`] checks conditions between several fields.
+    pub fn json_schema() -> String {
+        let mut schema = schemars::schema_for!(Scene).to_value();
+        without_null(&mut schema);
+        let version = env!("CARGO_PKG_VERSION");
+        schema["$id"] = Value::String(format!("urn:signorini:scene:{version}"));
+        format!("{schema:#}\n")
+    }
+}
+
+/// Removes `null` from the allowed values: a field that is left out is absent, not null.
+fn without_null(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            if let Some(Value::Array(kinds)) = map.get_mut("type") {
+                kinds.retain(|kind| kind != "null");
+                if let [kind] = &kinds[..] {
+                    let kind = kind.clone();
+                    map.insert("type".into(), kind);
+                }
+            }
+            if let Some(Value::Array(choices)) = map.get_mut("anyOf") {
+                choices.retain(|choice| choice["type"] != "null");
+            }
+            if map.get("default").is_some_and(Value::is_null) {
+                map.remove("default");
+            }
+            map.values_mut().for_each(without_null);
+        }
+        Value::Array(items) => items.iter_mut().for_each(without_null),
+        _ => {}
+    }
+}
+
+/// Most bytes of a scene: a height map of millions of points fits.
+pub(super) const MOST_OF_SCENE: u64 = 256 << 20;
+
+impl Scene {
+    /// An error of a value of a scene of a deck with the line of the deck that it comes from.
+    pub(crate) fn with_line(&self, error: Error) -> Error {
+        let of = |path: &str| {
+            let is_in = |known: &str| {
+                path.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+            };
+            let known = self.lines.iter().filter(|(known, _)| known.is_empty() || is_in(known));
+            known.max_by_key(|(known, _)| known.len()).map(|(_, place)| place.clone())
+        };
+        match error {
+            Error::Scene { path, message } => match of(&path) {
+                Some((file, line)) => {
+                    let message = format!("at `{path}` of the scene of this deck: {message}");
+                    qp::LinearError::FileSyntax { file, line, message }.into()
+                }
+                None => Error::Scene { path, message },
+            },
+            Error::Refused { code, place, path, message } => {
+                let found = of(&path).map(|(file, line)| format!("{}:{line}: ", file.display()));
+                Error::Refused { code, place: found.unwrap_or(place), path, message }
+            }
+            other => other,
+        }
+    }
+
+    /// An error of a value with its line and column, if the scene was read from a file that can be read again. Errors
+    /// of decks have their lines.
+    pub fn located(error: Error, file: &Path) -> Error {
+        if is_deck(file) {
+            return error;
+        }
+        let place_of = |path: &str| match read_text_capped(file, MOST_OF_SCENE) {
+            Ok(text) if file.is_file() => position(&text, path),
+            _ => None,
+        };
+        match error {
+            Error::Scene { path, message } => match place_of(&path) {
+                Some((line, column)) => {
+                    Error::SceneSyntax { source_name: file.display().to_string(), line, column, path, message }
+                }
+                None => Error::Scene { path, message },
+            },
+            Error::Refused { code, place, path, message } => {
+                let found = place_of(&path).map(|(line, column)| format!("{}:{line}:{column}: ", file.display()));
+                Error::Refused { code, place: found.unwrap_or(place), path, message }
+            }
+            Error::Linear(qp::LinearError::File { action, path, source }) => {
+                let named = source.get_ref().and_then(|reason| reason.downcast_ref::<Named>()).cloned();
+                let place = named.as_ref().and_then(|named| place_of(&named.path));
+                let source = match (named, place) {
+                    (Some(named), Some((line, column))) => {
+                        let scene = format!("{}:{line}:{column}", file.display());
+                        io::Error::new(source.kind(), Named { scene, ..named })
+                    }
+                    _ => source,
+                };
+                qp::LinearError::File { action, path, source }.into()
+            }
+            other => other,
+        }
+    }
+}
+
+/// Line and column of the value at `path`; if it is missing, of the value that should contain it. `None` if the text is
+/// not JSON.
+fn position(text: &str, path: &str) -> Option<(usize, usize)> {
+    let text = plain(text);
+    let scene = parsed(&text).ok()?;
+    Some(line_and_column(&text, start_of(&scene, path)))
 }

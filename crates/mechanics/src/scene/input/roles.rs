@@ -4,10 +4,10 @@
 use std::collections::HashSet;
 
 use super::schema::PartSpec;
-use super::schema::part::PartNormalSpec;
+use super::schema::body::PartNormalSpec;
 use crate::fem::assembly::{node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{along_axis, dot, length};
+use crate::fem::geometry::{along_axis, dot, length, shifted, sorted};
 use crate::fem::mesh::{Boundary, extent};
 
 /// Words in the name of a boundary that is held, and of a boundary that is pressed.
@@ -300,13 +300,9 @@ fn reach((low, high): Extent, (axis, sense): Way) -> f64 {
 
 /// Returns `true` if every facet of a boundary lies on the surface of a body.
 fn is_outside(boundary: &Boundary, surfaces: &[Boundary]) -> bool {
-    let sorted = |facet: &[usize]| {
-        let mut nodes = facet.to_vec();
-        nodes.sort_unstable();
-        nodes
-    };
-    let outer: HashSet<Vec<usize>> = surfaces.iter().flat_map(Boundary::facets).map(sorted).collect();
-    boundary.facets().all(|facet| outer.contains(&sorted(facet)))
+    let key = |facet: &[usize]| sorted(facet.iter().copied());
+    let outer: HashSet<Vec<usize>> = surfaces.iter().flat_map(Boundary::facets).map(key).collect();
+    boundary.facets().all(|facet| outer.contains(&key(facet)))
 }
 
 /// The facets of a boundary that face a direction along an axis; `None` without one.
@@ -318,11 +314,8 @@ fn part(body: &ElasticBody, boundary: &Boundary, way: Way) -> Option<Boundary> {
 fn mean_normal(body: &ElasticBody, boundary: &Boundary) -> [f64; 3] {
     let areas = tributary_areas(body, boundary);
     let area: f64 = areas.iter().map(|(_, area)| area).sum();
-    let mut normal = [0.0; 3];
-    for ((_, of_node), (_, own)) in areas.iter().zip(node_normals(body, boundary)) {
-        (0..3).for_each(|axis| normal[axis] += of_node / area * own[axis]);
-    }
-    normal
+    let parts = areas.iter().zip(node_normals(body, boundary));
+    parts.fold([0.0; 3], |sum, ((_, of_node), (_, own))| shifted(sum, of_node / area, own))
 }
 
 /// The axis and the sense of a boundary's normal; the vertical axis if the normal is as close to it as to another, and

@@ -1,14 +1,13 @@
-//! The bodies of a scene: mesh, materials, formulation.
+//! The bodies of a scene: mesh, materials, formulation, temperatures and initial stresses.
 
-use super::materials::BodyMaterials;
-use super::unstrained::Unstrained;
+use super::materials::{BodyMaterials, Selection, centroids};
 use crate::error::Error;
-use crate::fem::{ElasticBody, Formulation, Integration, Mesh, Region};
+use crate::fem::body::ElasticBody;
+use crate::fem::{ElementKind, Formulation, Integration, Mesh, Region};
 use crate::scene::Warning;
 use crate::scene::input::body::{BodySpec, Site};
-use crate::scene::input::entry::{located, wrong};
-use crate::scene::input::files::MeshFiles;
-use crate::scene::input::schema::{ModelSpec, Scene, Units};
+use crate::scene::input::entry::{MeshFiles, finite, located, point, vector, wrong};
+use crate::scene::input::schema::{DynamicSpec, InitialStressSpec, ModelSpec, Scene, TemperatureSpec, Units};
 use signorini_qp as qp;
 
 /// Poisson's ratios above which elements lock: linear elements noticeably above the first; measured, quadratic elements
@@ -163,10 +162,16 @@ pub(crate) fn locking(body: &ElasticBody) -> Option<Warning> {
         let standard = body.phases_of(region).iter().filter(|phase| phase.integration == Integration::Standard);
         let poisson = standard.filter_map(|phase| phase.material().poisson()).reduce(f64::max)?;
         let locks = poisson > LOCKING_POISSON[usize::from(kind.is_quadratic())];
-        locks.then(|| (poisson, Warning::NearlyIncompressible { poisson, element: kind.name() }))
+        locks.then_some((poisson, kind.name()))
     };
     let locking = body.regions().iter().filter(|_| body.formulation().can_lock()).filter_map(of_region);
-    locking.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, warning)| warning)
+    let (poisson, element) = locking.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let message = format!(
+        "Poisson's ratio {poisson} locks {element} elements: pressures can come out several times too large; take \
+         `\"integration\": \"mean-dilatation\"` with {} elements, a smaller ratio, or compare with a finer mesh before using them",
+        ElementKind::of_mean_dilatation("or").to_lowercase()
+    );
+    Some(Warning::new("nearly-incompressible", message))
 }
 
 /// The warnings for bodies with materials of very different stiffness.
@@ -176,9 +181,15 @@ pub(crate) fn stiffness_jumps(body: &ElasticBody) -> Vec<Warning> {
             let moduli = body.materials(region).flat_map(|material| material.young());
             moduli.reduce(of).unwrap_or(f64::NAN)
         });
-        let name = region.name().to_string();
+        let of = if region.name().is_empty() { String::new() } else { format!("of `{}` ", region.name()) };
         let is_jump = body.materials(region).count() > 1 && stiff > STIFFNESS_JUMP * soft;
-        is_jump.then_some(Warning::StiffnessJump { body: name, stiff, soft, ratio: stiff / soft })
+        let message = format!(
+            "the materials {of}have Young's moduli from {soft:e} to {stiff:e}, a factor of {:.1e}: stresses and strains of the soft one lose \
+             digits next to the stiff one, and the error of the mesh gathers at their interface; compare with a finer mesh, or take the \
+             stiff part as a support or an obstacle",
+            stiff / soft
+        );
+        is_jump.then_some(Warning::new("stiffness-jump", message))
     };
     body.regions().iter().filter_map(jump).collect()
 }
@@ -188,7 +199,79 @@ pub(crate) fn unit_of_young(body: &ElasticBody, units: &Units) -> Option<Warning
     let pascals = units.pascals()?;
     let young = body.phases().iter().flat_map(|phase| phase.material().young()).reduce(f64::max)?;
     let times = young * pascals / DIAMOND;
-    let Units { length, force } = units.clone();
+    let Units { length, force } = units;
     let [meant, steel] = [young, STEEL].map(|value| value / pascals);
-    (times > OTHER_UNIT).then_some(Warning::UnitOfYoung { young, force, length, times, meant, steel })
+    let message = format!(
+        "Young's modulus {young:e} is in {force}/{length}2, the units of this scene, {times:.0} times that of diamond: if it is given in \
+         Pa, write {meant:e}; steel has {steel:e} {force}/{length}2"
+    );
+    (times > OTHER_UNIT).then_some(Warning::new("unit-of-young", message))
+}
+
+/// The names of the components of a stress, in their order.
+const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
+
+/// Temperatures and initial stresses as a scene describes them.
+pub(crate) struct Unstrained<'a> {
+    pub temperature: &'a [TemperatureSpec],
+    pub stress: &'a [InitialStressSpec],
+}
+
+impl Unstrained<'_> {
+    /// The body with them; `place` is the prefix of its JSON paths.
+    pub fn placed(
+        &self,
+        mut body: ElasticBody,
+        place: &str,
+        motion: Option<&DynamicSpec>,
+    ) -> Result<ElasticBody, Error> {
+        for (name, count) in [("temperature", self.temperature.len()), ("initial-stress", self.stress.len())] {
+            if motion.is_some() && count > 0 {
+                let message = format!("a dynamic analysis has no `{name}`: only an equilibrium has; leave it out");
+                return Err(wrong(format!("{place}{name}"), message));
+            }
+        }
+        for (index, spec) in self.temperature.iter().enumerate() {
+            body = warmed(body, spec, &format!("{place}temperature[{index}]"))?;
+        }
+        for (index, spec) in self.stress.iter().enumerate() {
+            body = stressed(body, spec, &format!("{place}initial-stress[{index}]"))?;
+        }
+        Ok(body)
+    }
+}
+
+/// The body with the temperature at the JSON path `path`.
+fn warmed(body: ElasticBody, spec: &TemperatureSpec, path: &str) -> Result<ElasticBody, Error> {
+    finite(format!("{path}.value"), spec.value)?;
+    let gradient = match spec.gradient.is_empty() {
+        true => [0.0; 3],
+        false => vector(&format!("{path}.gradient"), &spec.gradient, body.dimension())?,
+    };
+    let selection = Selection { group: spec.group.as_deref(), cuboid: spec.cuboid.as_ref() };
+    let elements = selection.elements(&body, path)?;
+    if let Some(&element) = elements.iter().find(|&&element| body.material_of(element).expansion().is_none()) {
+        let at = centroids(&body)[element];
+        let at = point(&at[..body.dimension()]);
+        let message = format!("the material at {at} has no `expansion`, which a temperature needs; give it");
+        return Err(wrong(path, message));
+    }
+    body.with_temperature(&elements, spec.value, gradient)
+}
+
+/// The body with the initial stress at the JSON path `path`.
+fn stressed(body: ElasticBody, spec: &InitialStressSpec, path: &str) -> Result<ElasticBody, Error> {
+    let stress = [spec.xx, spec.yy, spec.zz, spec.xy, spec.yz, spec.zx];
+    let own = body.formulation().stresses();
+    for (component, (&value, name)) in stress.iter().zip(COMPONENTS).enumerate() {
+        finite(format!("{path}.{name}"), value)?;
+        if value != 0.0 && !own.contains(&component) {
+            let names: Vec<&str> = own.iter().map(|&component| COMPONENTS[component]).collect();
+            let message = format!("{} has no such stress; it has {}", body.formulation().name(), names.join(", "));
+            return Err(wrong(format!("{path}.{name}"), message));
+        }
+    }
+    let selection = Selection { group: spec.group.as_deref(), cuboid: spec.cuboid.as_ref() };
+    let elements = selection.elements(&body, path)?;
+    body.with_initial_stress(&elements, stress)
 }

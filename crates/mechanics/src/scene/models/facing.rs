@@ -1,8 +1,9 @@
-//! Two surfaces that face each other, for ties: the means of one of them over the other.
+//! Ties between two surfaces that face each other: the means of one of them over the other, and one equation.
 
 use std::collections::{BTreeMap, HashSet};
+use std::ops::Range;
 
-use super::tie_row::TieRow;
+use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::Boundary;
 use crate::fem::assembly::DofMap;
@@ -11,14 +12,12 @@ use crate::fem::mortar::{Found, MortarRow};
 use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, number, positive, wrong};
 use crate::scene::input::obstacle::SideOrder;
-use crate::scene::input::obstacle::mortar::{ends, means};
+use crate::scene::input::obstacle::mortar::{COVERED, ends, means};
 use crate::scene::input::obstacle::order::facet_size;
+use crate::scene::input::sum::Component;
 
 /// Surfaces farther apart than this share of a facet are apart: far above what straight facets miss of a curve.
 const APART: f64 = 0.1;
-
-/// A surface covered by less than this share is only partly tied.
-const COVERED: f64 = 1.0 - 1e-6;
 
 /// Two surfaces within reach of each other.
 pub(super) struct Facing<'a> {
@@ -60,15 +59,24 @@ impl<'a> Facing<'a> {
             );
             return Err(wrong(path, message));
         }
-        let [boundary, to] = sides.map(|side| side.name.clone());
+        let [boundary, to] = sides.map(|side| &side.name);
         let apart = found.rows.iter().map(|row| row.gap.abs()).fold(0.0, f64::max);
         if apart > APART * facet {
-            let (boundary, to) = (boundary.clone(), to.clone());
-            warnings.push(Warning::TiedApart { tie: path.clone(), boundary, to, apart });
+            let message = format!(
+                "{path}: `{boundary}` and `{to}` are tied over distances up to {apart:.2e}: forces along the surfaces turn both bodies over \
+                 such a distance; move the bodies together, or give a smaller `reach`"
+            );
+            warnings.push(Warning::new("tied-apart", message));
         }
         let [share, of_other] = found.covered;
         if share < COVERED && of_other < COVERED {
-            warnings.push(Warning::PartlyTied { tie: path.clone(), boundary, to, share, of_other });
+            let message = format!(
+                "{path}: {:.1} % of the area of `{boundary}` and {:.1} % of the nodes of `{to}` are tied; the rest is free, and the bodies \
+                 can go through each other there",
+                100.0 * share,
+                100.0 * of_other
+            );
+            warnings.push(Warning::new("partly-tied", message));
         }
         Ok(Facing { body, dofs, path, sides, is_swapped, reach, found })
     }
@@ -109,5 +117,56 @@ impl<'a> Facing<'a> {
             TieRow { terms, own: 0..own, at, value: 0.0, on_points: BTreeMap::new() }
         };
         found.rows.iter().map(row).collect()
+    }
+}
+
+/// A sum of `vector . u` over nodes in the unknowns, and its prescribed part, in length.
+pub(crate) fn in_unknowns(
+    terms: &[(usize, [f64; 3])],
+    (dofs, unknowns): (&DofMap, &Unknowns),
+    dimension: usize,
+) -> (Vec<(usize, f64)>, f64) {
+    let (mut entries, mut prescribed) = (Vec::new(), 0.0);
+    for (node, vector) in terms {
+        let (free, part) = unknowns.along(dofs, *node, &vector[..dimension]);
+        entries.extend(free);
+        prescribed += part;
+    }
+    (entries, prescribed)
+}
+
+/// One equation: the sum of `vector . u` over its terms is `value`.
+#[derive(Clone, Debug)]
+pub(crate) struct TieRow {
+    /// Nodes with their vectors [x, y, z], dimensionless; at a node with a coefficient for the coefficient.
+    pub terms: Vec<(usize, [f64; 3])>,
+    /// The terms of the nodes of the first side.
+    pub own: Range<usize>,
+    /// The place at which two surfaces are tied; `None` for an equation between nodes.
+    pub at: Option<[f64; 3]>,
+    pub value: f64,
+    /// The coefficients of the prescribed components of reference points, which are in the value, and the shares of
+    /// equations at points that the row has taken up.
+    pub on_points: BTreeMap<Component, f64>,
+}
+
+impl TieRow {
+    /// The difference of two rows of the same sides with the value 0.
+    pub fn minus(&self, other: &TieRow) -> TieRow {
+        let negative = |terms: &[(usize, [f64; 3])]| -> Vec<(usize, [f64; 3])> {
+            terms.iter().map(|&(node, vector)| (node, vector.map(|part| 0.0 - part))).collect()
+        };
+        let [(own, across), (of_own, of_across)] = [self, other].map(|row| row.terms.split_at(row.own.end));
+        let terms = [own, &negative(of_own), across, &negative(of_across)].concat();
+        TieRow { terms, own: 0..own.len() + of_own.len(), at: self.at, value: 0.0, on_points: BTreeMap::new() }
+    }
+
+    /// Its nodes, each with a node of the other side.
+    pub fn sides(&self) -> impl Iterator<Item = (usize, usize)> {
+        let (first, second) = self.terms.split_at(self.own.end);
+        [(first, second), (second, first)]
+            .into_iter()
+            .flat_map(|(side, other)| side.iter().zip(std::iter::repeat(other.first())))
+            .filter_map(|(term, other)| Some((term.0, other?.0)))
     }
 }

@@ -1,12 +1,15 @@
-//! Prescribed components of nodal displacements, combined in one frame per node.
+//! Prescribed components of nodal displacements, combined in one frame per node, from the supports of a scene.
 
 use std::collections::BTreeMap;
 
 use crate::error::Error;
-use crate::fem::assembly::{DofMap, Frame, perpendicular};
-use crate::fem::geometry::{COORDINATES, dot};
+use crate::fem::assembly::{DofMap, Frame, node_normals, perpendicular};
+use crate::fem::body::{ElasticBody, ON_THE_AXIS};
+use crate::fem::geometry::{COORDINATES, dot, minus};
 use crate::fem::mesh::Mesh;
-use crate::scene::input::entry::{number, point, wrong};
+use crate::scene::input::entry::{boundary, finite, node_at, nodes_named_once, number, point, vector, wrong};
+use crate::scene::input::schema::{Place, Scene, SupportSpec};
+use crate::scene::input::sum::Profile;
 
 /// A normal depends on the earlier ones if the sine of its angle to their span is below this: the rounding of written
 /// components.
@@ -143,7 +146,7 @@ fn shared(components: &[Component], force: [f64; 3]) -> Vec<(Holder, [f64; 3])> 
     for (component, axis) in independent.iter().rev() {
         let amount = dot(left, *axis) / dot(component.direction, *axis);
         let share = component.direction.map(|part| amount * part);
-        left = [0, 1, 2].map(|place| left[place] - share[place]);
+        left = minus(left, share);
         shares.push((component.by, share));
     }
     shares
@@ -230,4 +233,99 @@ fn contradiction(component: &Component, implied: f64, before: &[Component]) -> S
     let names = if names.is_empty() { last } else { format!("{} and {last}", names.join(", ")) };
     let (value, implied) = (number(component.value), number(implied + 0.0));
     format!("{value} contradicts the {implied} that {names} {verb} for")
+}
+
+/// The normals of a flat boundary have one direction up to the rounding of coordinates: one minus the cosine of their
+/// angle.
+const FLAT: f64 = 1e-9;
+
+impl Scene {
+    /// The components of the displacement that the supports and the axis of revolution prescribe, node by node.
+    pub(crate) fn held(&self, body: &ElasticBody) -> Result<Held, Error> {
+        let mesh = body.mesh();
+        let mut held = Held::default();
+        if body.formulation().is_axisymmetric() {
+            let near = ON_THE_AXIS * mesh.size();
+            for node in (0..mesh.nodes().len()).filter(|&node| mesh.nodes()[node][0] <= near) {
+                held.prescribe(node, Component { direction: COORDINATES[0], value: 0.0, by: Holder::Axis });
+            }
+        }
+        for (index, support) in self.supports.iter().enumerate() {
+            let path = format!("supports[{index}]");
+            let components = self.components(index, support)?;
+            let nodes = match &support.on {
+                Place::Boundary(name) => boundary(mesh, name, &format!("{path}.on.boundary"))?.nodes(),
+                Place::Point(at) => vec![node_at(mesh, at, &format!("{path}.on.point"))?],
+                Place::Nodes(names) => nodes_named_once(mesh, names, &format!("{path}.on.nodes"))?,
+            };
+            let profile = support.profile.as_ref();
+            let profile = profile.map(|spec| Profile::of(spec, &format!("{path}.profile"), body.dimension()));
+            let profile = profile.transpose()?;
+            for node in nodes {
+                let factor = profile.as_ref().map_or(1.0, |profile| profile.at(mesh.nodes()[node]));
+                for component in &components {
+                    held.prescribe(node, Component { value: factor * component.value, ..*component });
+                }
+            }
+        }
+        Ok(held)
+    }
+
+    /// Returns `true` if a support lets a flat boundary slide along itself and prescribes nothing else: it may be a
+    /// plane of symmetry.
+    pub(crate) fn may_be_part(&self, body: &ElasticBody) -> Result<bool, Error> {
+        if body.dimension() == 1 {
+            return Ok(false);
+        }
+        for (index, support) in self.supports.iter().enumerate() {
+            let (Place::Boundary(name), [only]) = (&support.on, &self.components(index, support)?[..]) else {
+                continue;
+            };
+            let boundary = boundary(body.mesh(), name, &format!("supports[{index}].on.boundary"))?;
+            let slides = |(_, normal): &(usize, [f64; 3])| dot(*normal, only.direction).abs() > 1.0 - FLAT;
+            if only.value == 0.0 && node_normals(body, boundary).iter().all(slides) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The components prescribed by support number `index`.
+    pub(crate) fn components(&self, index: usize, support: &SupportSpec) -> Result<Vec<Component>, Error> {
+        let path = format!("supports[{index}]");
+        let by = |field| Holder::Support { index, field };
+        let dimension = self.model.dimension();
+        let mut components = Vec::new();
+        for (axis, (field, value)) in [("x", support.x), ("y", support.y), ("z", support.z)].into_iter().enumerate() {
+            let Some(value) = value else { continue };
+            if axis >= dimension {
+                let message = format!("the model `{}` has no {field}", self.model.name());
+                return Err(wrong(format!("{path}.{field}"), message));
+            }
+            finite(format!("{path}.{field}"), value)?;
+            components.push(Component { direction: COORDINATES[axis], value, by: by(field) });
+        }
+        match (&support.normal, support.value) {
+            (Some(normal), value) => {
+                let field = format!("{path}.normal");
+                let direction = unit_normal(vector(&field, normal, dimension)?).ok_or_else(|| {
+                    wrong(field, format!("{} has no direction; the normal needs a length", point(normal)))
+                })?;
+                let value = value.unwrap_or(0.0);
+                finite(format!("{path}.value"), value)?;
+                components.push(Component { direction, value, by: by("normal") });
+            }
+            (None, Some(_)) => {
+                let message = "`value` is the displacement along `normal`; give `normal` too, or x, y or z instead";
+                return Err(wrong(format!("{path}.value"), message));
+            }
+            (None, None) => {}
+        }
+        if components.is_empty() {
+            let names =
+                ["x", "at least one of x and y, or a normal", "at least one of x, y and z, or a normal"][dimension - 1];
+            return Err(wrong(path, format!("holds nothing; give {names}")));
+        }
+        Ok(components)
+    }
 }

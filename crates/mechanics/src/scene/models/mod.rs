@@ -1,14 +1,10 @@
 //! A discretised scene: mesh and materials, supports, loads and springs, contact rows, and the problem that they make.
 
-mod build;
-pub(crate) mod condition;
-mod contacts;
+pub(crate) mod build;
 pub(crate) mod continuum;
 mod elastic;
-mod explain;
 mod facing;
 pub(crate) mod held;
-mod inertia;
 pub(crate) mod load;
 mod materials;
 pub(crate) mod model;
@@ -21,14 +17,10 @@ pub(crate) mod resultants;
 pub(crate) mod rigid_body_modes;
 mod rigid_face;
 pub(crate) mod rows;
-mod selection;
 pub(crate) mod set_up;
 mod springs;
 pub(crate) mod start;
 mod suspect;
 mod symmetry;
-mod terms;
-mod tie_row;
 mod ties;
 pub(crate) mod unknowns;
-mod unstrained;

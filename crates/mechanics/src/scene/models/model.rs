@@ -117,9 +117,6 @@ impl Model {
 
     /// The same with obstacles that have moved along their approach directions, one entry per obstacle, in length: rows
     /// keep the normals that they have.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::NotFinite`] for gaps that are not finite.
     pub fn with_moved_obstacles(&self, moved: &[f64]) -> Result<Self, Error> {
         let mut model = Model { moved: moved.to_vec(), ..self.clone() };
         let mut gap = self.problem.gap().to_vec();
@@ -364,26 +361,17 @@ impl Model {
 
     /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs; supports have their
     /// prescribed values.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`] if `displacement` does not have one entry per free dof.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
         self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
     }
 
     /// Nodal velocities, length `dim * n_nodes`, in length over time, from those of the unknowns; supports stand still.
-    ///
-    /// # Errors
-    /// As [`Model::nodal_displacement`].
     pub fn nodal_velocity(&self, velocity: &[f64]) -> Result<Vec<f64>, Error> {
         self.parts.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)
     }
 
     /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these
     /// `displacement`s; `None` for an obstacle at rest.
-    ///
-    /// # Errors
-    /// As [`Model::nodal_displacement`].
     pub fn travel(&self, displacement: &[f64], obstacle: usize) -> Result<Option<f64>, Error> {
         self.parts.unknowns.motion(displacement)?;
         Ok(self.parts.unknowns.travel(obstacle).map(|unknown| displacement[unknown]))
@@ -394,9 +382,6 @@ impl Model {
     ///
     /// The end of a quadratic edge on an axis of revolution has no tributary area, or next to none if the edge is
     /// curved; it shows the pressure of the candidate next to it.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`] if `multiplier` does not have one entry per contact row.
     pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
         let largest = self.rows.iter().fold(0.0, |largest: f64, row| largest.max(row.tributary_area));
@@ -428,9 +413,6 @@ impl Model {
     /// two bodies the opposite forces on the other body. `multiplier` has one entry per contact row, in force, `<= 0`.
     /// On quadratic faces in space they are those of the shape functions: zero or negative at corners under a uniform
     /// pressure.
-    ///
-    /// # Errors
-    /// As [`Model::pressure`].
     pub fn contact_forces(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
         let dimension = self.body().dimension();

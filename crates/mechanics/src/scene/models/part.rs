@@ -5,7 +5,7 @@ use crate::fem::assembly::facet_centres;
 use crate::fem::geometry::{cross, distance, dot, length};
 use crate::fem::{Boundary, ElasticBody};
 use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, direction, number, point, positive, vector, wrong};
-use crate::scene::input::schema::part::PartBoxSpec;
+use crate::scene::input::schema::body::PartBoxSpec;
 use crate::scene::input::schema::{PartSpec, Scene};
 
 /// Deviations of normals beyond the given angle by less than this, in degrees, are rounding of coordinates.

@@ -66,9 +66,6 @@ impl Parts {
     }
 
     /// The external load with the tensions of bolts, and the forces of springs on nodes with prescribed displacements.
-    ///
-    /// # Errors
-    /// None for the dofs of the body.
     pub fn acting_load(&self) -> Result<Vec<f64>, Error> {
         let mut load = self.load.clone();
         if !self.ties.shortenings.is_empty() {

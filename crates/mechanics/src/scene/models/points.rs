@@ -3,9 +3,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::facing::TieRow;
+use super::preload::terms_of;
 use super::rigid_face::{Given, motion_name, motions};
-use super::terms::terms_of;
-use super::tie_row::TieRow;
 use crate::error::{Error, nearly};
 use crate::fem::assembly::Springs;
 use crate::fem::body::ElasticBody;

@@ -3,18 +3,17 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use serde::Serialize;
-
 use super::held::Holder;
 use super::points::{ForcesAt, ReferencePoint};
 use super::rigid_face::Motion;
 use crate::error::Error;
 use crate::fem::assembly::Springs;
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::{COORDINATES, cross, dot, length, minus};
+use crate::fem::geometry::{COORDINATES, cross, dot, length, minus, plus, shifted};
 use crate::scene::Model;
 use crate::scene::input::obstacle::PlacedObstacle;
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::model::Rule;
+use serde::Serialize;
 
 /// Forces that cancel to this share of the sum of their magnitudes leave only rounding, which has no line of action.
 const CANCELS: f64 = 1e-10;
@@ -106,9 +105,9 @@ impl Sum {
         let &(first, _) = self.forces.first()?;
         let weighted = self.forces.iter().fold([0.0; 3], |sum, &(at, of)| {
             let (away, weight) = (minus(at, first), dot(of, force) / square);
-            [0, 1, 2].map(|axis| sum[axis] + weight * away[axis])
+            shifted(sum, weight, away)
         });
-        let centre = [0, 1, 2].map(|axis| first[axis] + weighted[axis]);
+        let centre = plus(first, weighted);
         if formulation.is_axisymmetric() {
             return Some(centre);
         }
@@ -153,10 +152,6 @@ pub(crate) fn without_rounding(all: &mut [Resultant]) {
 impl Model {
     /// The resultants of the contact forces, obstacle by obstacle, from the multipliers of all rows (one entry per
     /// contact row, in force, `<= 0`).
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`](signorini_qp::LinearError::Length) if `multiplier` does not have one entry per
-    /// contact row.
     pub fn contact_resultants(&self, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
         self.check_multiplier(multiplier)?;
         let mut sums = vec![Sum::default(); self.obstacles().len()];
@@ -203,7 +198,7 @@ impl Model {
             for &(node, share) in &row.ends {
                 let lever = minus(self.parts.dofs.basis.place(nodes, node), nodes[row.node]);
                 let of_end = cross(lever, row.normal.map(|part| share * lambda * part));
-                moment = [0, 1, 2].map(|axis| moment[axis] + of_end[axis]);
+                moment = plus(moment, of_end);
             }
         }
         Some(if force > 0.0 { length(moment) / (force * self.mesh().size()) } else { 0.0 })
@@ -241,7 +236,7 @@ impl Model {
             for (by, force) in shares {
                 if let Holder::Support { index, .. } = by {
                     let sum = of_node.entry(index).or_default();
-                    *sum = [0, 1, 2].map(|axis| sum[axis] + force[axis]);
+                    *sum = plus(*sum, force);
                 }
             }
             for (index, force) in of_node {
@@ -298,7 +293,7 @@ impl Model {
             for axis in (0..3).filter(|&axis| force[3 + axis] != 0.0) {
                 let [arm, across] = [COORDINATES[(axis + 1) % 3], COORDINATES[(axis + 2) % 3]];
                 let pair = across.map(|part| force[3 + axis] / size * part);
-                let beside = [0, 1, 2].map(|i| at[i] + size * arm[i]);
+                let beside = shifted(at, size, arm);
                 self.add_images(&mut sum, beside, pair, |_| true);
                 self.add_images(&mut sum, at, pair.map(|part| 0.0 - part), |_| true);
             }

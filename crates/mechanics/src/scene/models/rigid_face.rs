@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::held::Held;
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, cross, distance, dot, minus};
+use crate::fem::geometry::{COORDINATES, cross, distance, dot, minus, shifted};
 use crate::fem::{ElasticBody, tributary_areas};
 use crate::scene::input::entry::{boundary, finite, nodes_named_once, point, vector, wrong};
 use crate::scene::input::schema::{RigidFaceSpec, Scene};
@@ -121,7 +121,7 @@ impl RigidFace {
         self.motions.iter().fold([0.0; 3], |sum, motion| {
             let by_one = self.displacement(motion, at);
             let amount = motion.prescribed.unwrap_or(0.0);
-            [0, 1, 2].map(|axis| sum[axis] + amount * by_one[axis])
+            shifted(sum, amount, by_one)
         })
     }
 

@@ -103,7 +103,11 @@ pub(crate) fn found(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64)
         }
         warnings.extend(obstacle.warnings().iter().cloned());
         if found.is_empty() {
-            warnings.push(Warning::NoContactRow { obstacle: index });
+            let message = format!(
+                "obstacles[{index}] faces no node of its boundary: the body is solved without it; check its place, its approach direction \
+                 and its radius"
+            );
+            warnings.push(Warning::new("no-contact-row", message));
         }
         let by_node: BTreeMap<usize, f64> = match dofs.basis.is_nodal() {
             true => BTreeMap::new(),

@@ -1,7 +1,12 @@
-//! Supports, springs, rigid faces and loads of the body, node by node, for pictures.
+//! Supports, springs, rigid faces and loads of the body, node by node, for pictures; the mass of a model.
 
 use super::model::Model;
+use crate::error::Error;
+use crate::fem::MassForm;
+use crate::fem::assembly::{free_mass, nodal_mass};
 use crate::fem::geometry::unit;
+use crate::scene::input::entry::{located, wrong};
+use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
 /// The way in which a support, a spring or a symmetry keeps a node in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,5 +58,34 @@ impl Model {
     pub fn loaded_nodes(&self) -> impl Iterator<Item = (usize, &[f64])> {
         let nodal = self.nodal_load().chunks_exact(self.mesh().dimension()).enumerate();
         nodal.filter(|(_, force)| force.iter().any(|&part| part != 0.0))
+    }
+}
+
+impl Model {
+    /// The mass of the nodes, in one of its forms; the lower triangle.
+    pub(crate) fn nodal_mass(&self, form: MassForm) -> Result<SparseMatrix, Error> {
+        let contact_nodes: Vec<usize> = self.rows().iter().flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
+        nodal_mass(self.body(), form, &contact_nodes).map_err(|error| match error {
+            Error::Mesh { message } => wrong("body", message),
+            other => located(other, "material."),
+        })
+    }
+
+    /// The mass of the unknowns, from that of the nodes.
+    pub(crate) fn mass_of(&self, nodal_mass: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
+        let parts = &self.parts;
+        let of_body = parts.unknowns.congruent(free_mass(&parts.body, &parts.dofs, nodal_mass)?)?;
+        let of_obstacle = |obstacle: usize| {
+            parts.share_of(obstacle, parts.obstacles[obstacle].inertia().map_or(0.0, |inertia| inertia.mass))
+        };
+        parts.unknowns.with_travels(&of_body, of_obstacle)
+    }
+
+    /// The mass M (n x n) of the unknowns of the [problem](Model::problem), in one of its forms, in mass.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a material without density, and for a mesh too coarse to redistribute its mass.
+    pub fn mass(&self, form: MassForm) -> Result<SymmetricMatrix, Error> {
+        self.mass_of(&self.nodal_mass(form)?)
     }
 }

@@ -1,13 +1,13 @@
 //! Springs and foundations of a scene, on its nodes.
 
 use super::points::ReferencePoints;
-use super::terms::{no_point, terms_of};
+use super::preload::{no_point, terms_of};
 use crate::error::Error;
 use crate::fem::Boundary;
 use crate::fem::assembly::{Springs, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::scene::input::entry::{boundary, node_at, positive, wrong};
-use crate::scene::input::schema::spring::StiffnessOf;
+use crate::scene::input::schema::tie::StiffnessOf;
 use crate::scene::input::schema::{Place, Scene, SpringSpec};
 
 /// The refusal of a spring that is written in two ways.

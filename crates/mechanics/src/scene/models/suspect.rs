@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::Parts;
+use super::preload::terms_of;
 use super::rows::ContactRow;
-use super::terms::terms_of;
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::fem::{Boundary, DofMap, ElasticBody};
@@ -43,12 +43,20 @@ impl Scene {
             let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
             let (whole, free) = (size(&load), size(&dofs.restrict(&load)?));
             if whole > 0.0 && free <= NOTHING * whole {
-                warnings.push(Warning::LoadOnSupport { load: index });
+                let message = format!(
+                    "loads[{index}] acts only on nodes that supports hold: the supports take it and nothing moves; load another \
+                     boundary"
+                );
+                warnings.push(Warning::new("load-on-support", message));
             } else if self.loads[index].is_at_points()
                 && body.dimension() > 1
                 && node_alone(&load, body.dimension()).is_some_and(|node| !joined.contains(&node))
             {
-                warnings.push(Warning::PointLoad { load: index });
+                let message = format!(
+                    "loads[{index}] is a force on a single node: displacement and stress there grow with every refinement; spread it over a \
+                     boundary as a traction if they matter"
+                );
+                warnings.push(Warning::new("point-load", message));
             }
         }
         Ok(warnings)
@@ -66,7 +74,14 @@ impl Scene {
         // In an axisymmetric section the axis itself holds the cut.
         let on_axis = |name: &&str| body.formulation().is_axisymmetric() && name.ends_with("symmetry-x");
         let free = names.filter(is_cut).filter(|name| !is_held(name) && !on_axis(name));
-        free.map(|name| Warning::FreeSymmetry { boundary: name.to_string() }).collect()
+        let warning = |name: &str| {
+            let message = format!(
+                "no support holds the boundary `{name}`: the body can move across this cut, so that it is not half of a symmetric body; \
+                 hold the component across the cut"
+            );
+            Warning::new("free-symmetry", message)
+        };
+        free.map(warning).collect()
     }
 }
 
@@ -74,9 +89,13 @@ impl Scene {
 fn folded_corner(body: &ElasticBody) -> Option<Warning> {
     let (mesh, count) = (body.mesh(), body.folded().len());
     let &(element, node, value) = body.folded().first()?;
-    let at = mesh.nodes()[mesh.element(element)[node]][..body.dimension()].to_vec();
+    let at = &mesh.nodes()[mesh.element(element)[node]][..body.dimension()];
     let element = mesh.element_numbers().and_then(|numbers| numbers.get(element).copied()).unwrap_or(element);
-    Some(Warning::FoldedCorner { element, at, value, count })
+    let message = format!(
+        "the Jacobian determinant of element {element} is {value:.2e} at its node at {at:?}, but positive where it is integrated, and so \
+         it is for {count} elements: they are solved; stresses at such a corner are not to be trusted; move the node"
+    );
+    Some(Warning::new("folded-corner", message))
 }
 
 /// The node of a nodal load that is zero on all others.
@@ -102,8 +121,12 @@ fn coincident_nodes(body: &ElasticBody, tied: &HashSet<usize>) -> Option<Warning
         }
     }
     let &(first, second) = pairs.first()?;
-    let at = nodes[second][..body.dimension()].to_vec();
-    Some(Warning::CoincidentNodes { first, second, at, count: pairs.len() })
+    let (at, count) = (&nodes[second][..body.dimension()], pairs.len());
+    let message = format!(
+        "{count} nodes of the mesh have the place of another node, such as nodes {first} and {second} at {at:?}: the parts of the mesh are \
+         not joined there; merge these nodes in the mesher, unless a slit is meant"
+    );
+    Some(Warning::new("coincident-nodes", message))
 }
 
 /// Obstacles with candidates that are mostly held by supports, and obstacles with the same rows as others.
@@ -115,7 +138,12 @@ pub(crate) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
         let all = obstacle.candidates();
         let held = all.iter().filter(|candidate| is_held(candidate.0)).count();
         if dimension > 1 && 2 * held > all.len() {
-            warnings.push(Warning::HeldCandidates { obstacle: index, held, of: all.len() });
+            let message = format!(
+                "{held} of {} nodes that may touch obstacles[{index}] are held in all directions by supports: the obstacle cannot press \
+                 on them; free that boundary, or name another one",
+                all.len()
+            );
+            warnings.push(Warning::new("held-candidates", message));
         }
     }
     warnings.extend(doubled_obstacles(parts, rows));
@@ -168,7 +196,18 @@ fn doubled_obstacles(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     }
     let warning = |(first, mut later): (usize, Vec<usize>)| {
         later.sort_unstable();
-        Warning::DoubledObstacle { first, second: later[0], last: later[later.len() - 1], count: later.len() }
+        let (second, last, count) = (later[0], later[later.len() - 1], later.len());
+        let message = match count {
+            1 => format!(
+                "obstacles[{first}] and obstacles[{second}] make the same rows: the shares of the force between the two have no meaning; \
+                 leave one obstacle out"
+            ),
+            _ => format!(
+                "obstacles[{first}] and {count} others, from obstacles[{second}] to obstacles[{last}], make the same rows: the shares of \
+                 the force among them have no meaning; leave all but one out"
+            ),
+        };
+        Warning::new("doubled-obstacle", message)
     };
     later_of.into_iter().map(warning).collect()
 }

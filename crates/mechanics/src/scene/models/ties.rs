@@ -3,11 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::facing::Facing;
+use super::facing::{Facing, TieRow, in_unknowns};
 use super::points::ReferencePoints;
-use super::preload::Shortening;
-use super::terms::{no_point, terms_of};
-use super::tie_row::{TieRow, in_unknowns};
+use super::preload::{Shortening, no_point, terms_of};
 use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
@@ -82,7 +80,7 @@ impl Scene {
                     let path = format!("{path}.surfaces");
                     let facing = Facing::of([boundary, to], *reach, &path, (body, dofs, &order), &mut warnings)?;
                     covered[index] = Some((usize::from(facing.is_swapped), facing.found.covered[0]));
-                    means(&facing)?
+                    rows_of_means(&facing)?
                 }
                 TieSpec::Preload(spec) => {
                     let path = format!("{path}.preload");
@@ -155,7 +153,7 @@ impl Scene {
 }
 
 /// The rows of two surfaces: the means of one of them in every direction.
-fn means(facing: &Facing) -> Result<Vec<TieRow>, Error> {
+fn rows_of_means(facing: &Facing) -> Result<Vec<TieRow>, Error> {
     let dofs = facing.dofs;
     let rows = |axis: usize| facing.rows(|node| dofs.axes(node)[axis]);
     Ok((0..facing.body.dimension()).map(rows).collect::<Result<Vec<_>, Error>>()?.concat())

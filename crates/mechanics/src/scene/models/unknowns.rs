@@ -72,9 +72,6 @@ struct FaceMotions {
 
 impl Unknowns {
     /// The unknowns of a body with `dofs`, rigid faces and obstacles.
-    ///
-    /// # Errors
-    /// None for faces and dofs of one mesh.
     pub fn of(
         nodes: &[[f64; 3]],
         dofs: &DofMap,
@@ -180,9 +177,6 @@ impl Unknowns {
     }
 
     /// The stiffness or the mass `R'A R` of the unknowns from that of the free dofs: travels have none.
-    ///
-    /// # Errors
-    /// None for a matrix of the free dofs.
     pub fn congruent(&self, of_free: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
         Ok(match &self.on_faces {
             Some(on_faces) => of_free.congruent(&on_faces.rows)?.with_empty(self.pressed.len()),
@@ -225,18 +219,12 @@ impl Unknowns {
     }
 
     /// The stiffness of the unknowns with a spring on each pressed obstacle, as stiff as the stiffest dof.
-    ///
-    /// # Errors
-    /// None for a stiffness of the unknowns.
     pub fn on_springs(&self, stiffness: &SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
         let spring = stiffness.diagonal().into_iter().fold(0.0, f64::max);
         self.with_travels(stiffness, |_| spring)
     }
 
     /// A matrix of the unknowns with a diagonal entry for the travel of each obstacle.
-    ///
-    /// # Errors
-    /// None for a matrix of the unknowns.
     pub fn with_travels(
         &self,
         matrix: &SymmetricMatrix,

@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use super::loads_in_time::NodalLoads;
-use super::moving_supports::MovingSupports;
+use super::moving_supports::{MovingSupports, NodalLoads};
 use crate::error::{Error, nearly};
 use crate::fem::Formulation;
 use crate::fem::assembly::{MassForm, free_mass, internal_force, least_over_lumped, stiffness};
@@ -148,8 +147,14 @@ impl Scene {
         }
         let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
         let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
-        let name = scheme.name();
-        let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
+        let gains = |name: &str| {
+            let message = format!(
+                "the scheme `{name}` can gain energy at every impact: it is for comparison only; take `fox-goodwin` or \
+                 `contact-stabilised` for answers"
+            );
+            Warning::new("gains-energy", message)
+        };
+        let warnings = scheme.gains_energy().then(|| gains(scheme.name())).into_iter().collect();
         let windows = [WINDOW * crossing_time(model).unwrap_or(0.0), PEAK_CELLS * wave_time(model.body())];
         let frames = spec.frames;
         Ok(Some(Dynamics { problem, scheme, step, steps, frames, windows, watched, supports, obstacles, warnings }))
@@ -262,9 +267,6 @@ impl Dynamics {
     /// Schemes of Newmark's kind take the acceleration a at the end of the step, others its mean over the step. So
     /// contact forces, reactions and loads add up to the change of momentum. Before the first step, and between a
     /// resume and the next step, this balance does not exist, and the supports are left out.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Length`] for an integrator of another model.
     pub fn resultants(&self, model: &Model, integrator: &Integrator) -> Result<Vec<Resultant>, Error> {
         let multiplier = &integrator.state().multiplier;
         let [found, expected] = [integrator.problem(), &self.problem].map(|problem| problem.statics().dofs());
@@ -287,9 +289,6 @@ impl Dynamics {
     }
 
     /// The model with its obstacles where they are at time `time` of the motion.
-    ///
-    /// # Errors
-    /// As [`Model::with_moved_obstacles`].
     pub fn model_at(&self, model: &Arc<Model>, time: f64) -> Result<Arc<Model>, Error> {
         if self.obstacles.is_empty() {
             return Ok(model.clone());

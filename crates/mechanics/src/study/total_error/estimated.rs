@@ -3,16 +3,15 @@
 
 use std::sync::Arc;
 
-use signorini_qp as qp;
-
 use super::found::{Bound, Level, LevelKind, Search as Given, TotalError};
 use super::goal::{Answering, Ended, PER_UNKNOWN, marked, shortage};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::bisection::Tetrahedra;
-use crate::scene::answers::depths::Depths;
+use crate::scene::answers::beside_nodes::Depths;
 use crate::scene::{Answer, Model, Scene};
 use crate::study::{ModelSize, Status};
+use signorini_qp as qp;
 use signorini_qp::{Settings, solve};
 
 /// The share of the total error allowed for the algebraic error: the errors are nearly orthogonal, so that it adds half

@@ -3,15 +3,14 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use serde::Serialize;
-use signorini_qp::{Settings, Solution};
-
 use super::goal::{Ended, TotalErrorGoal};
 use crate::continuum::ContinuumAnswer;
 use crate::error::Error;
 use crate::fem::ElementKind;
-use crate::scene::{Answer, Model, Scene};
-use crate::study::{AnswerWarning, ModelSize, Status};
+use crate::scene::{Answer, Model, Scene, Warning};
+use crate::study::{ModelSize, Status};
+use serde::Serialize;
+use signorini_qp::{Settings, Solution};
 
 /// A relative error against the continuum, as reports give it, with the statement of how much it may be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -175,7 +174,7 @@ pub struct Guarantee {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last_mesh: Option<JudgedMesh>,
     /// Warnings about the answer on the scene's own mesh that no finer mesh settles.
-    pub warnings: Vec<AnswerWarning>,
+    pub warnings: Vec<Warning>,
     /// Triangles or tetrahedra of the next mesh, if it was not made.
     #[serde(rename = "next_triangles", skip_serializing_if = "Option::is_none")]
     pub next_elements: Option<usize>,

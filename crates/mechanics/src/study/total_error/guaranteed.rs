@@ -3,19 +3,17 @@
 
 use std::sync::Arc;
 
-use signorini_qp as qp;
-use signorini_qp::{Settings, Solution, dot, solve};
-
-use super::foresight::Foresight;
 use super::found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, Search as Given, TotalError};
-use super::goal::{Ended, PER_UNKNOWN, shortage};
+use super::goal::{Ended, LEAST, MARKED, PER_UNKNOWN, marked, shortage};
 use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use crate::error::Error;
 use crate::fem::ElementKind;
 use crate::fem::assembly::internal_force;
-use crate::scene::Answer;
+use crate::scene::{Answer, Scene, Warning};
 use crate::study::warnings::{check_motion, of_refined};
-use crate::study::{AnswerWarning, ModelSize, Status};
+use crate::study::{ModelSize, Status};
+use signorini_qp as qp;
+use signorini_qp::{Method, Settings, Solution, dot, solve};
 
 /// Times that the simplices at obstacles are refined before a body counts as held by nothing. On a coarse mesh the rows
 /// of the stress problem, whose gaps are means, may stay open where the body touches.
@@ -68,9 +66,6 @@ fn on_last_mesh(
 
 /// The distance of an answer on the last mesh from the displacement of the bound, and its own length, in the energy
 /// norm of the body.
-///
-/// # Errors
-/// None for an answer on that mesh.
 pub(super) fn compared(answer: &Answer, of_bound: &ContinuumAnswer) -> Result<[f64; 2], Error> {
     let body = answer.model().body();
     // Stresses without strain do not belong to the norm.
@@ -211,7 +206,7 @@ impl Search<'_> {
     }
 
     /// The answer on the scene's own mesh and its warnings; `None` without an answer.
-    fn own_answer(&self) -> Result<Option<(Answer, Vec<AnswerWarning>)>, Error> {
+    fn own_answer(&self) -> Result<Option<(Answer, Vec<Warning>)>, Error> {
         let Ok(solution) = solve(self.given.model.problem(), &self.given.settings.clone().exactly()) else {
             return Ok(None);
         };
@@ -266,4 +261,148 @@ pub(super) fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
             _ => Strain::Varying(own),
         }
     })
+}
+
+/// The share of the square of the error that is refined at once. Several small steps grade the mesh better than a large
+/// one.
+const AT_ONCE: f64 = 0.2;
+
+/// A mesh that is not expected to meet the goal has more than this many times the simplices of the one before.
+const GROWN: f64 = 1.9;
+
+/// A simplex with at least this share of the size of the one before is whole: new nodes on circles change sizes a
+/// little.
+const WHOLE: f64 = 0.9;
+
+/// The logarithm of the measured reduction of the error over that of the expected one lies in this range, or the last
+/// step is no example.
+const RESPONSE: [f64; 2] = [0.5, 2.0];
+
+/// How shares answer to refinement, as the meshes so far show it.
+#[derive(Debug, Default)]
+pub(super) struct Foresight {
+    /// For each node the power of the size of the simplices at it with which their shares fall: small at a
+    /// singularity.
+    powers: Vec<f64>,
+    /// For each simplex, the share and the size of the simplex of the last mesh of which it is a piece.
+    wholes: Vec<[f64; 2]>,
+    /// The bound on the last mesh, and the share of its square that was expected to be left on this one.
+    before: Option<[f64; 2]>,
+}
+
+impl Foresight {
+    /// A finer mesh, for a bound that meets the goal or for one that is as small as [`GROWN`] allows, and the nodes of
+    /// it that are expected to touch.
+    pub fn finer(&mut self, bracket: &Bracket, goal: f64) -> (SimplexMesh, Vec<bool>) {
+        let (problem, mesh, bound) = (bracket.problem, bracket.mesh, bracket.bound());
+        let (mut shares, mut touching) = (bracket.shares.clone(), bracket.touching());
+        let (whole, smooth) = (bracket.distance(), smooth(mesh));
+        self.learn(mesh, &shares);
+        let response = self.before.map_or(1.0, |[before, left]| 2.0 * (bound / before).ln() / left.ln());
+        let response = if response.is_nan() { 1.0 } else { response.clamp(RESPONSE[0], RESPONSE[1]) };
+        self.wholes = (0..mesh.count()).map(|cell| [shares[cell], mesh.simplex(cell).size()]).collect();
+        let (mut finer, mut wanted) = (mesh.clone(), 1.0 - (goal / bound).powi(2));
+        loop {
+            let next = problem.refined(&finer, &marked(&shares, wanted.clamp(LEAST, AT_ONCE)));
+            touching = next.carried(touching, |one, other| one && other);
+            self.powers = next.carried(std::mem::take(&mut self.powers), f64::max);
+            let of_piece = |cell: usize| {
+                let power = next.cell(cell).iter().map(|&node| self.powers[node]).fold(smooth, f64::min);
+                let whole = next.wholes[cell];
+                shares[whole] * (next.simplex(cell).size() / finer.simplex(whole).size()).powf(power)
+            };
+            shares = (0..next.count()).map(of_piece).collect();
+            self.wholes = next.wholes.iter().map(|&whole| self.wholes[whole]).collect();
+            let left = shares.iter().sum::<f64>() / whole;
+            wanted = 1.0 - (goal / bound).powi(2) / left.powf(response);
+            let is_enough = next.count() as f64 > GROWN * mesh.count() as f64 || next.count() == finer.count();
+            finer = next;
+            if wanted <= 0.0 || is_enough {
+                self.before = Some([bound, left]);
+                return (finer, touching);
+            }
+        }
+    }
+
+    /// Takes the powers at the nodes of the simplices that were refined last from the shares of their pieces. A node
+    /// has the largest: at a singularity all of them are small.
+    fn learn(&mut self, mesh: &SimplexMesh, shares: &[f64]) {
+        let (smooth, mut found) = (smooth(mesh), vec![-1.0_f64; mesh.nodes.len()]);
+        for (cell, [share, size]) in self.wholes.iter().enumerate() {
+            let power = (shares[cell] / share).ln() / (mesh.simplex(cell).size() / size).ln();
+            // The power of a simplex that was not refined has no meaning.
+            if mesh.simplex(cell).size() < WHOLE * size && !power.is_nan() {
+                mesh.cell(cell).iter().for_each(|&node| found[node] = found[node].max(power.clamp(0.0, smooth)));
+            }
+        }
+        self.powers.resize(mesh.nodes.len(), smooth);
+        self.powers.iter_mut().zip(found).filter(|pair| pair.1 >= 0.0).for_each(|(power, found)| *power = found);
+    }
+}
+
+/// The power where stresses are smooth: the square of the error of linear stresses falls with the fourth power of the
+/// length, on the volume.
+fn smooth(mesh: &SimplexMesh) -> f64 {
+    1.0 + 4.0 / mesh.dimension as f64
+}
+
+/// The numbers of one mesh for a study of the guarantee: bounds from both sides, with the answer that they bound.
+#[derive(Clone, Debug)]
+pub struct Examined {
+    /// `[D(tau), J(v)]`, in force times length: the exact potential energy lies between them.
+    pub energies: [f64; 2],
+    /// The bound on |u - v|.
+    pub bound: f64,
+    /// |v|: the length of the displacement in the energy norm.
+    pub norm: f64,
+    /// The sum of the contact forces of the answer v on this mesh, in force.
+    pub force: f64,
+    /// The ends `[low, high]`, in force, between which the exact contact force lies.
+    pub force_interval: Option<[f64; 2]>,
+    /// The answer w on the scene's own mesh, in the energy norm, whose unit is the root of force times length: `[an
+    /// upper bound of |u - w|,
+    /// |v - w|, |w|]`.
+    pub own: [f64; 3],
+    /// |v - w| with the answer w of the scene by finite elements on the last mesh; `None` on the others.
+    pub from_elements: Option<f64>,
+    /// Unknowns of v.
+    pub dofs: usize,
+}
+
+impl Examined {
+    /// Brackets on the mesh of a scene and on `levels` finer ones, from the first to the last.
+    ///
+    /// # Errors
+    /// Those of the total error; [`Error::Scene`] for a scene without a guaranteed bound.
+    pub fn of(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
+        let model = Arc::new(scene.build()?);
+        let (problem, mut mesh) = scene.continuum_problem(&model)?;
+        let settings = Settings::with_method(Method::ActiveSet);
+        let own = Answer::of_any_size(model.clone(), &solve(model.problem(), &settings)?)?;
+        let mut found = Vec::with_capacity(levels + 1);
+        for level in 0..=levels {
+            let bracket = Bracket::new(&problem, &mesh, None, &settings)?;
+            let judged = judged(&own, &bracket);
+            let from_elements = || -> Result<f64, Error> {
+                let of_bound = bracket.answer();
+                let last = Arc::new(scene.on_last_mesh(&model, &of_bound)?);
+                let solution = solve(last.problem(), &settings)?;
+                Ok(compared(&Answer::of_any_size(last, &solution)?, &of_bound)?[0])
+            };
+            found.push(Examined {
+                energies: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
+                bound: (2.0 * bracket.distance().max(0.0)).sqrt(),
+                norm: bracket.energy.sqrt(),
+                force: bracket.force(),
+                force_interval: bracket.force_interval(0.0)?,
+                own: [judged.bound, judged.from_displacement, judged.norm],
+                from_elements: if level == levels { Some(from_elements()?) } else { None },
+                dofs: bracket.primal.unknowns.free,
+            });
+            if level < levels {
+                mesh = mesh.refined(&marked(&bracket.shares, MARKED), |_, middle| middle);
+            }
+        }
+        Ok(found)
+    }
 }

@@ -2,16 +2,14 @@
 //! else estimated.
 
 mod estimated;
-mod examined;
-mod foresight;
 mod found;
 mod goal;
 mod guaranteed;
 
 pub use crate::continuum::ContinuumAnswer;
-pub use examined::Examined;
 pub use found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, TotalError};
 pub use goal::{Ended, TotalErrorGoal};
+pub use guaranteed::Examined;
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -1,15 +1,12 @@
-//! The mesh of a body: elements of groups, their nodes, their sets.
+//! The mesh of a body: elements of groups, their nodes, their sets, its surfaces as boundaries.
 
-use super::card::Place;
 use super::content::Deck;
+use super::source::{Place, key};
 use crate::error::{Error, nearly};
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
+use crate::fem::element::ElementKind;
 use crate::fem::formulation::positive;
-use crate::fem::mesh::{ElementGroup, Mesh, NodeNames, fail};
-
-/// A node of a deck is outside the plane if it is farther from it than this times the size of the body: far above the
-/// rounding of a mesh generator and far below the size of any cell.
-const FLAT: f64 = 1e-9;
+use crate::fem::mesh::faces::chained;
+use crate::fem::mesh::{Boundary, ElementGroup, Mesh, NodeNames, fail, flatten, unfit};
 
 impl Deck {
     /// The mesh of the elements in the groups of these names, element sets or bodies, or, without a name, of all
@@ -33,14 +30,23 @@ impl Deck {
             nodes.push(self.at[place].map(|value| value * scale));
             places.push(place);
         }
-        if kind.dimension() < 3 {
-            self.flatten(&places, &mut nodes)?;
-        }
+        flatten(kind.dimension(), &mut nodes).map_err(|(node, _)| {
+            let place = places[node];
+            let (number, z) = (self.nodes.numbers[place], self.at[place][2]);
+            let message = format!(
+                "node {number} has z = {z}, but the first node of the body has another; a plane body lies in z = const"
+            );
+            self.source.fault(self.node_places[place], message)
+        })?;
         let mut connectivity = Vec::with_capacity(elements.len() * kind.nodes());
         for &element in &elements {
             connectivity.extend(self.nodes_of(element).iter().filter_map(|&node| numbers[node]));
         }
-        self.check(kind, &elements, &nodes, &connectivity)?;
+        if let Some((element, reason)) = unfit(kind, &nodes, &connectivity) {
+            let number = self.elements.numbers[elements[element]];
+            let place = self.element_list[elements[element]].place;
+            return Err(self.source.fault(place, format!("element {number}: {reason}")));
+        }
         let mesh = Mesh::new(nodes, kind, connectivity, Vec::new())?
             .with_groups(self.groups(&elements))
             .with_node_names(self.names(&places, &numbers))
@@ -94,46 +100,6 @@ impl Deck {
         }
     }
 
-    /// Checks that the nodes lie in a plane z = const, and puts them at 0 there.
-    fn flatten(&self, places: &[usize], nodes: &mut [[f64; 3]]) -> Result<(), Error> {
-        let Some(&first) = nodes.first() else { return Ok(()) };
-        let away = |at: &[f64; 3], axis: usize| (at[axis] - first[axis]).abs();
-        let size = nodes.iter().flat_map(|at| [0, 1, 2].map(|axis| away(at, axis))).fold(0.0, f64::max);
-        for (at, &place) in nodes.iter_mut().zip(places) {
-            if away(at, 2) > FLAT * size {
-                let (number, z) = (self.nodes.numbers[place], self.at[place][2]);
-                let message = format!(
-                    "node {number} has z = {z}, but the first node of the body has another; a plane body lies in z = const"
-                );
-                return Err(self.source.fault(self.node_places[place], message));
-            }
-            at[2] = 0.0;
-        }
-        Ok(())
-    }
-
-    /// Checks that no element of a body of the deck is inverted or without volume.
-    fn check(
-        &self,
-        kind: ElementKind,
-        elements: &[usize],
-        nodes: &[[f64; 3]],
-        connectivity: &[usize],
-    ) -> Result<(), Error> {
-        let table = Tabulated::new(kind.reference(), Rule::Straight);
-        for (&element, own) in elements.iter().zip(connectivity.chunks_exact(kind.nodes())) {
-            let mut coordinates = [[0.0; 3]; MAX_NODES];
-            for (at, &node) in coordinates.iter_mut().zip(own) {
-                *at = nodes[node];
-            }
-            if let Err(reason) = Cell::new(kind.reference(), &coordinates).check(&table) {
-                let number = self.elements.numbers[element];
-                return Err(self.source.fault(self.element_list[element].place, format!("element {number}: {reason}")));
-            }
-        }
-        Ok(())
-    }
-
     /// The element sets that have some of these elements, given in increasing order.
     fn groups(&self, elements: &[usize]) -> Vec<ElementGroup> {
         let own = |members: &[usize]| members.iter().filter_map(|member| elements.binary_search(member).ok()).collect();
@@ -161,5 +127,55 @@ impl Deck {
     pub fn place_of_body(&self, body: usize) -> Place {
         let first = self.body_of_element.iter().position(|&own| own == body);
         first.map_or(Place::default(), |element| self.element_list[element].place)
+    }
+}
+
+impl Deck {
+    /// Returns `true` if a line of one of these cards names a surface.
+    fn is_in(&self, keywords: &[&str], surface: &str) -> bool {
+        let cards = self.source.cards.iter().filter(|card| keywords.iter().any(|keyword| card.is(keyword)));
+        cards.flat_map(|card| &card.lines).any(|line| {
+            let mut fields = self.source.fields(line);
+            std::iter::from_fn(|| fields.next()).any(|field| key(&String::from_utf8_lossy(field)) == key(surface))
+        })
+    }
+
+    /// The mesh with the surfaces that have facets on it; `elements` are its elements in the deck, increasing. Of a
+    /// surface under a pressure only the faces on the outside are kept.
+    pub(super) fn with_boundaries(&self, mut mesh: Mesh, elements: &[usize]) -> Result<Mesh, Error> {
+        let (facet, faces) = (mesh.kind_of(0).facet(), mesh.kind_of(0).reference().faces);
+        let mut boundaries = Vec::new();
+        for surface in &self.surfaces.all {
+            let boundary_of = |all: &[(usize, usize)]| {
+                let own =
+                    all.iter().filter_map(|&(element, face)| Some((elements.binary_search(&element).ok()?, face)));
+                let nodes = own.flat_map(|(element, face)| faces[face].iter().map(move |&local| (element, local)));
+                let connectivity: Vec<usize> = nodes.map(|(element, local)| mesh.element(element)[local]).collect();
+                Boundary::new(surface.name.as_str(), facet, connectivity)
+            };
+            let mut boundary = boundary_of(&surface.faces);
+            if let Some(within) = mesh.inner_facet(&boundary) {
+                let is_pressed = self.pressures.iter().any(|pressure| pressure.surface == surface.name);
+                if self.is_in(&["CONTACTPAIR", "TIE"], &surface.name) {
+                    let mut own = surface.faces.iter().filter(|face| elements.binary_search(&face.0).is_ok());
+                    let &(element, face) = own.nth(within).unwrap_or(&surface.faces[0]);
+                    let message = format!(
+                        "face {} of element {} in the surface `{}` lies within the body: two elements share it",
+                        face + 1,
+                        self.elements.numbers[element],
+                        surface.name
+                    );
+                    return Err(self.source.fault(surface.place, message));
+                } else if !is_pressed && !self.is_in(&["DSLOAD"], &surface.name) {
+                    continue;
+                }
+                boundary = boundary_of(&self.outside_and_inside(surface).0);
+            }
+            if !boundary.connectivity.is_empty() {
+                boundaries.push(Boundary { connectivity: chained(facet, boundary.connectivity), ..boundary });
+            }
+        }
+        mesh.boundaries = boundaries;
+        Ok(mesh)
     }
 }

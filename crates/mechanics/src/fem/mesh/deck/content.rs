@@ -3,13 +3,9 @@
 use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
-use super::card::{Card, Place, key};
-
-use super::kinds::{DeckElementType, Space, element_type, refusal};
-use super::sets::{Numbered, Sets};
-use super::source::Source;
-use super::springs::{SpringElement, SpringElements, SpringType};
-use super::surfaces::{FacePressure, Surfaces};
+use super::kinds::{DeckElementType, Space, SpringElement, SpringElements, SpringType, element_type, refusal};
+use super::sets::{FacePressure, Numbered, Sets, Surfaces};
+use super::source::{Card, Place, Source, key};
 use crate::error::Error;
 use crate::fem::element::ElementKind;
 use crate::fem::geometry::{length, minus};

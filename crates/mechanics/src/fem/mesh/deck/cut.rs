@@ -2,10 +2,11 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-use super::card::Card;
 use super::content::Deck;
-use super::surfaces::Surface;
+use super::sets::Surface;
+use super::source::Card;
 use crate::error::Error;
+use crate::fem::geometry::sorted;
 use crate::fem::mesh::MAX_NODES;
 
 impl Deck {
@@ -34,8 +35,7 @@ impl Deck {
         let mut faces_of: HashMap<usize, Vec<Vec<usize>>> = HashMap::new();
         for &element in &around {
             for face in 0..self.element_list[element].kind.reference().faces.len() {
-                let mut nodes: Vec<usize> = self.nodes_of_face((element, face)).collect();
-                nodes.sort_unstable();
+                let nodes = sorted(self.nodes_of_face((element, face)));
                 sharing.entry(nodes.clone()).or_default().push((element, face));
                 faces_of.entry(element).or_default().push(nodes);
             }
@@ -43,8 +43,7 @@ impl Deck {
         let mut behind = Vec::with_capacity(faces.len());
         let mut edge: HashSet<Vec<usize>> = HashSet::with_capacity(faces.len());
         for &(element, face) in &faces {
-            let mut nodes: Vec<usize> = self.nodes_of_face((element, face)).collect();
-            nodes.sort_unstable();
+            let nodes = sorted(self.nodes_of_face((element, face)));
             let Some(&other) = sharing[&nodes].iter().find(|other| other.0 != element) else {
                 let number = self.elements.numbers[element];
                 let message = format!(

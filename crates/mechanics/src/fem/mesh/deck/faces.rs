@@ -1,11 +1,14 @@
-//! The faces of the surfaces of a deck, and those that pressures act on.
+//! The faces of the surfaces of a deck, those that pressures act on, their nodes and areas.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::f64::consts::TAU;
 
-use super::card::{Card, Place, key};
 use super::content::Deck;
-use super::surfaces::{FacePressure, Surface};
+use super::sets::{FacePressure, Surface};
+use super::source::{Card, Place, key};
 use crate::error::{Error, nearly};
+use crate::fem::element::{Cell, Tabulated};
+use crate::fem::geometry::{length, sorted};
 
 /// An element and its face, from 0.
 type Face = (usize, usize);
@@ -75,9 +78,8 @@ impl Deck {
         for element in 0..self.elements.len() {
             for face in 0..self.element_list[element].kind.reference().faces.len() {
                 if self.nodes_of_face((element, face)).all(|node| marked[node]) {
-                    let mut key: Vec<usize> = self.nodes_of_face((element, face)).collect();
-                    key.sort_unstable();
-                    found.entry(key).and_modify(|face| *face = None).or_insert(Some((element, face)));
+                    let nodes = sorted(self.nodes_of_face((element, face)));
+                    found.entry(nodes).and_modify(|face| *face = None).or_insert(Some((element, face)));
                 }
             }
         }
@@ -226,5 +228,39 @@ impl Deck {
             let shown: String = name.chars().take(80).collect();
             format!("there is no surface `{shown}`{meant}")
         })
+    }
+}
+
+impl Deck {
+    /// The nodes of a surface, by their places, increasing.
+    pub fn nodes_of_surface(&self, surface: &Surface) -> Vec<usize> {
+        let of_faces = surface.faces.iter().flat_map(|&face| self.nodes_of_face(face));
+        of_faces.chain(surface.bare.iter().copied()).collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
+    /// The nodes of faces, each with the integrals of its shape function and of that times the outward normal: an area,
+    /// a length in the plane, that of the full circle in an axisymmetric model. At a corner of a quadratic face it may
+    /// be zero or negative.
+    pub fn areas(&self, faces: &[(usize, usize)]) -> BTreeMap<usize, (f64, [f64; 3])> {
+        let mut areas: BTreeMap<usize, (f64, [f64; 3])> = BTreeMap::new();
+        for &face in faces {
+            let reference = self.element_list[face.0].kind.facet().reference();
+            let nodes: Vec<usize> = self.nodes_of_face(face).collect();
+            let cell = Cell::at(reference, |local| self.at[nodes[local]]);
+            let unit = cell.unit().powi(reference.dimension as i32);
+            let revolved = self.is_axisymmetric();
+            let rule = if revolved { reference.quadrature_revolved } else { reference.quadrature };
+            for point in &Tabulated::with_rule(reference, rule.to_vec()).points {
+                let radius: f64 = nodes.iter().zip(point.shape).map(|(&node, share)| share * self.at[node][0]).sum();
+                let around = if revolved { TAU * radius } else { 1.0 };
+                let vector = cell.area_vector(&point.derivative).map(|part| around * part * point.weight * unit);
+                for (&node, share) in nodes.iter().zip(point.shape) {
+                    let (area, outward) = areas.entry(node).or_default();
+                    *area += share * length(vector);
+                    outward.iter_mut().zip(vector).for_each(|(sum, part)| *sum += share * part);
+                }
+            }
+        }
+        areas
     }
 }

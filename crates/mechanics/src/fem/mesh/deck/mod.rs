@@ -8,23 +8,15 @@
 //! # Source
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, chapter "Input deck format".
 
-mod areas;
 mod body;
-mod boundaries;
-mod card;
 mod content;
 mod cut;
 mod faces;
-mod fields;
 mod kinds;
 mod sets;
 mod source;
-mod springs;
-mod surfaces;
 
-pub(crate) use card::{Card, Line, Place, key};
 pub(crate) use content::{Deck, DeckElement};
-pub(crate) use fields::Fields;
-pub(crate) use kinds::Space;
-pub(crate) use springs::SpringType;
-pub(crate) use surfaces::Surface;
+pub(crate) use kinds::{Space, SpringType};
+pub(crate) use sets::Surface;
+pub(crate) use source::{Card, Fields, Line, Place, key};

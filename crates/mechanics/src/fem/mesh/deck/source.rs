@@ -1,11 +1,12 @@
 //! The lines of a deck and of the files that it includes, as cards: a keyword with its parameters and its data lines.
 
 use std::collections::HashSet;
+use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::sync::OnceLock;
 
-use super::card::{Card, Line, Place, key};
 use crate::error::Error;
 use signorini_linear as linear;
 use signorini_linear::file::read_capped;
@@ -199,4 +200,205 @@ impl Reader<'_> {
 fn is_parameter(text: &[u8]) -> bool {
     let first = String::from_utf8_lossy(text.split(|&byte| byte == b',').next().unwrap_or_default()).into_owned();
     !text.starts_with(b"*") && (first.contains('=') || FLAGS.contains(&key(&first).as_str()))
+}
+
+/// A line of one of the files of a deck, from 1; files are numbered from 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct Place {
+    pub file: u32,
+    pub line: u32,
+}
+
+/// A data line: its place, and its bytes in its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Line {
+    pub place: Place,
+    pub start: usize,
+    pub end: usize,
+}
+
+/// A keyword with its parameters and its data lines.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Card {
+    pub place: Place,
+    /// As it is written in messages: `*NODE PRINT`.
+    pub name: String,
+    /// The keyword in capitals, without blanks: `NODEPRINT`.
+    key: String,
+    /// In capitals, with the value as it is written; `None` without one.
+    pub parameters: Vec<(String, Option<String>)>,
+    pub lines: Vec<Line>,
+    /// The step in which it stands, from 1; 0 before all steps.
+    pub step: usize,
+}
+
+/// A name in capitals, without blanks: names that differ only so are one name.
+pub(crate) fn key(name: &str) -> String {
+    name.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_uppercase).collect()
+}
+
+impl Card {
+    /// A card without data lines, from its text: `*KEYWORD, NAME=VALUE, ...`.
+    pub(super) fn of(place: Place, text: &str) -> Self {
+        let mut parts = text.split(',').map(str::trim);
+        let name = parts.next().unwrap_or_default();
+        let words: Vec<String> = name.split_whitespace().map(str::to_uppercase).collect();
+        let parameter = |part: &str| match part.split_once('=') {
+            Some((name, value)) => (key(name), Some(value.trim().trim_matches('"').trim().to_string())),
+            None => (key(part), None),
+        };
+        let parameters = parts.filter(|part| !part.is_empty()).map(parameter).collect();
+        Card {
+            place,
+            name: words.join(" "),
+            key: key(name.trim_start_matches('*')),
+            parameters,
+            lines: Vec::new(),
+            step: 0,
+        }
+    }
+
+    /// Returns `true` for the card of this keyword, given in capitals.
+    pub fn is(&self, keyword: &str) -> bool {
+        self.key == keyword || self.key == key(keyword)
+    }
+
+    pub fn has(&self, name: &str) -> bool {
+        self.parameters.iter().any(|(own, _)| own == name)
+    }
+
+    pub fn value(&self, name: &str) -> Option<&str> {
+        self.parameters.iter().find(|(own, _)| own == name).and_then(|(_, value)| value.as_deref())
+    }
+
+    /// Returns `true` if it removes those before it.
+    pub fn is_new(&self) -> bool {
+        self.says("OP", "NEW")
+    }
+
+    /// Returns `true` if a parameter has this value, given in capitals.
+    pub fn says(&self, name: &str, value: &str) -> bool {
+        self.value(name).is_some_and(|own| key(own) == value)
+    }
+}
+
+/// The fields of a data line, one after the other.
+#[derive(Clone)]
+pub(crate) struct Fields<'a> {
+    source: &'a Source,
+    pub place: Place,
+    /// `None` behind the last field.
+    rest: Option<&'a [u8]>,
+}
+
+/// Longer fields are cut in messages.
+const SHOWN: usize = 40;
+
+/// A field as it is quoted in messages.
+fn shown(field: &[u8]) -> String {
+    let text: String = String::from_utf8_lossy(field).chars().filter(|c| !c.is_control()).collect();
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text,
+    }
+}
+
+impl Source {
+    /// The fields of a data line; a comma at its end begins no field.
+    pub fn fields(&self, line: &Line) -> Fields<'_> {
+        let text = self.text(line);
+        let text = text.strip_suffix(b",").unwrap_or(text);
+        Fields { source: self, place: line.place, rest: Some(text) }
+    }
+}
+
+impl<'a> Fields<'a> {
+    /// The next field without blanks around it; empty fields too.
+    pub fn next(&mut self) -> Option<&'a [u8]> {
+        let rest = self.rest?;
+        let end = rest.iter().position(|&byte| byte == b',');
+        self.rest = end.map(|end| &rest[end + 1..]);
+        Some(rest[..end.unwrap_or(rest.len())].trim_ascii())
+    }
+
+    /// The next field, as a name or the like; `None` if it is empty or missing.
+    pub fn text(&mut self) -> Option<String> {
+        self.next().filter(|field| !field.is_empty()).map(|field| String::from_utf8_lossy(field).into_owned())
+    }
+
+    /// The next field as a whole number that is not negative.
+    pub fn whole(&mut self, what: impl Display) -> Result<usize, Error> {
+        let field = self.next().filter(|field| !field.is_empty());
+        let Some(field) = field else { return Err(self.fault(format!("{what} is missing"))) };
+        number(field).ok_or_else(|| self.wrong(field, what, "a whole number"))
+    }
+
+    /// The next field as a finite number; 0 if it is empty or missing.
+    pub fn finite_or_zero(&mut self, what: impl Display) -> Result<f64, Error> {
+        match self.clone().next() {
+            Some(field) if !field.is_empty() => self.finite(what),
+            _ => {
+                self.next();
+                Ok(0.0)
+            }
+        }
+    }
+
+    pub fn finite(&mut self, what: impl Display) -> Result<f64, Error> {
+        let field = self.next().filter(|field| !field.is_empty());
+        let Some(field) = field else { return Err(self.fault(format!("{what} is missing"))) };
+        match number(field).or_else(|| number(&with_exponent(field))) {
+            Some(value) if f64::is_finite(value) => Ok(value),
+            _ => Err(self.wrong(field, what, "a finite number")),
+        }
+    }
+
+    /// Refuses further fields.
+    pub fn end(&mut self) -> Result<(), Error> {
+        while let Some(field) = self.next() {
+            if !field.is_empty() {
+                let field = shown(field);
+                return Err(self
+                    .fault(format!("`{field}` follows the last value of this line; remove it, or a value before it")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Passes over further fields, as CalculiX does; the first line with some is noted.
+    pub fn pass_over(&mut self) {
+        if let Some(field) = std::iter::from_fn(|| self.next()).find(|field| !field.is_empty()) {
+            let message =
+                format!("`{}` follows the last value of this line; such values are passed over", shown(field));
+            self.source.longer.get_or_init(|| (self.place, message));
+        }
+    }
+
+    pub fn fault(&self, message: impl Into<String>) -> Error {
+        self.source.fault(self.place, message)
+    }
+
+    fn wrong(&self, field: &[u8], what: impl Display, allowed: &str) -> Error {
+        self.fault(format!("{what} is `{}`; it must be {allowed}", shown(field)))
+    }
+}
+
+/// A number as text; also one that is only part of a field in other languages, such as `1.` and `.3`.
+fn number<T: FromStr>(field: &[u8]) -> Option<T> {
+    std::str::from_utf8(field).ok().and_then(|text| text.parse().ok())
+}
+
+/// A number of Fortran with the letter of its exponent: `1d5` and `1+5` are `1e5`.
+fn with_exponent(field: &[u8]) -> Vec<u8> {
+    let mut text = Vec::with_capacity(field.len() + 1);
+    for &byte in field {
+        match byte {
+            b'd' | b'D' => text.push(b'e'),
+            b'+' | b'-' if text.last().is_some_and(|last| last.is_ascii_digit() || *last == b'.') => {
+                text.extend([b'e', byte]);
+            }
+            _ => text.push(byte),
+        }
+    }
+    text
 }

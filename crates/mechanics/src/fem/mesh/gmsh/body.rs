@@ -1,16 +1,14 @@
-//! The elements of the body: their selection, kind, plane and orientation.
+//! The elements of the body: their selection, kind, plane, orientation, boundaries; groups that are glued by shared
+//! nodes.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::cells::CellType;
-use super::file::{Element, GmshFile};
+use super::content::{CellType, Element, GmshFile};
 use crate::error::{Error, nearly};
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
-use crate::fem::mesh::{ElementGroup, Mesh, fail};
-
-/// A node of a mesh file is outside the plane if it is farther from it than this times the size of the body: far above
-/// the rounding of Gmsh and far below the size of any cell.
-const FLAT: f64 = 1e-9;
+use crate::fem::element::ElementKind;
+use crate::fem::mesh::faces::chained;
+use crate::fem::mesh::{Boundary, ElementGroup, Mesh, fail, flatten, unfit};
+use signorini_linear::Forest;
 
 /// The number in the mesh of each node of the file, if it is in the body.
 pub(super) type Numbers = Vec<Option<usize>>;
@@ -58,60 +56,34 @@ impl<'a> Body<'a> {
     pub fn mesh(&self, file: &GmshFile, scale: f64) -> Result<(Mesh, Numbers), Error> {
         let mut used = vec![false; file.nodes.len()];
         self.elements.iter().flat_map(|element| element.nodes).for_each(|&node| used[node] = true);
-        let mut nodes = Vec::new();
-        let mut numbers: Numbers = vec![None; used.len()];
+        let (mut nodes, mut numbers): (Vec<[f64; 3]>, Numbers) = (Vec::new(), vec![None; used.len()]);
         for (place, at) in file.nodes.iter().enumerate().filter(|&(place, _)| used[place]) {
             numbers[place] = Some(nodes.len());
             nodes.push(at.map(|value| value * scale));
         }
-        self.flatten(file, &used, &mut nodes)?;
+        let dimension = self.kind.dimension();
+        flatten(dimension, &mut nodes).map_err(|(node, axis)| {
+            let place_of = |node: usize| numbers.iter().position(|number| *number == Some(node)).unwrap_or(0);
+            let [first, place] = [0, node].map(place_of);
+            let (tag, name) = (file.node_tags[place], ["x", "y", "z"][axis]);
+            let [others, found] = [first, place].map(|place| file.nodes[place][axis]);
+            let space = if dimension == 1 { "a bar lies along x" } else { "a plane body lies in z = const" };
+            let message = format!("node {tag} has {name} = {found}, but the first node has {others}; {space}");
+            file.fault(file.node_lines[place], message)
+        })?;
         let mut connectivity = Vec::with_capacity(self.elements.len() * self.kind.nodes());
         let order = self.kind.reference().gmsh_order;
         for element in &self.elements {
             connectivity.extend(order.iter().filter_map(|&place| numbers[element.nodes[place]]));
         }
-        if self.kind.dimension() < 3 {
+        if dimension < 3 {
             turn_if_clockwise(self.kind, &nodes, &mut connectivity);
         }
-        self.check(file, &nodes, &connectivity)?;
+        if let Some((element, reason)) = unfit(self.kind, &nodes, &connectivity) {
+            let Element { line, tag, .. } = self.elements[element];
+            return Err(file.fault(line, format!("element {tag}: {reason}")));
+        }
         Ok((Mesh::new(nodes, self.kind, connectivity, Vec::new())?.with_groups(self.groups.clone()), numbers))
-    }
-
-    /// Checks that the nodes lie in a plane z = const, or on a line along x, and puts them at 0 there.
-    fn flatten(&self, file: &GmshFile, used: &[bool], nodes: &mut [[f64; 3]]) -> Result<(), Error> {
-        let dimension = self.kind.dimension();
-        let Some(&first) = nodes.first() else { return Ok(()) };
-        let away = |at: &[f64; 3], axis: usize| (at[axis] - first[axis]).abs();
-        let size = nodes.iter().flat_map(|at| [0, 1, 2].map(|axis| away(at, axis))).fold(0.0, f64::max);
-        let places = (0..used.len()).filter(|&place| used[place]);
-        for (at, place) in nodes.iter_mut().zip(places) {
-            for axis in dimension..3 {
-                if away(at, axis) > FLAT * size {
-                    let (tag, found, name) = (file.node_tags[place], file.nodes[place][axis], ["x", "y", "z"][axis]);
-                    let others = used.iter().position(|used| *used).map_or(0.0, |first| file.nodes[first][axis]);
-                    let space = if dimension == 1 { "a bar lies along x" } else { "a plane body lies in z = const" };
-                    let message = format!("node {tag} has {name} = {found}, but the first node has {others}; {space}");
-                    return Err(file.fault(file.node_lines[place], message));
-                }
-                at[axis] = 0.0;
-            }
-        }
-        Ok(())
-    }
-
-    /// Checks that no element of the body in the file is inverted or without volume.
-    fn check(&self, file: &GmshFile, nodes: &[[f64; 3]], connectivity: &[usize]) -> Result<(), Error> {
-        let table = Tabulated::new(self.kind.reference(), Rule::Straight);
-        for (element, places) in self.elements.iter().zip(connectivity.chunks_exact(self.kind.nodes())) {
-            let mut coordinates = [[0.0; 3]; MAX_NODES];
-            for (at, &place) in coordinates.iter_mut().zip(places) {
-                *at = nodes[place];
-            }
-            if let Err(reason) = Cell::new(self.kind.reference(), &coordinates).check(&table) {
-                return Err(file.fault(element.line, format!("element {}: {reason}", element.tag)));
-            }
-        }
-        Ok(())
     }
 }
 
@@ -203,5 +175,115 @@ fn turn_if_clockwise(kind: ElementKind, nodes: &[[f64; 3]], connectivity: &mut [
         let start = if corners == 2 { 0 } else { 1 };
         element[start..corners].reverse();
         element[corners..].reverse();
+    }
+}
+
+/// The boundaries of `mesh`, in the order of the file. Facets of a group that are not faces of the body are left out if
+/// the body is a part of the file, and else an error of the file.
+pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool) -> Result<Vec<Boundary>, Error> {
+    let dimension = mesh.dimension() - 1;
+    let mut boundaries = Vec::new();
+    for (_, name) in file.names_in_use().into_iter().filter(|(other, _)| *other == dimension) {
+        let mut connectivity = Vec::new();
+        let mut known = HashSet::new();
+        let mut facets = facets(file, dimension, &name);
+        if is_part {
+            // Bodies of one file may have faces of different kinds.
+            facets.retain(|facet| facet.nodes.iter().all(|&node| numbers[node].is_some()));
+        }
+        let placed = Boundary::new(name.as_str(), mesh.kind_of(0).facet(), in_mesh(file, mesh, &facets, numbers)?);
+        let faces = mesh.faces_of(&placed);
+        for (facet, face) in facets.iter().zip(faces) {
+            match face {
+                // Version 2.2 writes an element once for each of its groups.
+                Some(face) if known.insert(face) => connectivity.extend(nodes_of(mesh, face)),
+                None if !is_part => {
+                    let message =
+                        format!("element {} of the physical group `{name}` is not a face of the body", facet.tag);
+                    return Err(file.fault(facet.line, message));
+                }
+                _ => {}
+            }
+        }
+        if !connectivity.is_empty() {
+            let kind = mesh.kind_of(0).facet();
+            boundaries.push(Boundary::new(name, kind, chained(kind, connectivity)));
+        }
+    }
+    Ok(boundaries)
+}
+
+/// The elements of all groups of this dimension and name.
+fn facets<'a>(file: &'a GmshFile, dimension: usize, name: &str) -> Vec<Element<'a>> {
+    let blocks = file.blocks.iter().filter(|block| block.cell.dimension == dimension);
+    let named = blocks.filter(|block| block.groups.iter().any(|&tag| file.name_of(dimension, tag) == name));
+    named.flat_map(|block| file.elements_of(block)).collect()
+}
+
+/// The nodes of facets in the numbers of the mesh; a node outside the body gets a number larger than the last.
+fn in_mesh(file: &GmshFile, mesh: &Mesh, facets: &[Element], numbers: &Numbers) -> Result<Vec<usize>, Error> {
+    let wanted = mesh.kind_of(0).facet().nodes();
+    let mut nodes = Vec::with_capacity(facets.len() * wanted);
+    for facet in facets {
+        if facet.nodes.len() != wanted {
+            let message = format!(
+                "element {} is one of {}, but the faces of {} have {wanted} nodes",
+                facet.tag,
+                facet.cell.plural,
+                mesh.kind_of(0).name()
+            );
+            return Err(file.fault(facet.line, message));
+        }
+        nodes.extend(facet.nodes.iter().map(|&node| numbers[node].unwrap_or(usize::MAX - 1)));
+    }
+    Ok(nodes)
+}
+
+/// The nodes of a face in the order of its element: the outside is on the right of an edge.
+fn nodes_of(mesh: &Mesh, (element, face): (usize, usize)) -> Vec<usize> {
+    let nodes = mesh.elements().nth(element).unwrap_or_default();
+    mesh.kind_of(0).reference().faces[face].iter().map(|&local| nodes[local]).collect()
+}
+
+/// Groups of elements of the highest dimension that share nodes with each other.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Glued {
+    /// Their names, in the order of the file.
+    pub groups: Vec<String>,
+    /// The pairs of groups that share nodes, by their places in `groups`, with the number of these nodes.
+    pub shared: Vec<(usize, usize, usize)>,
+}
+
+impl GmshFile {
+    /// The groups of elements of the highest dimension, those that share nodes together: each set is a body. Empty
+    /// without groups.
+    pub(crate) fn glued(&self) -> Vec<Glued> {
+        let names = self.bodies();
+        let Some(highest) = self.blocks.iter().map(|block| block.cell.dimension).max() else { return Vec::new() };
+        let mut used = vec![vec![false; self.nodes.len()]; names.len()];
+        for block in self.blocks.iter().filter(|block| block.cell.dimension == highest) {
+            for name in block.groups.iter().map(|&tag| self.name_of(highest, tag)) {
+                if let Some(group) = names.iter().position(|other| *other == name) {
+                    block.nodes.iter().for_each(|&node| used[group][node] = true);
+                }
+            }
+        }
+        let shared = |one: usize, two: usize| used[one].iter().zip(&used[two]).filter(|(a, b)| **a && **b).count();
+        let mut forest = Forest::new(names.len());
+        let mut pairs = Vec::new();
+        for two in 1..names.len() {
+            for one in (0..two).filter(|&one| shared(one, two) > 0) {
+                pairs.push((one, two, shared(one, two)));
+                forest.join(one, two);
+            }
+        }
+        let (sets, count) = forest.into_trees();
+        let set = |set: usize| {
+            let members: Vec<usize> = (0..names.len()).filter(|&group| sets[group] == set).collect();
+            let place = |group: usize| members.iter().position(|&member| member == group);
+            let own = pairs.iter().filter_map(|&(one, two, nodes)| Some((place(one)?, place(two)?, nodes)));
+            Glued { shared: own.collect(), groups: members.iter().map(|&group| names[group].clone()).collect() }
+        };
+        (0..count).map(set).collect()
     }
 }

@@ -35,23 +35,14 @@
 //! C. Geuzaine, J.-F. Remacle, *Gmsh Reference Manual*, chapter "Gmsh file formats", MSH file format and its version 2.
 
 mod body;
-mod boundaries;
-mod cells;
 mod content;
-mod file;
-mod form;
-mod glued;
-mod groups;
 mod record;
 mod sections;
-mod source;
-mod version2;
-mod version4;
 
 use std::path::Path;
 
-pub use file::{GmshFile, PhysicalGroup};
-pub(crate) use glued::Glued;
+pub(crate) use body::Glued;
+pub use content::{GmshFile, PhysicalGroup};
 
 use super::Mesh;
 use crate::error::Error;
@@ -114,7 +105,7 @@ impl GmshFile {
         positive("scale", scale)?;
         let body = body::Body::select(self, groups)?;
         let (mut mesh, numbers) = body.mesh(self, scale)?;
-        mesh.boundaries = boundaries::of(self, &mesh, &numbers, !groups.is_empty())?;
+        mesh.boundaries = body::of(self, &mesh, &numbers, !groups.is_empty())?;
         Ok(mesh)
     }
 }

@@ -15,23 +15,33 @@
 //! for motions that keep the end flat. A gap with a corner there counts as that of a symmetric obstacle, which does not
 //! change to first order.
 
-mod areas;
-mod loads;
-mod rows;
 mod slopes;
 #[cfg(test)]
 mod tests;
-mod widths;
 
-pub(crate) use areas::areas_by_places;
-pub(crate) use rows::Pairing;
 pub(super) use slopes::Slopes;
-pub(crate) use widths::add_width;
+pub(crate) use slopes::{Pairing, add_width, areas_by_places};
 
+use super::effect::{Why, derivative};
+use super::output::{Branch, Direct, by_component, moment_of, obstacles_of, stress_of};
 use crate::error::Error;
-use crate::fem::assembly::internal_work_by_places;
+use crate::fem::assembly::{
+    Density, FacetPoint, Kinks, Points, area_and_integral, body_force_by_places, centrifugal_by_places,
+    gravity_by_places, integral_by_places, internal_work_by_places, interpolated, own_energy_by_places,
+    turning_traction,
+};
+use crate::fem::body::BodyElement;
+use crate::fem::element::Cell;
+use crate::fem::geometry::{COORDINATES, Symmetric, cross, distance, dot, minus};
+use crate::fem::{Boundary, ElasticBody};
 use crate::scene::Scene;
-use crate::scene::input::schema::{SupportSpec, TieSpec};
+use crate::scene::answers::answer::Answer;
+use crate::scene::input::entry::boundary;
+use crate::scene::input::schema::tie::StiffnessOf;
+use crate::scene::input::schema::{Place, SupportSpec, TieSpec};
+use crate::scene::input::sum::Profile;
+use crate::scene::models::load::Acting;
+use crate::scene::models::rows::ContactRow;
 
 /// The change of R with the place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), per length.
 pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, String> {
@@ -45,9 +55,9 @@ pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, St
     let mut gradient = vec![0.0; body.nodal_dofs()];
     internal_work_by_places(body, answer.displacement(), &adjoint, &mut gradient)?;
     gradient.iter_mut().for_each(|entry| *entry = 0.0 - *entry);
-    loads::add_loads(scene, body, &adjoint, &mut gradient).map_err(said)?;
-    loads::add_springs(scene, body, [answer.displacement(), &adjoint], &mut gradient).map_err(said)?;
-    rows::add(pairing, &adjoint, &mut gradient)?;
+    add_loads(scene, body, &adjoint, &mut gradient).map_err(said)?;
+    add_springs(scene, body, [answer.displacement(), &adjoint], &mut gradient).map_err(said)?;
+    slopes::add(pairing, &adjoint, &mut gradient)?;
     Ok(gradient)
 }
 
@@ -69,4 +79,264 @@ fn refused(scene: &Scene) -> Option<String> {
         return None;
     };
     Some(reason.into())
+}
+
+/// Adds the change of the work of all loads, `virtual_displacement . load`, both nodal vectors. Forces at nodes do not
+/// change.
+pub(crate) fn add_loads(
+    scene: &Scene,
+    body: &ElasticBody,
+    virtual_displacement: &[f64],
+    gradient: &mut [f64],
+) -> Result<(), Error> {
+    for index in 0..scene.loads.len() {
+        match scene.acting(body, index)? {
+            Acting::AtNodes(_) => {}
+            Acting::BodyForce(force) => body_force_by_places(body, force, virtual_displacement, gradient),
+            Acting::Gravity(acceleration) => gravity_by_places(body, acceleration, virtual_displacement, gradient)?,
+            Acting::Centrifugal { omega, axis } => {
+                centrifugal_by_places(body, omega, axis, virtual_displacement, gradient)?;
+            }
+            Acting::Traction { boundary, traction, profile } => {
+                let on = Loaded { body, boundary, virtual_displacement };
+                on.add_traction(traction, profile.as_ref(), gradient);
+            }
+            Acting::Pressure { boundary, pressure, profile } => {
+                let on = Loaded { body, boundary, virtual_displacement };
+                on.add_pressure(pressure, profile.as_ref(), gradient);
+            }
+            Acting::Spread { boundary, force } => {
+                Loaded { body, boundary, virtual_displacement }.add_spread(force, gradient);
+            }
+            Acting::Moment { boundary, moment } => {
+                Loaded { body, boundary, virtual_displacement }.add_moment(moment, gradient);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A boundary under a load, with the virtual displacement of all nodes.
+struct Loaded<'a> {
+    body: &'a ElasticBody,
+    boundary: &'a Boundary,
+    virtual_displacement: &'a [f64],
+}
+
+impl Loaded<'_> {
+    fn moved(&self, point: &FacetPoint) -> [f64; 3] {
+        at_point(self.body, self.virtual_displacement, point)
+    }
+
+    fn add_traction(&self, traction: [f64; 3], profile: Option<&Profile>, gradient: &mut [f64]) {
+        let density = |point: &FacetPoint| {
+            let (factor, slope) = factor(profile, point.at);
+            let work = dot(traction, self.moved(point));
+            Density { value: factor * work, by_place: slope.map(|part| part * work), by_normal: [0.0; 3] }
+        };
+        integral_by_places(self.body, self.boundary, points(profile), density, gradient);
+    }
+
+    fn add_pressure(&self, pressure: f64, profile: Option<&Profile>, gradient: &mut [f64]) {
+        let density = |point: &FacetPoint| {
+            let (factor, slope) = factor(profile, point.at);
+            let moved = self.moved(point);
+            let inwards = -pressure * dot(point.normal, moved);
+            Density {
+                value: factor * inwards,
+                by_place: slope.map(|part| part * inwards),
+                by_normal: moved.map(|part| -pressure * factor * part),
+            }
+        };
+        integral_by_places(self.body, self.boundary, points(profile), density, gradient);
+    }
+
+    /// The traction is the force over the area, which changes too.
+    fn add_spread(&self, force: [f64; 3], gradient: &mut [f64]) {
+        let work = |point: &FacetPoint| dot(force, self.moved(point));
+        let [area, sum] = area_and_integral(self.body, self.boundary, Points::Own, work);
+        let density = |point: &FacetPoint| Density { value: (work(point) - sum / area) / area, ..Density::default() };
+        integral_by_places(self.body, self.boundary, Points::Own, density, gradient);
+    }
+
+    /// The traction of a moment m is `omega x r`, r = x - c, with `I omega = m` for the moments of inertia I of the
+    /// area about its centre c. Its virtual work is `omega . q`, q the moment of w, and changes by w . (omega x dr) at
+    /// each place, by `- eta . dI omega` with `I eta = q`, and by `- dc . (W x omega)` with the integral W of w.
+    /// Because r integrates to zero, dI is that at a fixed centre.
+    fn add_moment(&self, moment: [f64; 3], gradient: &mut [f64]) {
+        let points = Points::Fine(Kinks::NONE);
+        let sum = |value: &dyn Fn(&FacetPoint) -> f64| area_and_integral(self.body, self.boundary, points, value);
+        let Some((omega, centre)) = turning_traction(self.body, self.boundary, moment) else { return };
+        let arm = |point: &FacetPoint| minus(point.at, centre);
+        let turn = [0, 1, 2].map(|axis| sum(&|point| cross(arm(point), self.moved(point))[axis])[1]);
+        let Some((eta, _)) = turning_traction(self.body, self.boundary, turn) else { return };
+        let whole = [0, 1, 2].map(|axis| sum(&|point| self.moved(point)[axis])[1]);
+        let [area, _] = sum(&|_| 0.0);
+        let of_centre = cross(whole, omega).map(|part| part / area);
+        let density = |point: &FacetPoint| {
+            let (r, moved) = (arm(point), self.moved(point));
+            let [both, of_eta, of_omega] = [dot(eta, omega), dot(eta, r), dot(omega, r)];
+            let turned = cross(moved, omega);
+            let by_place =
+                |k: usize| turned[k] - of_centre[k] - 2.0 * both * r[k] + eta[k] * of_omega + omega[k] * of_eta;
+            Density {
+                value: dot(turned, r) - dot(of_centre, r) - both * dot(r, r) + of_eta * of_omega,
+                by_place: [0, 1, 2].map(by_place),
+                by_normal: [0.0; 3],
+            }
+        };
+        integral_by_places(self.body, self.boundary, points, density, gradient);
+    }
+}
+
+/// Adds the change of the work of the forces of all springs at the first of two nodal displacements on the second. Only
+/// foundations under boundaries change.
+pub(crate) fn add_springs(
+    scene: &Scene,
+    body: &ElasticBody,
+    fields: [&[f64]; 2],
+    gradient: &mut [f64],
+) -> Result<(), Error> {
+    for (index, spec) in scene.springs.iter().enumerate() {
+        let Some(Place::Boundary(name)) = &spec.on else { continue };
+        let path = format!("springs[{index}]");
+        let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
+        let (along, normal) = spec.per_area(&path, body, boundary)?;
+        let density = |point: &FacetPoint| {
+            let [u, w] = fields.map(|field| at_point(body, field, point));
+            let [of_u, of_w] = [u, w].map(|field| dot(point.normal, field));
+            let along: f64 = (0..3).map(|axis| along[axis] * u[axis] * w[axis]).sum();
+            let by_normal = [0, 1, 2].map(|axis| 0.0 - normal * (of_u * w[axis] + of_w * u[axis]));
+            Density { value: 0.0 - along - normal * of_u * of_w, by_place: [0.0; 3], by_normal }
+        };
+        // A spring as a whole is shared out over the area, which changes too.
+        let mean = match spec.stiffness {
+            StiffnessOf::PerArea => 0.0,
+            StiffnessOf::Total => {
+                let [area, sum] = area_and_integral(body, boundary, Points::Own, |point| density(point).value);
+                sum / area
+            }
+        };
+        let density = |point: &FacetPoint| {
+            let own = density(point);
+            Density { value: own.value - mean, ..own }
+        };
+        integral_by_places(body, boundary, Points::Own, density, gradient);
+    }
+    Ok(())
+}
+
+/// A nodal field at a point of a facet.
+fn at_point(body: &ElasticBody, nodal: &[f64], point: &FacetPoint) -> [f64; 3] {
+    interpolated(&body.gather(nodal, point.nodes), &point.shape, point.nodes.len())
+}
+
+/// The factor of a profile at a place, and its change with the place.
+fn factor(profile: Option<&Profile>, at: [f64; 3]) -> (f64, [f64; 3]) {
+    profile.map_or((1.0, [0.0; 3]), |profile| (profile.at(at), profile.by_place(at)))
+}
+
+fn points(profile: Option<&Profile>) -> Points<'_> {
+    profile.map_or(Points::Own, |profile| Points::Fine(profile.kinks()))
+}
+
+impl Branch {
+    /// The change with the place of each node, length `dim * n_nodes`, per length.
+    pub(super) fn direct_by_places(&self, answer: &Answer) -> Result<Vec<f64>, Why> {
+        let (model, body) = (answer.model(), answer.model().body());
+        let mut gradient = vec![0.0; body.nodal_dofs()];
+        match &self.direct {
+            Direct::None => {}
+            Direct::Width(obstacle) => {
+                // The width depends on the pressures, the forces of rows over their areas.
+                let rows = model.rows().iter().zip(answer.multiplier()).zip(&self.by_multiplier);
+                let weight = |((row, lambda), by_force): ((&ContactRow, &f64), &f64)| match *by_force {
+                    0.0 => 0.0,
+                    by_force => -by_force * lambda / row.projected_area(),
+                };
+                gradient = areas_by_places(model, &rows.map(weight).collect::<Vec<f64>>())?;
+                for obstacle in obstacles_of(model, *obstacle) {
+                    add_width(answer, obstacle, model.parts_of_whole(), &mut gradient)?;
+                }
+            }
+            Direct::Pressure(row) => {
+                let mut weights = vec![0.0; model.rows().len()];
+                weights[*row] = -self.value / model.rows()[*row].projected_area();
+                gradient = areas_by_places(model, &weights)?;
+            }
+            Direct::Energy => {
+                // The mean of the works of the last and of the first internal forces, and the energy before them.
+                let displacement = answer.displacement();
+                internal_work_by_places(body, displacement, displacement, &mut gradient)?;
+                if body.has_own_stress() {
+                    internal_work_by_places(body, &vec![0.0; displacement.len()], displacement, &mut gradient)?;
+                }
+                gradient.iter_mut().for_each(|entry| *entry *= 0.5);
+                own_energy_by_places(body, &mut gradient);
+                gradient.iter_mut().for_each(|entry| *entry *= model.parts_of_whole());
+            }
+            Direct::Moment(obstacle, axis) => add_moment(answer, *obstacle, *axis, &mut gradient)?,
+            Direct::Stress { element, at, component } => {
+                add_stress(answer, (*element, *at, *component), &mut gradient)?
+            }
+        }
+        Ok(gradient)
+    }
+}
+
+/// Adds the change of the moment `sum of lambda (r x n)` of an obstacle about an axis through the origin: with the
+/// places r of rows, which are those of their coefficients, and with normals that turn.
+fn add_moment(answer: &Answer, obstacle: usize, axis: usize, gradient: &mut [f64]) -> Result<(), Why> {
+    let (model, dimension) = (answer.model(), answer.model().body().dimension());
+    let slopes = Slopes::of(model, obstacle);
+    let rows = model.rows().iter().zip(answer.multiplier());
+    for (row, &lambda) in rows.filter(|(row, lambda)| row.obstacle == obstacle && **lambda != 0.0) {
+        let mut add = |node: usize, change: [f64; 3]| {
+            let own = &mut gradient[dimension * node..dimension * (node + 1)];
+            own.iter_mut().zip(change).for_each(|(sum, part)| *sum += lambda * part);
+        };
+        let moment = |at: [f64; 3], force: [f64; 3]| moment_of(model, obstacle, at, force, axis);
+        let at_origin = moment([0.0; 3], row.normal);
+        let of_place = COORDINATES.map(|direction| moment(direction, row.normal) - at_origin);
+        for (node, share) in model.dofs().basis.shares(row.node) {
+            add(node, of_place.map(|change| share * change));
+        }
+        if !slopes.has_fixed_normals() || row.is_mean {
+            let place = model.place(row.node);
+            add(row.node, slopes.at(row.node)?.of_normal(COORDINATES.map(|force| moment(place, force))));
+        }
+    }
+    Ok(())
+}
+
+/// Adds the change of a component of the stress at reference coordinates of an element: the point moves with the
+/// element.
+fn add_stress(
+    answer: &Answer,
+    (element, at, component): (usize, [f64; 3], usize),
+    gradient: &mut [f64],
+) -> Result<(), Why> {
+    let body = answer.model().body();
+    let dimension = body.dimension();
+    let Some(own) = body.element(element) else { return Ok(()) };
+    let places: Vec<[f64; 3]> = own.nodes.iter().map(|&node| body.mesh().nodes()[node]).collect();
+    let size = places.iter().fold(0.0, |size: f64, &place| size.max(distance(place, places[0])));
+    let stress_at = |places: &[[f64; 3]]| -> Symmetric {
+        let cell = Cell::at(own.kind.reference(), |local| places[local]);
+        stress_of(body, answer.displacement(), &BodyElement { cell, ..own }, at)
+    };
+    let stress = stress_at(&places);
+    for (local, &node) in own.nodes.iter().enumerate() {
+        for axis in 0..dimension {
+            let moved = |by: f64| {
+                let mut moved = places.clone();
+                moved[local][axis] += by;
+                Ok::<_, Why>(stress_at(&moved).to_vec())
+            };
+            let change = derivative(moved, size)?.ok_or_else(|| "the stress has no derivative there".to_string())?;
+            let change = [0, 1, 2, 3, 4, 5].map(|entry| change[entry]);
+            gradient[dimension * node + axis] += by_component(&stress, &change, component);
+        }
+    }
+    Ok(())
 }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use super::{Sides, disc, half_ball, half_disc, ring};
 use crate::Error;
-use crate::fem::element::{Cell, MAX_NODES, Rule, Tabulated};
+use crate::fem::element::{Cell, Rule, Tabulated};
 use crate::fem::{ElementKind, Mesh, Zone};
 
 const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8];
@@ -18,9 +18,7 @@ fn measure(mesh: &Mesh) -> (f64, f64) {
     let table = Tabulated::new(reference, Rule::Straight);
     let (mut total, mut worst) = (0.0, f64::INFINITY);
     for element in mesh.elements() {
-        let mut coordinates = [[0.0; 3]; MAX_NODES];
-        element.iter().zip(&mut coordinates).for_each(|(&node, at)| *at = mesh.nodes()[node]);
-        let cell = Cell::new(reference, &coordinates);
+        let cell = Cell::at(reference, |local| mesh.nodes()[element[local]]);
         let determinant = |derivative| cell.map(derivative).determinant;
         let scale = cell.unit().powi(reference.dimension as i32);
         total += table.points.iter().map(|point| point.weight * determinant(&point.derivative) * scale).sum::<f64>();

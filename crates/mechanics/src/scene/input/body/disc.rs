@@ -1,15 +1,14 @@
-//! The disc: a half disc and its mirror image, joined along the cut.
+//! The disc: a half disc and its mirror image, joined along the cut; the half disc; the ring.
 
+use super::shape::{Block, BodyShape, RoundCells, Sides, Site};
+use crate::error::Error;
+use crate::fem::mesh::axis::{Grading, Lattice, half_steps};
+use crate::fem::mesh::{Boundary, ElementKind, MAX_NODES, Mesh, Zone, check_lines, fail};
+use crate::fem::{Axis, Integration};
+use crate::scene::input::entry::Files;
+use crate::scene::input::schema::model::{ElementSpec, HalfSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use super::half_disc::{half_disc, half_disc_block};
-use super::shape::{About, Block, BodyShape, Sides, Site};
-use crate::error::Error;
-use crate::fem::Integration;
-use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, fail};
-use crate::scene::input::files::Files;
-use crate::scene::input::schema::cells::ElementSpec;
 
 /// A disc, graded towards its lowest and its highest point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -33,8 +32,6 @@ pub struct DiscSpec {
     #[serde(default)]
     pub integration: Integration,
 }
-
-pub(super) const ABOUT: About = About { name: "disc", dimensions: &[2] };
 
 impl BodyShape for DiscSpec {
     fn integration(&self) -> Integration {
@@ -78,9 +75,6 @@ impl BodyShape for DiscSpec {
 /// assert!((high[1] - low[1] - 2.0).abs() < 1e-15 && mesh.boundary("lower").is_some());
 /// # Ok::<(), signorini_mechanics::Error>(())
 /// ```
-///
-/// # Errors
-/// As [`half_disc`].
 pub fn disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: ElementKind) -> Result<Mesh, Error> {
     let lower = half_disc(centre, radius, zone, sides, kind)?;
     let upper = lower.clone().mirrored(1, centre[1]);
@@ -109,4 +103,245 @@ pub fn disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: Elem
         boundaries.push(Boundary::new("symmetry-x", side.kind, both));
     }
     Mesh::new(nodes, kind, connectivity, boundaries)
+}
+
+/// Half of a disc, the lower half by default.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HalfDiscSpec {
+    /// The centre [x, y] of the whole disc.
+    #[serde(default)]
+    pub centre: [f64; 2],
+    /// The half of the disc; the upper half is the mirror image of the lower half, graded towards its highest point.
+    #[serde(default, skip_serializing_if = "HalfSpec::is_lower")]
+    pub half: HalfSpec,
+    /// Radius of the half disc, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: f64,
+    /// The finely meshed zone around the lowest (highest) point of the half disc.
+    pub zone: Zone,
+    /// Only the quarter of the disc right of its centre; the plane x = centre becomes the boundary `symmetry-x`.
+    #[serde(default)]
+    pub symmetric: bool,
+    /// The element of the half disc.
+    #[serde(default)]
+    pub element: ElementSpec,
+    /// The integration of the stiffness of the half disc.
+    #[serde(default)]
+    pub integration: Integration,
+}
+
+impl BodyShape for HalfDiscSpec {
+    fn integration(&self) -> Integration {
+        self.integration
+    }
+
+    fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
+        vec![("arc", self.centre, self.radius)]
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        site.check_estimate(&self.block(None))?;
+        let lower = half_disc(self.centre, self.radius, &self.zone, Sides::of(self.symmetric), self.element.kind())?;
+        Ok(self.half.of(lower, 1, self.centre[1]))
+    }
+
+    fn block(&self, _: Option<Files>) -> Block {
+        half_disc_block(&self.zone, self.radius, Sides::of(self.symmetric), self.element.kind())
+    }
+
+    fn refine(&mut self, times: usize) -> Result<(), Error> {
+        self.zone.refine(times);
+        Ok(())
+    }
+}
+
+/// The lower half of the disc of `radius` about `centre` ([x, y], in length), of a plane element, graded towards its
+/// lowest point; with [`Sides::Beyond`] only the part right of the centre.
+///
+/// The boundaries are `cut` (the flat side, y = centre), `arc` and, with [`Sides::Beyond`], `symmetry-x` (x = centre).
+/// Quadratic elements have their mid-sides on the arc.
+///
+/// ```
+/// use signorini_mechanics::fem::{ElementKind, Zone};
+/// use signorini_mechanics::scene::{Sides, half_disc};
+///
+/// let zone = Zone { width: 0.1, divisions: 4, growth: 1.5 };
+/// let mesh = half_disc([0.0, 1.0], 1.0, &zone, Sides::Both, ElementKind::Q8)?;
+/// let (node, distance) = mesh.nearest_node([0.0, 0.0, 0.0]).expect("a mesh has nodes");
+/// assert!(distance == 0.0 && mesh.boundary("arc").is_some_and(|arc| arc.nodes().contains(&node)));
+/// # Ok::<(), signorini_mechanics::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Mesh`] for an element that is not plane, a centre that is not finite, more than `MAX_NODES` nodes;
+/// [`qp::LinearError::Setting`](signorini_qp::LinearError::Setting) for a radius or a zone out of its range.
+pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: ElementKind) -> Result<Mesh, Error> {
+    if kind.dimension() != 2 {
+        return fail(format!("a half disc cannot have a mesh of {}", kind.name()));
+    }
+    let graded = Grading::new(radius, zone)?;
+    let across = sides.lines(&graded.aside);
+    let (columns, rows, shells) = (across.len() - 1, graded.down.len() - 1, graded.shells.len() - 1);
+    let cells = columns.saturating_mul(rows).saturating_add((columns + 2 * rows).saturating_mul(shells));
+    if cells > MAX_NODES / 4 {
+        return fail(format!("{cells} cells make more than the {MAX_NODES} nodes that are allowed"));
+    }
+
+    // Keys are [shell, column, row] in half steps. Shell 0 is the core, in which columns run right and rows run down.
+    let mut lattice = Lattice::new();
+    let mut connectivity = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let key = |right: usize, up: usize| [0, 2 * column + right, 2 * row + 2 - up];
+            lattice.add_cell(kind, key, &mut connectivity);
+        }
+    }
+    // Around the core, with its inside on the left: down its left side, along its bottom, up its right side.
+    let left = (0..2 * rows).map(|row| [0, row]).filter(|_| sides == Sides::Both);
+    let bottom = (0..2 * columns).map(|column| [column, 2 * rows]);
+    let right = (0..=2 * rows).rev().map(|row| [2 * columns, row]);
+    let around: Vec<[usize; 2]> = left.chain(bottom).chain(right).collect();
+    for ends in around.windows(3).step_by(2) {
+        for shell in 0..shells {
+            // From the outside of the shell inwards.
+            let key = |along: usize, inward: usize| [2 * shell + 2 - inward, ends[along][0], ends[along][1]];
+            lattice.add_cell(kind, key, &mut connectivity);
+        }
+    }
+
+    let (across, down, outward) = (half_steps(&across), half_steps(&graded.down), half_steps(&graded.shells));
+    let place = |&[shell, column, row]: &[usize; 3]| {
+        let direction = [graded.tangent(across[column]), -graded.tangent(down[row]), 0.0];
+        let at = graded.place(direction, outward[shell]);
+        [centre[0] + at[0], centre[1] + at[1], 0.0]
+    };
+    let mesh = Mesh::new(lattice.keys.iter().map(place).collect(), kind, connectivity, Vec::new())?;
+    let keys = &lattice.keys;
+    let (cut, arc) = (|node: usize| keys[node][2] == 0, |node: usize| keys[node][0] == 2 * shells);
+    let symmetry = |node: usize| keys[node][1] == 0;
+    let boundaries: [(&str, &dyn Fn(usize) -> bool); 3] = [("cut", &cut), ("arc", &arc), ("symmetry-x", &symmetry)];
+    Ok(mesh.with_sides(match sides {
+        Sides::Both => &boundaries[..2],
+        Sides::Beyond => &boundaries,
+    }))
+}
+
+/// The estimated cells of half a disc: around the core, and from its middle to the arc.
+pub(super) fn half_disc_block(zone: &Zone, radius: f64, sides: Sides, kind: ElementKind) -> Block {
+    let RoundCells { aside, down, shells } = RoundCells::of(zone, radius);
+    let count = if sides == Sides::Both { 2.0 } else { 1.0 };
+    let around = count * (aside + down);
+    let core = count * aside * down;
+    Block { cells: vec![around, shells + core / around], lengths: Vec::new(), counts: kind.reference().counts }
+}
+
+/// A ring or a sector of a ring: the product of a radial axis and an angle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RingSpec {
+    /// The centre [x, y] of the ring.
+    #[serde(default)]
+    pub centre: [f64; 2],
+    /// The radial axis, from the inner to the outer radius.
+    pub radius: Axis,
+    /// The angle in degrees, counterclockwise from x; the ring is closed if the angle spans 360.
+    pub angle: Axis,
+    /// The element of the ring.
+    #[serde(default)]
+    pub element: ElementSpec,
+    /// The integration of the stiffness of the ring.
+    #[serde(default)]
+    pub integration: Integration,
+}
+
+impl BodyShape for RingSpec {
+    fn integration(&self) -> Integration {
+        self.integration
+    }
+
+    fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
+        let ends = [self.radius.points.first(), self.radius.points.last()];
+        let named = ["inner", "outer"].into_iter().zip(ends);
+        named.filter_map(|(name, radius)| Some((name, self.centre, *radius?))).collect()
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        site.check_product(&[&self.radius, &self.angle])?;
+        ring(self.centre, &site.lines(&self.radius, "radius")?, &site.lines(&self.angle, "angle")?, self.element.kind())
+    }
+
+    fn block(&self, _: Option<Files>) -> Block {
+        // An angle is not a length.
+        Block { lengths: Vec::new(), ..Block::product(&[&self.radius, &self.angle], self.element.kind()) }
+    }
+
+    fn refine(&mut self, times: usize) -> Result<(), Error> {
+        [&mut self.radius, &mut self.angle].into_iter().for_each(|axis| axis.refine(times));
+        Ok(())
+    }
+}
+
+/// The mesh of the circles of radius `radii` (in length) and the rays at `angles` (degrees, counterclockwise from x),
+/// both strictly increasing, about `centre` ([x, y], in length), of a plane element, the mid-sides on the circles.
+///
+/// The boundaries are `inner` and `outer`, and, if the ring is not closed, `start` (first angle) and `end` (last
+/// angle). It is closed if the angles span 360 degrees.
+///
+/// # Errors
+/// [`Error::Mesh`] for an element that is not plane, fewer than two radii or angles, values that do not increase, an
+/// inner radius that is not positive, angles of more than 360 degrees or steps of 180 or more, more than
+/// `MAX_NODES` nodes.
+pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
+    if kind.dimension() != 2 {
+        return fail(format!("a ring cannot have a mesh of {}", kind.name()));
+    }
+    check_lines(&[("radius", radii), ("angle", angles)], if kind.is_quadratic() { 2 } else { 1 })?;
+    if radii[0] <= 0.0 {
+        return fail(format!("the inner radius is {}; it must be positive", radii[0]));
+    }
+    let span = angles[angles.len() - 1] - angles[0];
+    if span > 360.0 {
+        return fail(format!("the angles span {span} degrees; at most 360 are allowed"));
+    }
+    if let Some(wide) = angles.windows(2).find(|pair| pair[1] - pair[0] >= 180.0) {
+        return fail(format!("a cell from {} to {} degrees is too wide; it must be below 180", wide[0], wide[1]));
+    }
+    let (layers, sectors) = (radii.len() - 1, angles.len() - 1);
+    let is_closed = span == 360.0;
+    let (radii, angles) = (half_steps(radii), half_steps(angles));
+    let mut lattice = Lattice::new();
+    let mut connectivity = Vec::new();
+    for sector in 0..sectors {
+        for layer in 0..layers {
+            let key = |outward: usize, around: usize| {
+                let angle = 2 * sector + around;
+                [2 * layer + outward, if is_closed && angle == 2 * sectors { 0 } else { angle }]
+            };
+            lattice.add_cell(kind, key, &mut connectivity);
+        }
+    }
+    let place = |&[layer, angle]: &[usize; 2]| {
+        let (sine, cosine) = sine_cosine(angles[angle]);
+        [centre[0] + radii[layer] * cosine, centre[1] + radii[layer] * sine, 0.0]
+    };
+    let mesh = Mesh::new(lattice.keys.iter().map(place).collect(), kind, connectivity, Vec::new())?;
+    let keys = &lattice.keys;
+    let (inner, outer) = (|node: usize| keys[node][0] == 0, |node: usize| keys[node][0] == 2 * layers);
+    let (start, end) = (|node: usize| keys[node][1] == 0, |node: usize| keys[node][1] == 2 * sectors);
+    let sides: [(&str, &dyn Fn(usize) -> bool); 4] =
+        [("inner", &inner), ("outer", &outer), ("start", &start), ("end", &end)];
+    Ok(mesh.with_sides(if is_closed { &sides[..2] } else { &sides }))
+}
+
+/// Sine and cosine of an angle in degrees, exact at multiples of 90.
+fn sine_cosine(degrees: f64) -> (f64, f64) {
+    let quarters = (degrees / 90.0).round();
+    let (sine, cosine) = (degrees - 90.0 * quarters).to_radians().sin_cos();
+    match quarters.rem_euclid(4.0) as u8 {
+        0 => (sine, cosine),
+        1 => (cosine, -sine),
+        2 => (-sine, -cosine),
+        _ => (-cosine, sine),
+    }
 }

@@ -1,17 +1,15 @@
 //! The lower half of a ball, or its mirror image: a core of bricks, and shells of bricks around it out to the sphere.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::shape::{About, Block, BodyShape, RoundCells, Sides, Site};
+use super::shape::{Block, BodyShape, RoundCells, Sides, Site};
 use crate::error::Error;
 use crate::fem::Integration;
-use crate::fem::mesh::lattice::Lattice;
-use crate::fem::mesh::round::Grading;
+use crate::fem::geometry::plus;
+use crate::fem::mesh::axis::{Grading, Lattice};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
-use crate::scene::input::entry::wrong;
-use crate::scene::input::files::Files;
-use crate::scene::input::schema::cells::{HalfSpec, SolidElementSpec};
+use crate::scene::input::entry::{Files, wrong};
+use crate::scene::input::schema::model::{HalfSpec, SolidElementSpec};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Corners of a face of the core, in steps along its two directions, counterclockwise seen from outside.
 const AROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
@@ -52,8 +50,6 @@ pub enum SymmetrySpec {
     /// A plane of symmetry normal to y.
     Y,
 }
-
-pub(super) const ABOUT: About = About { name: "half-ball", dimensions: &[3] };
 
 impl BodyShape for HalfBallSpec {
     fn integration(&self) -> Integration {
@@ -141,7 +137,7 @@ pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, sides: [Sides; 2]) 
         let direction =
             [graded.tangent(across[0][x]), graded.tangent(across[1][y]), -graded.tangent(graded.down[down])];
         let at = graded.place(direction, graded.shells[shell]);
-        [0, 1, 2].map(|axis| centre[axis] + at[axis])
+        plus(centre, at)
     };
     let nodes = lattice.keys.iter().map(place).collect();
     let mesh = Mesh::new(nodes, ElementKind::Hex8, connectivity, Vec::new())?;

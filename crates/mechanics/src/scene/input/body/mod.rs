@@ -1,34 +1,22 @@
-//! Body shapes: each has its own file and is named only there and here.
+//! Body shapes: each is named only in its file and here.
 
-mod bar;
-mod cuboid;
 #[cfg(test)]
 mod curved_bodies;
-mod deck;
 mod disc;
 mod gmsh;
 mod half_ball;
-mod half_disc;
 mod rectangle;
-mod ring;
 mod shape;
 
-pub use bar::{BarSpec, bar};
-pub use cuboid::{BoxSpec, cuboid};
-pub use deck::DeckSpec;
-pub use disc::{DiscSpec, disc};
-pub use gmsh::GmshSpec;
+pub use disc::{DiscSpec, HalfDiscSpec, RingSpec, disc, half_disc, ring};
+pub use gmsh::{DeckSpec, GmshSpec};
 pub use half_ball::{HalfBallSpec, half_ball};
-pub use half_disc::{HalfDiscSpec, half_disc};
-pub use rectangle::{RectangleSpec, rectangle};
-pub use ring::{RingSpec, ring};
+pub use rectangle::{BarSpec, BoxSpec, RectangleSpec, bar, cuboid, rectangle};
 pub use shape::Sides;
-pub(crate) use shape::{BodyShape, Site};
+pub(crate) use shape::{About, BodyShape, Site};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use shape::About;
 
 /// The elastic body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -60,18 +48,19 @@ pub enum BodySpec {
     Deck(DeckSpec),
 }
 
+// A shape by its name, with the dimensions of the models that allow it.
+const RECTANGLE: About = About { name: "rectangle", dimensions: &[2] };
+const BAR: About = About { name: "bar", dimensions: &[1] };
+const BOX: About = About { name: "box", dimensions: &[3] };
+const DISC: About = About { name: "disc", dimensions: &[2] };
+const HALF_DISC: About = About { name: "half-disc", dimensions: &[2] };
+const HALF_BALL: About = About { name: "half-ball", dimensions: &[3] };
+const RING: About = About { name: "ring", dimensions: &[2] };
+const GMSH: About = About { name: "gmsh", dimensions: &[1, 2, 3] };
+const DECK: About = About { name: "deck", dimensions: &[2, 3] };
+
 /// The names of all body shapes, in the order of messages.
-const ALL: [About; 9] = [
-    rectangle::ABOUT,
-    bar::ABOUT,
-    cuboid::ABOUT,
-    disc::ABOUT,
-    half_disc::ABOUT,
-    half_ball::ABOUT,
-    ring::ABOUT,
-    gmsh::ABOUT,
-    deck::ABOUT,
-];
+const ALL: [About; 9] = [RECTANGLE, BAR, BOX, DISC, HALF_DISC, HALF_BALL, RING, GMSH, DECK];
 
 impl BodySpec {
     /// The name of the body shape and the models that allow it.
@@ -88,15 +77,15 @@ impl BodySpec {
     /// bodies.
     fn described(&self) -> (About, &dyn BodyShape) {
         match self {
-            BodySpec::Rectangle(spec) => (rectangle::ABOUT, spec),
-            BodySpec::Bar(spec) => (bar::ABOUT, spec),
-            BodySpec::Box(spec) => (cuboid::ABOUT, spec),
-            BodySpec::Disc(spec) => (disc::ABOUT, spec),
-            BodySpec::HalfDisc(spec) => (half_disc::ABOUT, spec),
-            BodySpec::HalfBall(spec) => (half_ball::ABOUT, spec),
-            BodySpec::Ring(spec) => (ring::ABOUT, spec),
-            BodySpec::Gmsh(spec) => (gmsh::ABOUT, spec),
-            BodySpec::Deck(spec) => (deck::ABOUT, spec),
+            BodySpec::Rectangle(spec) => (RECTANGLE, spec),
+            BodySpec::Bar(spec) => (BAR, spec),
+            BodySpec::Box(spec) => (BOX, spec),
+            BodySpec::Disc(spec) => (DISC, spec),
+            BodySpec::HalfDisc(spec) => (HALF_DISC, spec),
+            BodySpec::HalfBall(spec) => (HALF_BALL, spec),
+            BodySpec::Ring(spec) => (RING, spec),
+            BodySpec::Gmsh(spec) => (GMSH, spec),
+            BodySpec::Deck(spec) => (DECK, spec),
         }
     }
 

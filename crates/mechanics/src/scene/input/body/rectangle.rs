@@ -1,15 +1,15 @@
-//! The structured rectangle: the product of two graded axes.
+//! The structured bar, rectangle and box: products of graded axes.
 
+use super::shape::{Block, BodyShape, Site};
+use crate::error::Error;
+use crate::fem::mesh::axis::half_steps;
+use crate::fem::mesh::pieces::OF_HEXAHEDRON;
+use crate::fem::mesh::{Boundary, ElementKind, FacetKind, Mesh, check_lines, fail};
+use crate::fem::{Axis, Integration};
+use crate::scene::input::entry::Files;
+use crate::scene::input::schema::model::{ElementSpec, SolidElementSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use super::shape::{About, Block, BodyShape, Site};
-use crate::error::Error;
-use crate::fem::mesh::lattice::half_steps;
-use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
-use crate::fem::{Axis, Integration};
-use crate::scene::input::files::Files;
-use crate::scene::input::schema::cells::ElementSpec;
 
 /// Marks a place without a node: the middle of a quadratic quadrilateral.
 const NO_NODE: usize = usize::MAX;
@@ -29,8 +29,6 @@ pub struct RectangleSpec {
     #[serde(default)]
     pub integration: Integration,
 }
-
-pub(super) const ABOUT: About = About { name: "rectangle", dimensions: &[2] };
 
 impl BodyShape for RectangleSpec {
     fn integration(&self) -> Integration {
@@ -119,4 +117,171 @@ pub fn rectangle(x: &[f64], y: &[f64], kind: ElementKind) -> Result<Mesh, Error>
         side("top", columns, &|i| node(i, last_y)),
     ];
     Mesh::new(nodes, kind, connectivity, boundaries)
+}
+
+/// A bar along x.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BarSpec {
+    /// The axis of the bar along x, with its cells.
+    pub x: Axis,
+    /// Cross-section, positive.
+    #[serde(default = "crate::scene::input::schema::model::one")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub area: f64,
+}
+
+impl BodyShape for BarSpec {
+    fn integration(&self) -> Integration {
+        Integration::Standard
+    }
+
+    fn area(&self) -> f64 {
+        self.area
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        bar(&site.lines(&self.x, "x")?)
+    }
+
+    fn block(&self, _: Option<Files>) -> Block {
+        Block::product(&[&self.x], ElementKind::Line2)
+    }
+
+    fn refine(&mut self, times: usize) -> Result<(), Error> {
+        self.x.refine(times);
+        Ok(())
+    }
+}
+
+/// The bar with nodes at `x` (coordinates, in length, strictly increasing, at least two); its boundaries are `left` and
+/// `right`.
+///
+/// # Errors
+/// [`Error::Mesh`] for fewer than two nodes, coordinates that do not increase, or more than
+/// `MAX_NODES`.
+pub fn bar(x: &[f64]) -> Result<Mesh, Error> {
+    check_lines(&[("x", x)], 1)?;
+    let cells = x.len() - 1;
+    let end = |name: &str, node| Boundary::new(name, FacetKind::Point1, vec![node]);
+    Mesh::new(
+        x.iter().map(|&x| [x, 0.0, 0.0]).collect(),
+        ElementKind::Line2,
+        (0..cells).flat_map(|cell| [cell, cell + 1]).collect(),
+        vec![end("left", 0), end("right", cells)],
+    )
+}
+
+/// The corners of a cell, in steps along x, y and z, in the order of a brick.
+const CORNERS: [[usize; 3]; 8] =
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+
+/// The sides: name, axis normal to the side, upper end or not, and the corners of a cell's face seen from outside
+/// counterclockwise, the first one being the lowest or the highest of the face.
+const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
+    ("left", 0, false, [0, 4, 7, 3]),
+    ("right", 0, true, [1, 2, 6, 5]),
+    ("front", 1, false, [0, 1, 5, 4]),
+    ("back", 1, true, [3, 7, 6, 2]),
+    ("bottom", 2, false, [0, 3, 2, 1]),
+    ("top", 2, true, [4, 5, 6, 7]),
+];
+
+/// A box: the product of three divided axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxSpec {
+    /// The axis of the box along x, with its cells.
+    pub x: Axis,
+    /// The axis of the box along y, with its cells.
+    pub y: Axis,
+    /// The axis along z.
+    pub z: Axis,
+    /// The element of the box.
+    #[serde(default)]
+    pub element: SolidElementSpec,
+    /// The integration of the stiffness of the box.
+    #[serde(default)]
+    pub integration: Integration,
+}
+
+impl BodyShape for BoxSpec {
+    fn integration(&self) -> Integration {
+        self.integration
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        site.check_product(&[&self.x, &self.y, &self.z])?;
+        cuboid(&site.lines(&self.x, "x")?, &site.lines(&self.y, "y")?, &site.lines(&self.z, "z")?, self.element.kind())
+    }
+
+    fn block(&self, _: Option<Files>) -> Block {
+        Block::product(&[&self.x, &self.y, &self.z], self.element.kind())
+    }
+
+    fn refine(&mut self, times: usize) -> Result<(), Error> {
+        [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(|axis| axis.refine(times));
+        Ok(())
+    }
+}
+
+/// The mesh of the lines `x`, `y`, `z` (coordinates, in length, strictly increasing, at least two each), of an element
+/// in space.
+///
+/// Nodes are numbered along x first, then along y. Each cell is one brick or six tetrahedra; nodes in the middle of
+/// edges follow the others. The boundaries are `left`,
+/// `right` (along x), `front`, `back` (along y), `bottom` and `top` (along z), their facets counterclockwise seen from
+/// outside.
+///
+/// # Errors
+/// [`Error::Mesh`] for an element of lower dimension, fewer than two lines, lines that do not increase, or more than
+/// `MAX_NODES` nodes.
+pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
+    if kind.dimension() != 3 {
+        return fail(format!("a box cannot have a mesh of {}", kind.name()));
+    }
+    if kind.is_quadratic() {
+        return cuboid(x, y, z, kind.linear())?.elevated(kind);
+    }
+    check_lines(&[("x", x), ("y", y), ("z", z)], 1)?;
+    let count = [x.len() - 1, y.len() - 1, z.len() - 1];
+    let nodes = z.iter().flat_map(|&z| y.iter().flat_map(move |&y| x.iter().map(move |&x| [x, y, z]))).collect();
+    let corner = |cell: [usize; 3], local: usize| {
+        let at = [0, 1, 2].map(|axis| cell[axis] + CORNERS[local][axis]);
+        (at[2] * y.len() + at[1]) * x.len() + at[0]
+    };
+    let cells = |low: [usize; 3], high: [usize; 3]| {
+        (low[2]..high[2])
+            .flat_map(move |k| (low[1]..high[1]).flat_map(move |j| (low[0]..high[0]).map(move |i| [i, j, k])))
+    };
+    let of_bricks = kind.is_product();
+    let mut connectivity = Vec::with_capacity(count.iter().product::<usize>() * if of_bricks { 8 } else { 24 });
+    for cell in cells([0; 3], count) {
+        if of_bricks {
+            connectivity.extend((0..8).map(|local| corner(cell, local)));
+        } else {
+            connectivity.extend(OF_HEXAHEDRON.as_flattened().iter().map(|&local| corner(cell, local)));
+        }
+    }
+    let side = |(name, axis, upper, face): (&str, usize, bool, [usize; 4])| {
+        let (mut low, mut high) = ([0; 3], count);
+        if upper {
+            low[axis] = count[axis] - 1
+        } else {
+            high[axis] = 1
+        }
+        let mut facets = Vec::new();
+        for cell in cells(low, high) {
+            let nodes = face.map(|local| corner(cell, local));
+            if of_bricks {
+                facets.extend(nodes);
+            } else {
+                // Cut along the diagonal from the lowest to the highest node of the face.
+                let first = (0..4).min_by_key(|&place| nodes[place]).unwrap_or(0);
+                facets.extend([0, 1, 2, 0, 2, 3].map(|step| nodes[(first + step) % 4]));
+            }
+        }
+        Boundary::new(name, kind.facet(), facets)
+    };
+    Mesh::new(nodes, kind, connectivity, SIDES.map(side).to_vec())
 }

@@ -4,19 +4,18 @@ use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
 use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
-use crate::scene::input::entry::wrong;
-use crate::scene::input::files::{Files, MeshFiles};
+use crate::scene::input::entry::{Files, MeshFiles, wrong};
 use crate::scene::input::schema::model::ModelSpec;
 
 /// The approximate part of a round body's radius outside the core, along the diagonal.
 const SHELLS: f64 = 0.6;
 
-/// The name of a body shape and the models that allow it.
+/// The name of a shape, of a body or of an obstacle, and the models that allow it.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// The key by which a scene chooses the body shape.
+    /// The key by which a scene chooses it.
     pub name: &'static str,
-    /// The numbers of coordinates that the body may have; several if its file determines them.
+    /// The allowed numbers of coordinates of a model; of a body several if its file determines them.
     pub dimensions: &'static [usize],
 }
 

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use serde_json::{Value, json};
-
+use super::amplitudes::Temperatures;
+use super::keywords::{Entry, object};
 use super::materials::{Section, Sections};
-use super::scene_text::{Entry, object};
-use super::temperatures::Temperatures;
 use crate::error::Error;
 use crate::fem::mesh::deck::{Deck, Place, Surface};
+use serde_json::{Value, json};
 
 /// The name of a node set or a surface of a body: in a further body it begins with the name of the body.
 fn name_in(body: usize, name: &str) -> String {

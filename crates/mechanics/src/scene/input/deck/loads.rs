@@ -1,18 +1,16 @@
-//! Loads: the cards *CLOAD, *DLOAD and *DSLOAD. Loads of one step add up.
+//! Loads: the cards *CLOAD, *DLOAD and *DSLOAD. Loads of one step add up; those of a later step replace them.
 
-use std::collections::BTreeMap;
-
-use serde_json::{Value, json};
+use std::collections::{BTreeMap, HashMap};
 
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_faces, names_of_nodes};
-use super::forces::LastForces;
+use super::keywords::{Entry, object};
 use super::references::References;
-use super::scene_text::{Entry, object};
-use super::transforms::Transforms;
+use super::rigid::Transforms;
 use crate::error::Error;
 use crate::fem::geometry::{dot, unit};
 use crate::fem::mesh::deck::{Card, Deck, Fields, Place, key};
+use serde_json::{Value, json};
 
 /// A load on the volume: it acts on all bodies.
 struct OnVolume {
@@ -297,4 +295,38 @@ fn along(mut fields: Fields) -> Vec<f64> {
     all.truncate(start);
     all.extend(unit(direction));
     all
+}
+
+/// The step whose force acts at each node in each direction, from 1.
+pub(super) struct LastForces {
+    last: HashMap<(usize, usize), usize>,
+    /// The step that removes all forces of those before it.
+    first: usize,
+}
+
+impl LastForces {
+    pub fn of(deck: &Deck) -> Self {
+        let mut forces = LastForces { last: HashMap::new(), first: 0 };
+        if deck.step < 2 {
+            return forces;
+        }
+        for card in deck.source.cards.iter().filter(|card| card.is("CLOAD")) {
+            if card.is_new() {
+                forces.first = card.step;
+            }
+            for line in &card.lines {
+                // A line that is wrong is refused where it is read.
+                let mut fields = deck.source.fields(line);
+                let nodes = fields.text().and_then(|target| deck.node_sets.members(&target, &deck.nodes).ok());
+                let (Some(nodes), Ok(direction)) = (nodes, fields.whole("the direction")) else { continue };
+                nodes.into_iter().for_each(|node| _ = forces.last.insert((node, direction), card.step));
+            }
+        }
+        forces
+    }
+
+    /// Returns `true` if a force that a step gives to a node in a direction acts at the end.
+    pub fn acts(&self, step: usize, at: (usize, usize)) -> bool {
+        step >= self.first && self.last.get(&at).is_none_or(|last| *last == step)
+    }
 }

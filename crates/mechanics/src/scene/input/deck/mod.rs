@@ -4,47 +4,34 @@
 
 mod amplitudes;
 mod bodies;
-mod bolts;
 mod contacts;
 mod coupling;
-mod equations;
-mod forces;
 mod keywords;
 mod loads;
 mod materials;
 mod mpc;
-pub(crate) mod reference_node;
-mod references;
+pub(crate) mod references;
 pub(crate) mod requests;
-mod rigid;
-mod scene_text;
-mod springs;
+pub(crate) mod rigid;
 mod supports;
-mod temperatures;
-mod ties;
-mod transforms;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::warning::{NONLINEAR, Warning};
 use crate::error::Error;
 use crate::fem::mesh::deck::{Deck, DeckElement, Place, Space};
 use crate::scene::Scene;
-use crate::scene::input::warning::Warning;
-use amplitudes::Amplitudes;
+use amplitudes::{Amplitudes, Temperatures};
 use bodies::Body;
-use contacts::contacts;
+use contacts::{contacts, ties};
+use keywords::SceneText;
 use loads::Loads;
 use materials::Sections;
-use reference_node::{Displacements, ReferenceNode};
 use references::References;
 use requests::Requests;
-use rigid::RigidBodies;
-use scene_text::SceneText;
+use rigid::{Displacements, ReferenceNode, RigidBodies, Transforms};
 use supports::supports;
-use temperatures::Temperatures;
-use ties::ties;
-use transforms::Transforms;
 
 /// More bodies than this are a mesh whose nodes were not merged.
 const MOST_BODIES: usize = 1000;
@@ -120,7 +107,7 @@ impl DeckScene {
         text.plain("units", &serde_json::json!({"length": "", "force": ""}));
         text.plain("model", &model(space).into());
         if let Some((thickness, place)) = sections.thickness.filter(|thickness| thickness.0 != 1.0) {
-            text.one("thickness", &scene_text::Entry::new(thickness.into(), place));
+            text.one("thickness", &keywords::Entry::new(thickness.into(), place));
         }
         let bodies = (0..deck.bodies).map(|index| Body::of(&deck, index, named, &sections, &temperatures));
         add_bodies(&mut text, bodies.collect::<Result<_, Error>>()?);
@@ -137,10 +124,12 @@ impl DeckScene {
             let (file, line) = deck.source.position(place);
             (file.to_path_buf(), line)
         };
-        let warning = |(place, message): (Place, String)| Warning::Deck { place: named_line(position(place)), message };
-        let nonlinear =
-            large_displacements(&deck).map(|place| Warning::Nonlinear { place: named_line(position(place)) });
-        let warnings = nonlinear.into_iter().chain(noted.into_iter().map(warning)).collect();
+        let warning =
+            |code, place, message: &str| Warning::new(code, format!("{}: {message}", named_line(position(place))));
+        let small = "NLGEOM is answered with small displacements";
+        let nonlinear = large_displacements(&deck).map(|place| warning(NONLINEAR, place, small));
+        let noted = noted.into_iter().map(|(place, message)| warning("deck", place, &message));
+        let warnings = nonlinear.into_iter().chain(noted).collect();
         let lines = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
         Ok(DeckScene { text, warnings, references: reference_nodes, deck, lines })
     }
@@ -190,9 +179,6 @@ impl Scene {
 
     /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is
     /// not built.
-    ///
-    /// # Errors
-    /// As [`Scene::read_deck`].
     pub fn text_of_deck(file: &Path, named: &str, permits: &[&str], step: Option<usize>) -> Result<String, Error> {
         DeckScene::read(file, named, Reading { permits, step, earlier: &[] }).map(|scene| scene.text)
     }
@@ -232,7 +218,7 @@ fn comments(deck: &Deck, named: &str, noted: &[(Place, String)], passed: &[(Stri
 fn add_bodies(text: &mut SceneText, bodies: Vec<Body>) {
     let mut bodies = bodies.into_iter();
     let Some(first) = bodies.next() else { return };
-    text.one("body", &scene_text::Entry::new(first.body, first.place));
+    text.one("body", &keywords::Entry::new(first.body, first.place));
     first.material.iter().for_each(|material| text.one("material", material));
     text.list("materials", &first.materials);
     text.list("temperature", &first.temperature.into_iter().collect::<Vec<_>>());

@@ -5,11 +5,10 @@
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, keyword *MPC.
 
 use super::coupling::Equation;
-use super::equations::along;
-use super::transforms::Transforms;
+use super::rigid::Transforms;
 use crate::error::Error;
-use crate::fem::geometry::{across, cross, distance, dot, length, minus, unit};
-use crate::fem::mesh::deck::{Card, Deck, Place, key};
+use crate::fem::geometry::{COORDINATES, across, cross, distance, dot, length, minus, shifted, unit};
+use crate::fem::mesh::deck::{Card, Deck, Place, SpringType, key};
 use crate::scene::input::sum::Sum;
 
 /// Nodes farther from their plane or line than this share of its extent lie outside: far above the digits of
@@ -83,7 +82,7 @@ fn sums(deck: &Deck, transforms: &Transforms, name: &str, nodes: &[usize]) -> Re
     let off_line = |node: usize| {
         let away = minus(at(node), at(first));
         let height = dot(away, line);
-        [0, 1, 2].map(|axis| away[axis] - height * line[axis])
+        shifted(away, -height, line)
     };
     if extent == 0.0 {
         return Err(format!("the nodes of {name} of *MPC lie at one place"));
@@ -149,4 +148,170 @@ fn axes_across(line: [f64; 3], dimension: usize) -> Vec<[f64; 3]> {
     }
     let first = across(line);
     vec![first, cross(line, first)]
+}
+
+/// The component that a direction of a node names, from 1, as a sum: of a node of elements the displacement along its
+/// local axis.
+///
+/// # Errors
+/// A sentence for a direction that the node does not have, and for a node without local axes.
+pub(super) fn component(deck: &Deck, transforms: &Transforms, node: usize, direction: usize) -> Result<Sum, String> {
+    let (dimension, mut sum) = (deck.dimension(), Sum::default());
+    let is_loose = deck.body_of_node[node].is_none();
+    let turns = is_loose && ((dimension == 3 && (4..=6).contains(&direction)) || direction == 6);
+    if !(1..=dimension).contains(&direction) && !turns {
+        return Err(format!("{direction} is no displacement of a node here; there are 1 to {dimension}"));
+    }
+    match is_loose {
+        true => sum.add((node, direction - 1), 1.0),
+        false => sum.add_along(node, transforms.axes(deck, node)?.unwrap_or(COORDINATES)[direction - 1]),
+    }
+    Ok(sum)
+}
+
+/// The displacement of a node along a vector of the model.
+///
+/// # Errors
+/// A sentence for a node without elements that has local axes.
+pub(super) fn along(deck: &Deck, transforms: &Transforms, node: usize, vector: [f64; 3]) -> Result<Sum, String> {
+    let mut sum = Sum::default();
+    if deck.body_of_node[node].is_none() && transforms.axes(deck, node)?.is_some() {
+        let number = deck.nodes.numbers[node];
+        return Err(format!("node {number} belongs to no element, and is read here without *TRANSFORM only"));
+    }
+    sum.add_along(node, vector);
+    Ok(sum)
+}
+
+pub(super) fn equations(deck: &Deck, transforms: &Transforms) -> Result<Vec<Equation>, Error> {
+    let mut equations = Vec::new();
+    for card in deck.source.cards.iter().filter(|card| card.is("EQUATION")) {
+        add_equations(deck, card, transforms, &mut equations)?;
+    }
+    Ok(equations)
+}
+
+/// The equations of a card: their number of terms, then all terms, each a node, a direction and a coefficient.
+fn add_equations(
+    deck: &Deck,
+    card: &Card,
+    transforms: &Transforms,
+    equations: &mut Vec<Equation>,
+) -> Result<(), Error> {
+    let mut lines = card.lines.iter();
+    while let Some(first) = lines.next() {
+        let mut fields = deck.source.fields(first);
+        let count = fields.whole("the number of terms of the equation")?;
+        fields.end()?;
+        let (mut sum, mut terms) = (Sum::default(), 0);
+        while terms < count {
+            let Some(line) = lines.next() else {
+                let message = format!("the equation has {terms} terms, not {count}");
+                return Err(deck.source.fault(first.place, message));
+            };
+            let mut fields = deck.source.fields(line);
+            while terms < count && fields.clone().text().is_some() {
+                let number = fields.whole("the node of a term")?;
+                let direction = fields.whole(format_args!("the direction of node {number}"))?;
+                let coefficient = fields.finite(format_args!("the coefficient of node {number}"))?;
+                let node =
+                    deck.nodes.place(number).ok_or_else(|| fields.fault(format!("the deck has no node {number}")))?;
+                let term = component(deck, transforms, node, direction).map_err(|message| fields.fault(message))?;
+                sum.add_multiple(coefficient, &term);
+                terms += 1;
+            }
+            fields.end()?;
+        }
+        if sum.terms.is_empty() {
+            return Err(deck.source.fault(first.place, "the equation has no term"));
+        }
+        equations.push(Equation { sum, place: first.place });
+    }
+    Ok(())
+}
+
+/// A spring: its energy is half the stiffness times the square of the elongation.
+#[derive(Clone, Debug)]
+pub(super) struct Spring {
+    pub elongation: Sum,
+    /// Positive, in force per length.
+    pub stiffness: f64,
+    pub place: Place,
+}
+
+pub(super) fn springs(deck: &Deck, transforms: &Transforms) -> Result<Vec<Spring>, Error> {
+    let mut springs: Vec<Option<Spring>> = vec![None; deck.springs.all.len()];
+    for card in deck.source.cards.iter().filter(|card| card.is("SPRING")) {
+        let fault = |message: String| deck.source.fault(card.place, message);
+        if deck.is_axisymmetric() {
+            return Err(fault("springs are not read in an axisymmetric model".into()));
+        }
+        let set = card.value("ELSET").ok_or_else(|| fault("*SPRING names no elements; write ELSET=NAME".into()))?;
+        let members = deck.springs.sets.members(set, &deck.springs.numbers).map_err(fault)?;
+        let Some(of_type) = members.first().map(|&member| deck.springs.all[member].of_type) else { continue };
+        if members.iter().any(|&member| deck.springs.all[member].of_type != of_type) {
+            return Err(fault(format!("`{set}` has springs of several types; name a set of each")));
+        }
+        let (directions, stiffness) = values(deck, card, of_type)?;
+        for member in members {
+            let element = &deck.springs.all[member];
+            let elongation = elongation(deck, transforms, member, directions)
+                .map_err(|message| deck.source.fault(element.place, message))?;
+            springs[member] = Some(Spring { elongation, stiffness, place: element.place });
+        }
+    }
+    let without = || deck.springs.all.iter().zip(&springs).find(|(_, spring)| spring.is_none());
+    if let Some((element, _)) = without() {
+        return Err(deck.source.fault(element.place, "this spring has no stiffness; a card *SPRING must name its set"));
+    }
+    Ok(springs.into_iter().flatten().collect())
+}
+
+/// The directions, from 1, and the stiffness of a card.
+fn values(deck: &Deck, card: &Card, of_type: SpringType) -> Result<([usize; 2], f64), Error> {
+    let fault = |message: &str| Err(deck.source.fault(card.place, message));
+    let mut directions = [1; 2];
+    let line = match (of_type, &card.lines[..]) {
+        (SpringType::Along, [line]) => line,
+        (SpringType::Along, _) => return fault("*SPRING of SPRINGA has one line, with the stiffness"),
+        (_, [first, line]) => {
+            let mut fields = deck.source.fields(first);
+            directions[0] = fields.whole("the direction at the first node")?;
+            if of_type == SpringType::Between {
+                directions[1] = fields.whole("the direction at the second node")?;
+            }
+            fields.end()?;
+            if let Some(wrong) = directions.iter().find(|direction| !(1..=deck.dimension()).contains(direction)) {
+                let message = format!("{wrong} is no displacement of a node here; there are 1 to {}", deck.dimension());
+                return Err(fields.fault(message));
+            }
+            line
+        }
+        _ => return fault("*SPRING of SPRING1 and SPRING2 has two lines: the directions, then the stiffness"),
+    };
+    let mut fields = deck.source.fields(line);
+    let stiffness = fields.finite("the stiffness of the spring")?;
+    match stiffness > 0.0 {
+        true => Ok((directions, stiffness)),
+        false => Err(fields.fault("the stiffness of a spring must be positive")),
+    }
+}
+
+fn elongation(deck: &Deck, transforms: &Transforms, element: usize, directions: [usize; 2]) -> Result<Sum, String> {
+    let element = &deck.springs.all[element];
+    let (mut sum, nodes) = (Sum::default(), &element.nodes[..]);
+    let vectors = match (element.of_type, nodes) {
+        (SpringType::Along, &[one, two]) => {
+            let direction = unit(minus(deck.place_of_node(two), deck.place_of_node(one)));
+            if direction == [0.0; 3] {
+                return Err("the two nodes of this spring lie at one place, so that it has no direction".into());
+            }
+            [direction.map(|part| -part), direction]
+        }
+        _ => [COORDINATES[directions[0] - 1], COORDINATES[directions[1] - 1].map(|part| -part)],
+    };
+    for (&node, vector) in nodes.iter().zip(vectors) {
+        sum.add_multiple(1.0, &along(deck, transforms, node, vector)?);
+    }
+    Ok(sum)
 }

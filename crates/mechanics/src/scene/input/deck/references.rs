@@ -3,20 +3,15 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use serde_json::{Value, json};
-
 use super::bodies::name_of_node;
 use super::coupling::{Coupling, Equation, Kind};
-use super::equations::equations;
-use super::mpc::constraints;
-use super::reference_node::{Of, ReferenceNode};
-use super::rigid::RigidBodies;
-use super::scene_text::{Entry, object};
-use super::springs::{Spring, springs};
-use super::transforms::Transforms;
+use super::keywords::{Entry, object};
+use super::mpc::{Spring, constraints, equations, springs};
+use super::rigid::{Of, ReferenceNode, RigidBodies, Transforms};
 use crate::error::Error;
 use crate::fem::mesh::deck::{Deck, Place};
 use crate::scene::input::sum::{Component, Sum};
+use serde_json::{Value, json};
 
 /// The refusal of a displacement other than 0.
 pub(super) const NO_Z: &str = "a plane model has no displacement along z";

@@ -3,11 +3,8 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::amplitudes::{Amplitudes, periods};
-use super::reference_node::ReferenceNode;
-use super::rigid::RigidBodies;
-use super::temperatures::Temperatures;
-use super::transforms::Transforms;
+use super::amplitudes::{Amplitudes, Temperatures, periods};
+use super::rigid::{ReferenceNode, RigidBodies, Transforms};
 use crate::error::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 

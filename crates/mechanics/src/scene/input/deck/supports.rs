@@ -2,17 +2,15 @@
 
 use std::collections::HashMap;
 
-use serde_json::{Value, json};
-
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_nodes};
-use super::reference_node::Displacements;
+use super::keywords::Entry;
 use super::references::{NO_Z, References};
-use super::scene_text::Entry;
-use super::transforms::Transforms;
+use super::rigid::{Displacements, Transforms};
 use crate::error::Error;
 use crate::fem::geometry::{COORDINATES, dot};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
+use serde_json::{Value, json};
 
 /// The directions of a node in a scene; those of a deck are numbered from 1.
 const AXES: [&str; 3] = ["x", "y", "z"];

@@ -2,10 +2,9 @@
 //! its place.
 
 mod fault;
-mod place;
 mod text;
 mod typed;
 
-pub(crate) use place::{line_and_column, start_of};
+pub(crate) use fault::{line_and_column, start_of};
 pub(crate) use text::{parsed, plain};
 pub(crate) use typed::Typed;

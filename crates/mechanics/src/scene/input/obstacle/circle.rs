@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
+use super::graph::{Form, Graph};
+use super::row::{Foot, Local, Surface};
+use super::shape::{Geometry, ObstacleShape, Side, Site};
+use crate::error::Error;
+use crate::fem::geometry::dot;
+use crate::scene::input::entry::{point, wrong};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use super::graph::{Form, Graph};
-use super::shape::{About, Geometry, ObstacleShape, Side, Site};
-use super::surface::{Foot, Local, Surface};
-use crate::error::Error;
 
 /// A node inside and behind the centre lies beside it if it is farther than this share of the radius from the axis
 /// through the centre.
@@ -34,8 +35,6 @@ pub struct CircleSpec {
     #[serde(default, skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }
-
-pub(super) const ABOUT: About = About { name: "circle", dimensions: &[2] };
 
 impl ObstacleShape for CircleSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
@@ -177,6 +176,85 @@ impl Surface for Hollow {
     fn range(&self) -> (f64, f64) {
         self.0.range()
     }
+}
+
+/// A sphere, given by its centre or by its apex.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SphereSpec {
+    /// The centre of the sphere that the body may touch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centre: Option<[f64; 3]>,
+    /// The point of the sphere nearest to the body: the centre minus the radius along the approach direction; from
+    /// inside, the centre plus the radius.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub apex: Option<[f64; 3]>,
+    /// Radius of the sphere, positive. Nodes beyond its reach have no contact row.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: f64,
+    /// The side of the body: `outside`, or `inside`, as a ball in a cup, with the obstacle all around.
+    #[serde(default, skip_serializing_if = "Side::is_outside")]
+    pub side: Side,
+}
+
+impl ObstacleShape for SphereSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let radius = site.positive("radius", self.radius)?;
+        let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::Turned(round(radius, self.side)))))
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+/// Deviation of a cylinder's axis from the right angle that is rounding of its written components.
+const PERPENDICULAR: f64 = 1e-9;
+
+/// A cylinder without ends, given by a point of its axis or of its apex line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderSpec {
+    /// Any point of the axis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centre: Option<[f64; 3]>,
+    /// Any point of the axis minus the radius along the approach direction, on the line nearest to the body; from
+    /// inside, plus the radius.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub apex: Option<[f64; 3]>,
+    /// Direction of the axis, perpendicular to the approach direction, of any length except zero.
+    pub axis: [f64; 3],
+    /// Radius of the cylinder, positive. Nodes beyond its reach have no contact row.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: f64,
+    /// The side of the cylinder on which the body is: `outside`, or `inside`, as a pin in a hole, with the obstacle all
+    /// around.
+    #[serde(default, skip_serializing_if = "Side::is_outside")]
+    pub side: Side,
+}
+
+impl ObstacleShape for CylinderSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let radius = site.positive("radius", self.radius)?;
+        let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
+        let axis = axis_across(&self.axis, site)?;
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(round(radius, self.side))).along(axis)))
+    }
+}
+
+/// The unit direction of a cylinder's axis.
+fn axis_across(written: &[f64; 3], site: &Site) -> Result<[f64; 3], Error> {
+    let (axis, approach) = (site.axis("axis", written)?, site.direction());
+    let lean = dot(axis, approach);
+    if lean.abs() > PERPENDICULAR {
+        let message =
+            format!("{} must be perpendicular to the approach direction {}", point(written), point(&approach));
+        return Err(wrong(site.field("axis"), message));
+    }
+    let level = [0, 1, 2].map(|i| axis[i] - lean * approach[i]);
+    let length = dot(level, level).sqrt();
+    Ok(level.map(|part| part / length))
 }
 
 #[cfg(test)]

@@ -3,30 +3,25 @@
 
 use std::collections::{HashMap, HashSet};
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::mortar;
-use super::pairs::{Between, Facing};
-use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::order::{Between, Facing};
+use super::shape::{Geometry, ObstacleShape, Site};
+use crate::continuum::SAME_PLACE;
 use crate::error::Error;
 use crate::fem::assembly::{node_normals, outward};
-use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
+use crate::fem::geometry::{cross, distance, dot, length, minus, sorted, unit};
 use crate::fem::mesh::extent;
 use crate::fem::mortar::{TwoSkins, has_corners};
 use crate::fem::surface::Tree;
 use crate::fem::{Boundary, FacetKind};
 use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, number, point, refused, wrong};
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::model::Rule;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Allowed lateral offset of a partner, in units of its distance: at the end of a curved boundary only the facets on
 /// one side give the normal, which is wrong by half the angle of a facet.
 const ASLANT: f64 = 0.2;
-
-/// Lengths below this share of the shortest edge of the facets at a node are rounding of coordinates: seven digits, as
-/// in single precision, leave 5e-7 of the size of the bodies, which is below this share of a facet if at most 2000
-/// facets lie side by side. A place nearer to an edge of a facet than this share of the edge counts as on the edge.
-const SAME_PLACE: f64 = 1e-3;
 
 /// Two distances that differ by less, relative, differ by rounding.
 const ROUNDING: f64 = 1e-12;
@@ -122,8 +117,6 @@ const PAIR_UP: &str = "for `\"rows\": \"pairs\"` the nodes of the two boundaries
 
 /// The code of boundaries whose nodes do not pair up.
 const UNPAIRED: &str = "unpaired-nodes";
-
-pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
 
 impl ObstacleShape for FacingSpec {
     /// Finds the rows: pairs where all nodes pair up, else means.
@@ -354,15 +347,11 @@ impl Search<'_> {
     /// Checks that the nodes opposite to those of a facet are the nodes of a facet: otherwise the areas of a pair would
     /// differ, and a uniform pressure would not pass.
     fn check_facets(&self, pairs: &[Pair]) -> Result<(), Error> {
-        let sorted = |mut nodes: Vec<usize>| {
-            nodes.sort_unstable();
-            nodes
-        };
         let across: HashMap<usize, usize> =
             self.site.candidates.iter().zip(pairs).map(|(&(node, _), pair)| (node, pair.partner)).collect();
-        let others: HashSet<Vec<usize>> = self.other.facets().map(|facet| sorted(facet.to_vec())).collect();
+        let others: HashSet<Vec<usize>> = self.other.facets().map(|facet| sorted(facet.iter().copied())).collect();
         for (index, facet) in self.own.facets().enumerate() {
-            if !others.contains(&sorted(facet.iter().filter_map(|node| across.get(node)).copied().collect())) {
+            if !others.contains(&sorted(facet.iter().filter_map(|node| across.get(node)).copied())) {
                 let (own, other) = (&self.own.name, &self.other.name);
                 let message = format!(
                     "the nodes of facet {index} of `{own}` lie opposite nodes of `{other}` that do not form a facet; {PAIR_UP}"

@@ -4,13 +4,11 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::row::ObstacleRow;
-use super::ruled::RigidSurface;
+use super::patch::{PAIRS, distance_of_origin, extent, linear};
+use super::row::{ObstacleRow, RigidSurface, Surface};
 use super::shape::Site;
-use super::surface::Surface;
-use super::triangle::{PAIRS, distance_of_origin, extent, linear};
 use crate::fem::geometry::{cross, dot, minus};
-use crate::scene::input::schema::approach::{Approach, Rule};
+use crate::scene::input::schema::model::{Approach, Rule};
 
 /// Largest number of pieces of a pictured surface; more cannot be seen.
 const MAX_SEGMENTS: usize = 10_000;
@@ -66,7 +64,7 @@ impl Graph {
 
     /// A point in the frame, with the surface moved by `shift`.
     fn local(&self, point: [f64; 3], shift: f64) -> [f64; 3] {
-        let from_origin = [0, 1, 2].map(|axis| point[axis] - self.origin[axis]);
+        let from_origin = minus(point, self.origin);
         let [t1, t2, towards] = self.axes.map(|axis| dot(axis, from_origin));
         [t1, t2, towards - shift]
     }
@@ -217,11 +215,11 @@ pub(super) fn across(approach: Approach) -> [usize; 2] {
 mod tests {
     use super::super::circle::round;
     use super::super::oracle::{ROUNDING, Random, checked, quarters, triangles};
-    use super::super::parabola::Parabola;
     use super::super::polyline::Polyline;
     use super::super::shape::Side;
     use super::*;
     use crate::fem::geometry::COORDINATES;
+    use crate::scene::input::obstacle::polyline::Parabola;
 
     const RADIUS: f64 = 2.0;
 

@@ -3,16 +3,14 @@
 use std::iter;
 use std::sync::Arc;
 
+use super::graph::{Form, Graph, Grid, across};
+use super::patch::{Foot, PAIRS, Patch, extent};
+use super::shape::{Geometry, ObstacleShape, Site};
+use crate::error::Error;
+use crate::fem::geometry::{dot, minus, plus};
+use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use super::graph::{Form, Graph, Grid, across};
-use super::patch::{Foot, Patch};
-use super::shape::{About, Geometry, ObstacleShape, Site};
-use super::triangle::{PAIRS, extent};
-use crate::error::Error;
-use crate::fem::geometry::dot;
-use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
 
 /// Feet closer together than this, relative to the body's size, are one point: neighbouring cells share their edges,
 /// and the accuracy of a search is the square root of rounding.
@@ -37,8 +35,6 @@ pub struct HeightMapSpec {
     #[schemars(extend("minItems" = 2))]
     pub heights: Vec<Vec<f64>>,
 }
-
-pub(super) const ABOUT: About = About { name: "height-map", dimensions: &[3] };
 
 impl ObstacleShape for HeightMapSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
@@ -117,7 +113,7 @@ impl HeightMap {
             .flat_map(|i| near[1].clone().map(move |j| (i, j)))
             .map(|(i, j)| self.patch(i, j).normal([foot.at[0], foot.at[1]]))
             .collect();
-        let sum = around.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
+        let sum = around.iter().copied().fold([0.0; 3], plus);
         let length = dot(sum, sum).sqrt();
         let mean = sum.map(|part| part / length);
         let smooth = around.iter().all(|normal| (0..3).all(|axis| (normal[axis] - mean[axis]).abs() <= SAME_NORMAL));
@@ -237,7 +233,7 @@ impl Grid for HeightMap {
         let mut apart: Vec<Foot> = Vec::new();
         for foot in feet {
             let beside = |other: &Foot| {
-                let way = [0, 1, 2].map(|axis| other.at[axis] - foot.at[axis]);
+                let way = minus(other.at, foot.at);
                 dot(way, way).sqrt() <= SAME_FOOT * self.size
             };
             if !apart.iter().any(beside) {
@@ -245,13 +241,13 @@ impl Grid for HeightMap {
             }
         }
         let normals: Vec<[f64; 3]> = apart.iter().map(|foot| self.normal(node, foot, sense, tolerance)).collect();
-        let sum = normals.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
+        let sum = normals.iter().copied().fold([0.0; 3], plus);
         let length = dot(sum, sum).sqrt();
         let normal = sum.map(|part| part / length);
         // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther
         // away.
         let (foot, own) = (apart.first()?, *normals.first()?);
-        let to_foot = [0, 1, 2].map(|axis| foot.at[axis] - node[axis]);
+        let to_foot = minus(foot.at, node);
         Some((normal, dot(own, to_foot) / dot(own, normal)))
     }
 }

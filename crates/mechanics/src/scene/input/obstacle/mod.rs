@@ -1,8 +1,6 @@
-//! Obstacles: each gives a row for every point. Each shape has its own file and is named only there and here.
+//! Obstacles: each gives a row for every point. A shape is named only in its file and here.
 
 mod circle;
-mod cone;
-mod cylinder;
 mod facing;
 mod graph;
 mod height_map;
@@ -10,45 +8,32 @@ pub(crate) mod mortar;
 #[cfg(test)]
 mod oracle;
 pub(crate) mod order;
-mod pairs;
-mod parabola;
 mod patch;
 mod placed;
 mod plane;
 mod polyline;
 mod row;
-mod ruled;
 mod shape;
-mod sphere;
-mod surface;
-mod table;
 mod torus;
-mod triangle;
 mod triangulated;
-mod wedge;
 
-pub use circle::CircleSpec;
-pub use cone::ConeSpec;
-pub use cylinder::CylinderSpec;
+pub use circle::{CircleSpec, CylinderSpec, SphereSpec};
 pub use facing::FacingSpec;
 pub(crate) use facing::shortest_edges;
 pub use height_map::HeightMapSpec;
-pub(crate) use order::SideOrder;
-pub(crate) use pairs::Between;
-pub use parabola::ParabolaSpec;
+pub(crate) use order::{Between, SideOrder};
 pub use placed::{Inertia, PlacedObstacle};
-pub use plane::PlaneSpec;
+pub use plane::{ConeSpec, PlaneSpec, TableSpec, WedgeSpec};
+pub use polyline::ParabolaSpec;
 pub use row::{Obstacle, ObstacleRow};
-pub use sphere::SphereSpec;
-pub use table::TableSpec;
 pub use torus::TorusSpec;
 pub use triangulated::SurfaceSpec;
-pub use wedge::WedgeSpec;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use shape::{About, ObstacleShape};
+use crate::scene::input::body::About;
+use shape::ObstacleShape;
 
 /// The surface of an obstacle, over the coordinates perpendicular to the approach direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -80,21 +65,23 @@ pub enum ShapeSpec {
     Body(FacingSpec),
 }
 
+// A shape by its name, with the dimensions of the models that allow it.
+const PLANE: About = About { name: "plane", dimensions: &[1, 2, 3] };
+const PARABOLA: About = About { name: "parabola", dimensions: &[2] };
+const CIRCLE: About = About { name: "circle", dimensions: &[2] };
+const WEDGE: About = About { name: "wedge", dimensions: &[2] };
+const TABLE: About = About { name: "table", dimensions: &[2] };
+const SPHERE: About = About { name: "sphere", dimensions: &[3] };
+const CYLINDER: About = About { name: "cylinder", dimensions: &[3] };
+const CONE: About = About { name: "cone", dimensions: &[3] };
+const HEIGHT_MAP: About = About { name: "height-map", dimensions: &[3] };
+const TORUS: About = About { name: "torus", dimensions: &[3] };
+const SURFACE: About = About { name: "surface", dimensions: &[3] };
+const BODY: About = About { name: "body", dimensions: &[1, 2, 3] };
+
 /// The names of all shapes, in the order of messages.
-const ALL: [About; 12] = [
-    plane::ABOUT,
-    parabola::ABOUT,
-    circle::ABOUT,
-    wedge::ABOUT,
-    table::ABOUT,
-    sphere::ABOUT,
-    cylinder::ABOUT,
-    cone::ABOUT,
-    height_map::ABOUT,
-    torus::ABOUT,
-    triangulated::ABOUT,
-    facing::ABOUT,
-];
+const ALL: [About; 12] =
+    [PLANE, PARABOLA, CIRCLE, WEDGE, TABLE, SPHERE, CYLINDER, CONE, HEIGHT_MAP, TORUS, SURFACE, BODY];
 
 impl ShapeSpec {
     /// The surface `boundary` of another body as an obstacle within reach.
@@ -116,18 +103,18 @@ impl ShapeSpec {
     /// obstacles.
     fn described(&self) -> (About, &dyn ObstacleShape) {
         match self {
-            ShapeSpec::Plane(spec) => (plane::ABOUT, spec),
-            ShapeSpec::Parabola(spec) => (parabola::ABOUT, spec),
-            ShapeSpec::Circle(spec) => (circle::ABOUT, spec),
-            ShapeSpec::Wedge(spec) => (wedge::ABOUT, spec),
-            ShapeSpec::Table(spec) => (table::ABOUT, spec),
-            ShapeSpec::Sphere(spec) => (sphere::ABOUT, spec),
-            ShapeSpec::Cylinder(spec) => (cylinder::ABOUT, spec),
-            ShapeSpec::Cone(spec) => (cone::ABOUT, spec),
-            ShapeSpec::HeightMap(spec) => (height_map::ABOUT, spec),
-            ShapeSpec::Torus(spec) => (torus::ABOUT, spec),
-            ShapeSpec::Surface(spec) => (triangulated::ABOUT, spec),
-            ShapeSpec::Body(spec) => (facing::ABOUT, spec),
+            ShapeSpec::Plane(spec) => (PLANE, spec),
+            ShapeSpec::Parabola(spec) => (PARABOLA, spec),
+            ShapeSpec::Circle(spec) => (CIRCLE, spec),
+            ShapeSpec::Wedge(spec) => (WEDGE, spec),
+            ShapeSpec::Table(spec) => (TABLE, spec),
+            ShapeSpec::Sphere(spec) => (SPHERE, spec),
+            ShapeSpec::Cylinder(spec) => (CYLINDER, spec),
+            ShapeSpec::Cone(spec) => (CONE, spec),
+            ShapeSpec::HeightMap(spec) => (HEIGHT_MAP, spec),
+            ShapeSpec::Torus(spec) => (TORUS, spec),
+            ShapeSpec::Surface(spec) => (SURFACE, spec),
+            ShapeSpec::Body(spec) => (BODY, spec),
         }
     }
 

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::order::facet_size;
-use super::pairs::{Between, Facing};
+use super::order::{Between, Facing, facet_size};
 use super::shape::Site;
 use crate::error::Error;
 use crate::fem::assembly::{PositiveBasis, outward};
@@ -11,13 +10,13 @@ use crate::fem::mortar::{Found, MortarRow, Opposite};
 use crate::fem::{Boundary, DofMap, ElasticBody, Mortar};
 use crate::scene::Warning;
 use crate::scene::input::entry::wrong;
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::model::Rule;
 
 /// Facets of the other boundary larger than this many facets of the carrying one leave waves in the pressure.
 const COARSE: f64 = 4.0;
 
-/// A boundary covered by less than this share is only partly covered.
-const COVERED: f64 = 1.0 - 1e-6;
+/// A boundary covered by less than this share is only partly covered, or tied.
+pub(crate) const COVERED: f64 = 1.0 - 1e-6;
 
 /// The sag of straight facets that counts, in gaps: gaps are those of curves through the nodes, which miss circles by a
 /// two-hundredth of the sag, uneven meshes included.
@@ -129,37 +128,47 @@ fn facing(seen: Opposite) -> Facing {
 const OF_FIT: f64 = 0.1;
 
 fn warnings(site: &Site, [slave, master]: [&Boundary; 2], found: &Found, fit: Option<f64>) -> Vec<Warning> {
-    let obstacle = site.obstacle.to_string();
-    let [share, _] = found.covered;
+    let (obstacle, boundary, other) = (site.obstacle, &slave.name, &master.name);
+    let [share, of_other] = found.covered;
     if found.rows.is_empty() {
-        let (boundary, other) = (slave.name.clone(), master.name.clone());
-        return vec![Warning::NoFacingFacet { obstacle, boundary, other }];
+        let message = format!(
+            "{obstacle}: no facet of `{boundary}` faces `{other}` within reach: both bodies are solved without this contact; check the \
+             boundaries, the approach direction and `reach`"
+        );
+        return vec![Warning::new("no-facing-facet", message)];
     }
     let mut warnings = Vec::new();
     // Surfaces that are as far apart as a facet is long where one ends need not meet there.
     let near = facet_size(site.body, &[slave]).powf(1.0 / (site.body.dimension() as f64 - 1.0));
     let ends = found.rows.iter().any(|row| row.covered < COVERED && row.gap.abs() <= near);
-    if ends && share < COVERED && found.covered[1] < COVERED {
-        let (boundary, other) = (slave.name.clone(), master.name.clone());
-        warnings.push(Warning::PartlyCovered {
-            obstacle: obstacle.clone(),
-            boundary,
-            other,
-            share,
-            of_other: found.covered[1],
-        });
+    if ends && share < COVERED && of_other < COVERED {
+        let message = format!(
+            "{obstacle}: {:.1} % of the area of `{boundary}` face `{other}`, and {:.1} % of the nodes of `{other}` face `{boundary}`: where \
+             nothing faces them, the bodies can go through each other; name boundaries that contain the whole contact",
+            100.0 * share,
+            100.0 * of_other
+        );
+        warnings.push(Warning::new("partly-covered", message));
     }
     let dimension = site.body.dimension() as i32 - 1;
     let ratio = (facet_size(site.body, &[master]) / facet_size(site.body, &[slave])).powf(1.0 / f64::from(dimension));
     if ratio > COARSE {
-        let (boundary, other) = (slave.name.clone(), master.name.clone());
-        warnings.push(Warning::CoarseMaster { obstacle: obstacle.clone(), boundary, other, ratio });
+        let message = format!(
+            "{obstacle}: the facets of `{other}` are {ratio:.1} times as long as those of `{boundary}`: between them the pressure has \
+             waves; refine `{other}`"
+        );
+        warnings.push(Warning::new("coarse-master", message));
     }
     let gaps = || found.rows.iter().map(|row| row.gap);
     let largest = gaps().fold(0.0, |largest: f64, gap| largest.max(gap.abs()));
     match fit {
         None if found.sag > SAG * largest && largest > 0.0 => {
-            warnings.push(Warning::Sag { obstacle, sag: found.sag, gap: largest });
+            let message = format!(
+                "{obstacle}: facets stand for curves and miss them by up to {:.2e}, while the largest gap is {largest:.2e}: gaps are those of \
+                 curves through the nodes, which are not known so well; give the distance as `fit`, take quadratic elements, or a finer mesh",
+                found.sag
+            );
+            warnings.push(Warning::new("sag", message));
         }
         Some(fit) => {
             // Meshes are drawn with the fit, or without a gap.
@@ -167,7 +176,11 @@ fn warnings(site: &Site, [slave, master]: [&Boundary; 2], found: &Found, fit: Op
             let misses = gaps().filter(|&gap| off(gap) > 2.0 * found.sag + OF_FIT * fit.abs());
             let differs = misses.fold(0.0, |most: f64, gap| most.max((gap - fit).abs()));
             if differs > 0.0 {
-                warnings.push(Warning::FitDiffers { obstacle, differs, fit });
+                let message = format!(
+                    "{obstacle}: the meshes lie {differs:.2e} away from the fit {fit:.2e} (interference is negative): the fit counts; check \
+                     its value, and that both boundaries are meant"
+                );
+                warnings.push(Warning::new("fit-differs", message));
             }
         }
         None => {}

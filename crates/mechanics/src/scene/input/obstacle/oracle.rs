@@ -1,8 +1,9 @@
 //! The oracle of enclosed gaps: the rows by rule `approach` at points of a triangle.
 
-use super::ruled::RigidSurface;
-use super::triangle::PAIRS;
-use crate::scene::input::schema::approach::Rule;
+use super::patch::PAIRS;
+use super::row::RigidSurface;
+use crate::fem::geometry::midpoint;
+use crate::scene::input::schema::model::Rule;
 
 /// Rounding of gaps and places of order one, with slopes of some hundreds near a rim.
 pub(super) const ROUNDING: f64 = 1e-11;
@@ -85,7 +86,7 @@ pub(super) fn checked(
 
 /// The four triangles between the corners and the middles of the edges.
 pub(super) fn quarters(corners: [[f64; 3]; 3]) -> [[[f64; 3]; 3]; 4] {
-    let middle = |i: usize, j: usize| [0, 1, 2].map(|axis| (corners[i][axis] + corners[j][axis]) / 2.0);
+    let middle = |i: usize, j: usize| midpoint(corners[i], corners[j]);
     let ([a, b, c], [ab, bc, ca]) = (corners, [middle(0, 1), middle(1, 2), middle(2, 0)]);
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }

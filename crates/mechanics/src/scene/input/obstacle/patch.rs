@@ -1,6 +1,6 @@
 //! One bilinear cell of a height map: its closest points to a node.
 
-use crate::fem::geometry::dot;
+use crate::fem::geometry::{dot, minus};
 /// Number of strips of a cell in which local minima of the distance are searched; a cell has only a few minima.
 const STRIPS: usize = 16;
 
@@ -76,14 +76,14 @@ impl Patch {
     /// from 0 to 1.
     fn along_segment(&self, node: [f64; 3], from: [f64; 2], to: [f64; 2]) -> f64 {
         let (start, end) = (self.point(from), self.point(to));
-        let along = [0, 1, 2].map(|axis| end[axis] - start[axis]);
-        let to_node = [0, 1, 2].map(|axis| node[axis] - start[axis]);
+        let along = minus(end, start);
+        let to_node = minus(node, start);
         (dot(to_node, along) / dot(along, along)).clamp(0.0, 1.0)
     }
 
     fn foot(&self, node: [f64; 3], own: [f64; 2]) -> Foot {
         let at = self.point(own);
-        let way = [0, 1, 2].map(|axis| at[axis] - node[axis]);
+        let way = minus(at, node);
         Foot { at, distance: way[0].hypot(way[1]).hypot(way[2]), on_edge: false }
     }
 
@@ -134,7 +134,7 @@ impl Patch {
         let mut own = start;
         for _ in 0..NEWTON_STEPS {
             let (at, [hu, hv]) = (self.point(own), self.slopes(own));
-            let rest = [0, 1, 2].map(|axis| at[axis] - node[axis]);
+            let rest = minus(at, node);
             let gradient = [rest[0] * self.size[0] + rest[2] * hu, rest[1] * self.size[1] + rest[2] * hv];
             let (uu, vv) = (self.size[0].powi(2) + hu * hu, self.size[1].powi(2) + hv * hv);
             let uv = hu * hv + rest[2] * twist;
@@ -159,4 +159,36 @@ impl Patch {
         }
         Some(own)
     }
+}
+
+/// The pairs of corners of the six coefficients.
+pub(super) const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
+
+/// A function on a triangle of which nothing is known: its largest distances `[below, above]` from zero are infinite.
+pub(super) const NOT_ENCLOSED: ([f64; 6], [f64; 2]) = ([0.0; 6], [f64::INFINITY; 2]);
+
+/// The coefficients of the linear function with these values at the corners.
+pub(super) fn linear(values: [f64; 3]) -> [f64; 6] {
+    PAIRS.map(|[i, j]| (values[i] + values[j]) / 2.0)
+}
+
+/// The least and the largest of the values at the corners.
+pub(super) fn extent([a, b, c]: [f64; 3]) -> [f64; 2] {
+    [a.min(b).min(c), a.max(b).max(c)]
+}
+
+/// The distance of the origin from a triangle in the plane, corners `[x, y]` in any order; zero inside.
+pub(super) fn distance_of_origin(corners: [[f64; 2]; 3]) -> f64 {
+    let edges = [[0, 1], [1, 2], [2, 0]].map(|ends| ends.map(|corner| corners[corner]));
+    let turns = edges.map(|[[ax, ay], [bx, by]]| ax * by - ay * bx);
+    if turns.iter().all(|&turn| turn > 0.0) || turns.iter().all(|&turn| turn < 0.0) {
+        return 0.0;
+    }
+    let distance = |[[ax, ay], [bx, by]]: [[f64; 2]; 2]| {
+        let [x, y] = [bx - ax, by - ay];
+        let square = x * x + y * y;
+        let share = if square > 0.0 { (-(ax * x + ay * y) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (ax + share * x).hypot(ay + share * y)
+    };
+    edges.into_iter().map(distance).fold(f64::INFINITY, f64::min)
 }

@@ -2,18 +2,16 @@
 
 use std::sync::Arc;
 
-use super::order::SideOrder;
-use super::pairs::{Between, Facing};
+use super::order::{Between, Facing, SideOrder};
 use super::row::{Obstacle, ObstacleRow};
 use super::shape::{Geometry, Site};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{length, unit};
+use crate::fem::geometry::{length, plus, unit};
 use crate::scene::Warning;
-use crate::scene::input::entry::{boundary, finite, number, positive, wrong};
-use crate::scene::input::files::Files;
-use crate::scene::input::schema::approach::{Approach, Rule};
+use crate::scene::input::entry::{Files, boundary, finite, number, positive, wrong};
+use crate::scene::input::schema::model::{Approach, Rule};
 use crate::scene::input::schema::obstacle::ObstacleSpec;
 
 /// A component of a unit normal below this is rounding of the geometry, not a direction.
@@ -331,7 +329,7 @@ fn without_rounding(row: ObstacleRow) -> ObstacleRow {
 
 /// The mean of outward normals; the x axis if they cancel, as around a shaft.
 fn mean_direction(outward: &[[f64; 3]]) -> [f64; 3] {
-    let sum = outward.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
+    let sum = outward.iter().copied().fold([0.0; 3], plus);
     let mean = sum.map(|part| part / outward.len().max(1) as f64);
     let mean = unit(mean.map(|part| if part.abs() < NO_DIRECTION { 0.0 } else { part }));
     if mean == [0.0; 3] { [1.0, 0.0, 0.0] } else { mean }

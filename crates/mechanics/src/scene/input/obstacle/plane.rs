@@ -1,20 +1,19 @@
-//! A plane: a line in the plane, n . x = 0 in the frame of its point; a half space behind a plane elsewhere.
+//! A plane; a polyline through points, undefined beyond its ends; a wedge h(s) = slope |s|, and a cone, which is a
+//! wedge rotated about the approach direction.
 
 use std::sync::Arc;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::graph::{Form, Graph};
-use super::row::ObstacleRow;
-use super::ruled::RigidSurface;
-use super::shape::{About, Geometry, ObstacleShape, Site};
-use super::surface::{Foot, Local, Surface};
-use super::triangle::linear;
+use super::patch::linear;
+use super::polyline::Polyline;
+use super::row::{Foot, Local, ObstacleRow, RigidSurface, Surface};
+use super::shape::{Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::geometry::{dot, length, minus};
-use crate::scene::input::entry::{point, vector, wrong};
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, vector, wrong};
+use crate::scene::input::schema::model::Rule;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A plane as an obstacle, given by a point and its normal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,8 +24,6 @@ pub struct PlaneSpec {
     /// Its normal, which points into the obstacle, to the side of the approach direction; of any length except zero.
     pub normal: Vec<f64>,
 }
-
-pub(super) const ABOUT: About = About { name: "plane", dimensions: &[1, 2, 3] };
 
 impl PlaneSpec {
     /// Its point and its unit normal.
@@ -116,13 +113,114 @@ impl RigidSurface for HalfSpace {
     }
 }
 
+/// A polyline through points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// At least two points [x, y], increasing in the coordinate perpendicular to the approach direction, from the first
+    /// candidate to the last or beyond.
+    #[schemars(extend("minItems" = 2))]
+    pub points: Vec<[f64; 2]>,
+}
+
+impl TableSpec {
+    fn polyline(&self, site: &Site) -> Result<Polyline, Error> {
+        let path = site.field("points");
+        let axis = site.name_along();
+        let mut knots: Vec<Local> = Vec::with_capacity(self.points.len());
+        for (index, &at) in self.points.iter().enumerate() {
+            for (axis, coordinate) in at.into_iter().enumerate() {
+                finite(format!("{path}[{index}][{axis}]"), coordinate)?;
+            }
+            let knot = site.local([at[0], at[1], 0.0]);
+            if let Some(last) = knots.last().filter(|last| knot[0] <= last[0]) {
+                let (this, before) = (number(knot[0]), number(last[0]));
+                let message =
+                    format!("{axis} = {this} does not lie beyond {before}, the one before; the {axis} must increase");
+                return Err(wrong(format!("{path}[{index}]"), message));
+            }
+            knots.push(knot);
+        }
+        let found = knots.len();
+        Polyline::table(knots, PLACE_TOLERANCE * site.body.mesh().size())
+            .ok_or_else(|| wrong(path.as_str(), format!("a table needs at least two points, but there are {found}")))
+    }
+}
+
+impl ObstacleShape for TableSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let table = self.polyline(site)?;
+        check_reach(&table, site)?;
+        Ok(Geometry::rigid(site, Graph::new(site, [0.0; 3], Form::DrawnOut(Arc::new(table)))))
+    }
+}
+
+/// Checks that every candidate lies over the surface.
+fn check_reach(table: &Polyline, site: &Site) -> Result<(), Error> {
+    let (axis, path) = (site.name_along(), site.field("points"));
+    let (first, last) = table.range();
+    for &(node, _) in site.candidates {
+        let at = site.body.mesh().nodes()[node];
+        let along = site.local(at)[0];
+        if !(first..=last).contains(&along) {
+            let corners = table.corners();
+            let ends = corners.first().zip(corners.last());
+            let reach = ends.map_or(String::new(), |(a, b)| format!(" from {axis} = {} to {}", number(*a), number(*b)));
+            let message = format!(
+                "the table reaches{reach}, but candidate node {node} at {} needs it at {axis} = {}",
+                point(&at[..2]),
+                number(along)
+            );
+            return Err(wrong(path.as_str(), message));
+        }
+    }
+    Ok(())
+}
+
+/// A cone that opens along the approach direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConeSpec {
+    /// The tip of the cone, its point nearest to the body.
+    pub apex: [f64; 3],
+    /// Slope of the flank away from the body, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub slope: f64,
+}
+
+impl ObstacleShape for ConeSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let apex = site.point("apex", &self.apex)?;
+        let slope = site.positive("slope", self.slope)?;
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::Turned(Arc::new(Polyline::wedge(slope))))))
+    }
+}
+
+/// A wedge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WedgeSpec {
+    /// The tip of the wedge, its point nearest to the body.
+    pub apex: [f64; 2],
+    /// Slope of both flanks away from the body, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub slope: f64,
+}
+
+impl ObstacleShape for WedgeSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let apex = site.point("apex", &self.apex)?;
+        let slope = site.positive("slope", self.slope)?;
+        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(Arc::new(Polyline::wedge(slope))))))
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::oracle::{Random, checked, triangles};
-    use super::super::row::Obstacle;
-    use super::super::ruled::Ruled;
-    use super::super::triangle::NOT_ENCLOSED;
     use super::*;
+    use crate::scene::input::obstacle::oracle::{Random, checked, triangles};
+    use crate::scene::input::obstacle::patch::NOT_ENCLOSED;
+    use crate::scene::input::obstacle::row::{Obstacle, Ruled};
 
     const SLOPE: HalfSpace =
         HalfSpace { point: [0.1, 0.2, 1.0], normal: [0.48, -0.6, 0.64], approach: [0.0, 0.0, 1.0] };

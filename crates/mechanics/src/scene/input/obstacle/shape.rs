@@ -2,30 +2,16 @@
 
 use std::sync::Arc;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::order::SideOrder;
-use super::pairs::Between;
-use super::row::Obstacle;
-use super::ruled::{RigidSurface, Ruled};
-use super::surface::Local;
+use super::order::{Between, SideOrder};
+use super::row::{Local, Obstacle, RigidSurface, Ruled};
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::along_axis;
-use crate::scene::input::entry::{COORDINATE_ROUNDING, positive, vector, wrong};
-use crate::scene::input::files::Files;
-use crate::scene::input::schema::approach::{Approach, Rule};
-
-/// The name of an obstacle shape and the models that allow it.
-#[derive(Clone, Copy, Debug)]
-pub struct About {
-    /// The key by which a scene chooses the obstacle shape.
-    pub name: &'static str,
-    /// The allowed numbers of coordinates of a model.
-    pub dimensions: &'static [usize],
-}
+use crate::fem::geometry::{along_axis, shifted};
+use crate::scene::input::entry::{COORDINATE_ROUNDING, Files, positive, vector, wrong};
+use crate::scene::input::schema::model::{Approach, Rule};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// An obstacle shape with its numbers.
 pub(crate) trait ObstacleShape {
@@ -169,7 +155,7 @@ impl Site<'_> {
             (None, Some(apex)) => self.point("apex", &apex),
             (Some(centre), None) => {
                 let (centre, approach) = (self.point("centre", &centre)?, self.direction());
-                Ok([0, 1, 2].map(|axis| centre[axis] - radius * approach[axis]))
+                Ok(shifted(centre, -radius, approach))
             }
             (Some(_), Some(_)) => Err(wrong(self.path.as_str(), "has both `centre` and `apex`; give only one")),
             (None, None) => Err(wrong(self.path.as_str(), "has neither `centre` nor `apex`; give one")),

@@ -1,16 +1,14 @@
 //! A torus: the points at the distance `minor` from a ring of radius `major`.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::circle::BESIDE;
-use super::row::ObstacleRow;
-use super::ruled::RigidSurface;
-use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::row::{ObstacleRow, RigidSurface};
+use super::shape::{Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::geometry::{dot, minus, unit};
 use crate::scene::input::entry::{number, point, wrong};
-use crate::scene::input::schema::approach::Rule;
+use crate::scene::input::schema::model::Rule;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Deviation of an axis that is rounding of its written components.
 const ALIGNED: f64 = 1e-9;
@@ -31,8 +29,6 @@ pub struct TorusSpec {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub minor: f64,
 }
-
-pub(super) const ABOUT: About = About { name: "torus", dimensions: &[3] };
 
 impl ObstacleShape for TorusSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

@@ -2,18 +2,15 @@
 
 use std::sync::Arc;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::row::ObstacleRow;
-use super::ruled::RigidSurface;
-use super::shape::{About, Geometry, ObstacleShape, Side, Site};
+use super::row::{ObstacleRow, RigidSurface};
+use super::shape::{Geometry, ObstacleShape, Side, Site};
 use crate::error::Error;
 use crate::fem::geometry::minus;
 use crate::fem::surface::{ClosedSurface, Crossing};
-use crate::scene::input::entry::located;
-use crate::scene::input::files::Files;
-use crate::scene::input::schema::approach::{Approach, Rule};
+use crate::scene::input::entry::{Files, located};
+use crate::scene::input::schema::model::{Approach, Rule};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Approximate bytes of memory for a byte of the file: 2.5 for a binary STL, the densest form.
 const OF_FILE: f64 = 3.0;
@@ -29,7 +26,7 @@ pub struct SurfaceSpec {
     /// starts in that folder.
     pub file: String,
     /// Factor of the coordinates of the triangles, positive.
-    #[serde(default = "crate::scene::input::schema::cells::one")]
+    #[serde(default = "crate::scene::input::schema::model::one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
     /// The position of the origin of the file.
@@ -43,8 +40,6 @@ pub struct SurfaceSpec {
 fn is_origin(at: &[f64; 3]) -> bool {
     *at == [0.0; 3]
 }
-
-pub(super) const ABOUT: About = About { name: "surface", dimensions: &[3] };
 
 impl ObstacleShape for SurfaceSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

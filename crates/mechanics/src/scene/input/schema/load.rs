@@ -1,11 +1,10 @@
-//! Loads as they are written in a scene.
+//! Loads, supports, rigid faces, planes of symmetry and factors over space as they are written in a scene.
 
 use std::collections::BTreeMap;
 
+use crate::scene::input::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use super::profile::ProfileSpec;
 
 /// An external load. Body forces, gravity and centrifugal forces act on all bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -117,4 +116,136 @@ pub struct CentrifugalSpec {
     /// A point on the axis; the origin if left out; not in an axisymmetric model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub point: Option<Vec<f64>>,
+}
+
+/// A factor that changes along a direction: straight lines between places, constant beyond the first and the last.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProfileSpec {
+    /// The direction, of any length except zero.
+    pub along: Vec<f64>,
+    /// Places along it, at least one, increasing: distances from the plane through the origin normal to the direction.
+    #[schemars(extend("minItems" = 1))]
+    pub places: Vec<f64>,
+    /// The factor at each place.
+    #[schemars(extend("minItems" = 1))]
+    pub factors: Vec<f64>,
+}
+
+/// The place on the body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Place {
+    /// All nodes of a named boundary.
+    Boundary(String),
+    /// The node at this point.
+    Point(Vec<f64>),
+    /// The nodes of a set, or of several, of a deck; a node is named by its number.
+    #[serde(with = "names")]
+    #[schemars(schema_with = "names::schema")]
+    Nodes(Vec<String>),
+}
+
+/// A support: a direction that is left out is free; a number is the prescribed displacement.
+///
+/// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, the
+/// components along the plane are free. In an axisymmetric model the plane is a cone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SupportSpec {
+    pub on: Place,
+    /// Prescribed displacement along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// Prescribed displacement along y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// Prescribed displacement along z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
+    /// Normal of an inclined plane, of either sense and of any length except zero.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal: Option<Vec<f64>>,
+    /// Prescribed displacement along the normal, in length; 0 if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// A factor for all these displacements that changes along a direction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileSpec>,
+}
+
+/// A plane of symmetry, given by the axis normal to it. It lies at the flat end of the body, at zero if the body has a
+/// flat end there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SymmetryPlane {
+    /// Normal to x.
+    X,
+    /// Normal to y.
+    Y,
+    /// Normal to z.
+    Z,
+}
+
+impl SymmetryPlane {
+    /// The axis normal to the plane, 0 to 2.
+    pub fn axis(self) -> usize {
+        self as usize
+    }
+
+    /// The axis normal to the plane, as a scene writes it.
+    pub fn name(self) -> &'static str {
+        ["x", "y", "z"][self.axis()]
+    }
+}
+
+/// A boundary that moves as a rigid plate: a displacement of its centre and a rotation about it. Components that are
+/// not prescribed follow from the force and the moment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RigidFaceSpec {
+    /// The boundary, or `nodes` instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<String>,
+    /// The nodes of a set, or of several, of a deck.
+    #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
+    #[schemars(schema_with = "names::schema")]
+    pub nodes: Vec<String>,
+    /// The centre of rotation, at which the force acts; the centroid of the boundary's area, or the mean of the
+    /// nodes, if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centre: Option<Vec<f64>>,
+    /// Prescribed displacement of the centre along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// Prescribed displacement of the centre along y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// Prescribed displacement of the centre along z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
+    /// Prescribed rotations about the centre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationSpec>,
+    /// The force on it; zero if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<Vec<f64>>,
+    /// The moment on it about the centre: about z in the plane, three components in space; zero if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moment: Option<Vec<f64>>,
+}
+
+/// Prescribed rotations, in radians, small; a rotation that is left out is free.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotationSpec {
+    /// About x, in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// About y, in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// About z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
 }

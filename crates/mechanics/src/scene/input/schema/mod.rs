@@ -5,36 +5,24 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
 pub(crate) mod analysis;
-pub(crate) mod approach;
-mod body;
-pub(crate) mod cells;
-mod condition;
+pub(crate) mod body;
 pub(crate) mod load;
 pub(crate) mod model;
 pub(crate) mod obstacle;
-pub(crate) mod part;
-mod point;
-pub(crate) mod profile;
-mod rigid_face;
-pub(crate) mod spring;
-mod symmetry;
-mod tie;
+pub(crate) mod tie;
 
 pub use analysis::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, ModesSpec, PenetrationSpec, WatchSpec,
 };
-pub use approach::Rule;
-pub use body::{FurtherBodySpec, InitialStressSpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec, TemperatureSpec};
-pub use condition::{Place, SupportSpec};
-pub use load::LoadSpec;
-pub use model::ModelSpec;
+pub use body::{
+    FurtherBodySpec, InitialStressSpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec, PartSpec, TemperatureSpec,
+};
+pub use load::{LoadSpec, Place, RigidFaceSpec, SupportSpec, SymmetryPlane};
+pub use model::{ModelSpec, Rule};
 pub use obstacle::{ContactSpec, ObstacleSpec};
-pub use part::PartSpec;
-pub use point::PointSpec;
-pub use rigid_face::RigidFaceSpec;
-pub use spring::SpringSpec;
-pub use symmetry::SymmetryPlane;
-pub use tie::{CouplingSpec, EquationSpec, PreloadSpec, TermPlace, TermSpec, TieSpec, TiedSurfacesSpec};
+pub use tie::{
+    CouplingSpec, EquationSpec, PointSpec, PreloadSpec, SpringSpec, TermPlace, TermSpec, TieSpec, TiedSurfacesSpec,
+};
 
 use std::path::PathBuf;
 
@@ -70,7 +58,7 @@ pub struct Scene {
     #[serde(default)]
     pub model: ModelSpec,
     /// Depth across the plane, positive; only in plane strain and plane stress.
-    #[serde(default = "cells::one")]
+    #[serde(default = "model::one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub thickness: f64,
     /// The shape and the mesh of the elastic body.

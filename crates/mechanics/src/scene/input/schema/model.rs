@@ -1,5 +1,6 @@
-//! The space of a model.
+//! The space of a model, the cells of its mesh, and the sides from which obstacles come.
 
+use crate::fem::mesh::{ElementKind, Mesh};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -40,4 +41,151 @@ impl ModelSpec {
             ModelSpec::Space => 3,
         }
     }
+}
+
+/// The factor that changes nothing, if a scene leaves it out.
+pub(crate) fn one() -> f64 {
+    1.0
+}
+
+/// The elements of the plane to choose from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ElementSpec {
+    /// Linear triangle.
+    T3,
+    /// Quadratic triangle.
+    T6,
+    /// Bilinear quadrilateral.
+    #[default]
+    Q4,
+    /// Quadratic quadrilateral of eight nodes.
+    Q8,
+}
+
+/// The elements of space to choose from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SolidElementSpec {
+    /// Linear tetrahedron.
+    Tet4,
+    /// Trilinear hexahedron.
+    #[default]
+    Hex8,
+    /// Quadratic tetrahedron of ten nodes.
+    Tet10,
+    /// Quadratic hexahedron of 20 nodes.
+    Hex20,
+}
+
+/// The half of a disc or a ball.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum HalfSpec {
+    /// Below the centre.
+    #[default]
+    Lower,
+    /// Above the centre.
+    Upper,
+}
+
+impl ElementSpec {
+    pub(crate) fn kind(self) -> ElementKind {
+        match self {
+            ElementSpec::T3 => ElementKind::T3,
+            ElementSpec::T6 => ElementKind::T6,
+            ElementSpec::Q4 => ElementKind::Q4,
+            ElementSpec::Q8 => ElementKind::Q8,
+        }
+    }
+}
+
+impl SolidElementSpec {
+    /// Returns `true` for the default element of a scene.
+    pub(crate) fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    pub(crate) fn kind(self) -> ElementKind {
+        match self {
+            SolidElementSpec::Tet4 => ElementKind::Tet4,
+            SolidElementSpec::Hex8 => ElementKind::Hex8,
+            SolidElementSpec::Tet10 => ElementKind::Tet10,
+            SolidElementSpec::Hex20 => ElementKind::Hex20,
+        }
+    }
+}
+
+impl HalfSpec {
+    pub(crate) fn is_lower(&self) -> bool {
+        *self == HalfSpec::Lower
+    }
+
+    /// This half of a body, from its lower half `lower`; the cut lies where the coordinate `axis` is `centre`.
+    pub(crate) fn of(self, lower: Mesh, axis: usize, centre: f64) -> Mesh {
+        match self {
+            HalfSpec::Lower => lower,
+            HalfSpec::Upper => lower.mirrored(axis, centre),
+        }
+    }
+}
+
+/// A direction along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Approach {
+    /// Along x.
+    #[serde(rename = "+x")]
+    PlusX,
+    /// Against x.
+    #[serde(rename = "-x")]
+    MinusX,
+    /// Along y.
+    #[serde(rename = "+y")]
+    PlusY,
+    /// Against y.
+    #[serde(rename = "-y")]
+    MinusY,
+    /// Along z.
+    #[serde(rename = "+z")]
+    PlusZ,
+    /// Against z.
+    #[serde(rename = "-z")]
+    MinusZ,
+}
+
+impl Approach {
+    /// The axis, 0 to 2, and the sense along it, 1 or -1.
+    pub fn axis(self) -> (usize, f64) {
+        match self {
+            Approach::PlusX => (0, 1.0),
+            Approach::MinusX => (0, -1.0),
+            Approach::PlusY => (1, 1.0),
+            Approach::MinusY => (1, -1.0),
+            Approach::PlusZ => (2, 1.0),
+            Approach::MinusZ => (2, -1.0),
+        }
+    }
+
+    /// The direction as a scene writes it, such as `-y`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Approach::PlusX => "+x",
+            Approach::MinusX => "-x",
+            Approach::PlusY => "+y",
+            Approach::MinusY => "-y",
+            Approach::PlusZ => "+z",
+            Approach::MinusZ => "-z",
+        }
+    }
+}
+
+/// The rule for the contact row of a candidate node: its direction, and the point of the obstacle that it meets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// Along the approach direction: `u . approach <= distance along it`; one entry per row.
+    #[default]
+    Approach,
+    /// Along the obstacle's normal at the point closest to the node: `n . u <= distance`; one entry per coordinate.
+    ClosestPoint,
 }

@@ -1,10 +1,9 @@
 //! Obstacles as they are written in a scene.
 
+use super::model::{Approach, Rule};
+use crate::scene::input::obstacle::ShapeSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use super::approach::{Approach, Rule};
-use crate::scene::input::obstacle::ShapeSpec;
 
 /// How the contacts between bodies are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

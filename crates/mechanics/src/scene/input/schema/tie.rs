@@ -1,9 +1,9 @@
-//! Ties as they are written in a scene: equations between displacements.
+//! Ties, springs and reference points as they are written in a scene: sums of displacements.
 
+use super::load::{Place, RotationSpec};
+use crate::scene::input::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::scene::input::names;
 
 /// One tie of displacements: between two surfaces, or by an equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -142,4 +142,83 @@ impl Turns {
     fn is_none(&self) -> bool {
         *self == Turns::default()
     }
+}
+
+/// Springs, which act in tension and compression: between the body and the ground at a node, or spread over a boundary
+/// as an elastic foundation; or between nodes.
+///
+/// A direction that is left out has no spring.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct SpringSpec {
+    /// The place of a spring to the ground.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<Place>,
+    /// The elongation of a spring between nodes, instead of `on`: the sum of these terms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub terms: Vec<TermSpec>,
+    /// Stiffness along the elongation that the terms give, positive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub along: Option<f64>,
+    /// Stiffness along x, positive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub x: Option<f64>,
+    /// Stiffness along y, positive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub y: Option<f64>,
+    /// Stiffness along z, positive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub z: Option<f64>,
+    /// Stiffness along the normal of the boundary at every place, positive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub normal: Option<f64>,
+    /// The reference of the stiffnesses.
+    #[serde(default)]
+    pub stiffness: StiffnessOf,
+}
+
+/// The reference of a stiffness on a boundary.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum StiffnessOf {
+    /// The whole spring, in force per length; on a boundary it is distributed evenly over its area.
+    #[default]
+    Total,
+    /// A foundation, in force per length and area.
+    PerArea,
+}
+
+/// A reference point: it has displacements and small rotations, and is no node of a mesh. Couplings, equations and
+/// springs join it to nodes and to other points. Components that are not prescribed follow from the force and the
+/// moment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointSpec {
+    /// The name, by which ties and springs name it.
+    pub name: String,
+    /// Its place, about which it turns.
+    pub at: Vec<f64>,
+    /// Displacement of the point along x, if it is prescribed, in length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// Displacement of the point along y, if it is prescribed, in length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// Displacement of the point along z, if it is prescribed, in length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
+    /// Rotations of the point that are prescribed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationSpec>,
+    /// The force on the point; zero if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<Vec<f64>>,
+    /// The moment on the point: about z in the plane, three components in space; zero if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moment: Option<Vec<f64>>,
 }

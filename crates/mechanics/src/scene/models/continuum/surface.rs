@@ -2,19 +2,18 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::why_not::{WhyNot, none};
+use super::{WhyNot, none};
 use crate::continuum::{Circle, Condition, Held, Linear, Point};
 use crate::error::Error;
 use crate::fem::Mesh;
 use crate::fem::assembly::turning_traction;
-use crate::fem::geometry::{COORDINATES, cross, dot, minus, unit};
+use crate::fem::geometry::{COORDINATES, cross, dot, minus, sorted, unit};
 use crate::fem::mesh::pieces::Pieces;
 use crate::scene::Model;
 use crate::scene::input::entry::boundary;
-use crate::scene::input::profile::Profile;
-use crate::scene::input::schema::load::{LoadSpec, PressureSpec, TractionSpec};
-use crate::scene::input::schema::profile::ProfileSpec;
+use crate::scene::input::schema::load::{LoadSpec, PressureSpec, ProfileSpec, TractionSpec};
 use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
+use crate::scene::input::sum::Profile;
 use crate::scene::models::load::spread;
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
@@ -265,7 +264,7 @@ impl<'a> Surface<'a> {
     ) -> Result<(), WhyNot> {
         for nodes in self.pieces.facets_of(self.mesh, name) {
             // A facet of the other diagonal is missing.
-            let Some(entry) = self.facets.get_mut(&sorted(&nodes)) else { continue };
+            let Some(entry) = self.facets.get_mut(&sorted(nodes.iter().copied())) else { continue };
             let corners: Vec<Point> = nodes.iter().map(|&node| self.pieces.nodes[node]).collect();
             let inner_normal = entry.is_inner.then(|| normal(&corners));
             change(entry.condition.get_or_insert_default(), &Facet { corners, inner_normal })?;
@@ -276,7 +275,7 @@ impl<'a> Surface<'a> {
     /// Changes the condition on those facets of a boundary that have one.
     fn change_known(&mut self, name: &str, change: impl Fn(&mut Condition)) {
         for facet in self.pieces.facets_of(self.mesh, name) {
-            let entry = self.facets.get_mut(&sorted(&facet));
+            let entry = self.facets.get_mut(&sorted(facet));
             entry.and_then(|entry| entry.condition.as_mut()).into_iter().for_each(&change);
         }
     }
@@ -303,12 +302,6 @@ impl<'a> Surface<'a> {
         let facets = self.facets.into_iter();
         facets.filter_map(|(facet, entry)| Some((facet, number(entry.condition?)))).collect()
     }
-}
-
-fn sorted(nodes: &[usize]) -> Vec<usize> {
-    let mut sorted = nodes.to_vec();
-    sorted.sort_unstable();
-    sorted
 }
 
 /// The unit normal of a facet with its corners in the order of its boundary.

@@ -1,20 +1,17 @@
 //! Rigid-body modes: those that nothing resists, and their names.
 
-mod advice;
-mod driven;
 pub(crate) mod soft;
 mod unit;
 
-use signorini_qp as qp;
-
+use super::facing::TieRow;
 use super::parts::Parts;
 use super::rigid_face::{Motion, RigidFace};
 use super::rows::ContactRow;
-use super::tie_row::TieRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::dense::DenseMatrix;
 use crate::fem::geometry::COORDINATES;
+use signorini_qp as qp;
 use signorini_qp::{Forest, dot};
 use unit::{NAMED, Sense, Sum, UnitMotions};
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::fem::body::{ElasticBody, Region};
 use crate::fem::dense::DenseMatrix;
-use crate::fem::geometry::{COORDINATES, cross};
+use crate::fem::geometry::{COORDINATES, cross, minus, plus};
 use crate::fem::mesh::extent;
 use crate::scene::input::entry::{point, six_digits};
 use signorini_qp::dot;
@@ -51,7 +51,7 @@ impl UnitMotions {
             2 => &[0, 1, 5],
             _ => &[0, 1, 2, 3, 4, 5],
         };
-        let span = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+        let span = minus(high, low);
         UnitMotions {
             name: region.name().into(),
             nodes: region.nodes(),
@@ -105,7 +105,7 @@ impl UnitMotions {
     pub fn nodal(&self, places: &[[f64; 3]], amplitudes: &Amplitudes) -> impl Iterator<Item = [f64; 3]> {
         places.iter().map(|&place| {
             let parts = self.modes.iter().map(|&mode| self.at(mode, place).map(|part| amplitudes[mode] * part));
-            parts.fold([0.0; 3], |sum, part| [0, 1, 2].map(|axis| sum[axis] + part[axis]))
+            parts.fold([0.0; 3], plus)
         })
     }
 
