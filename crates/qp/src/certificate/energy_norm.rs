@@ -435,6 +435,13 @@ mod tests {
     }
 
     #[test]
+    fn compliances_are_in_the_units_of_the_rows() {
+        let rows = SparseMatrix::from_triplets(2, 2, &[(0, 0, 32.0), (1, 0, 0.5), (1, 1, 0.5)]).unwrap();
+        let of = EnergyNorm::of(&pair(4.0, 0.0), &rows).unwrap().unwrap().compliances(&rows).unwrap();
+        assert_eq!([of(0, 0), of(0, 1), of(1, 0), of(1, 1)], [256.0, 4.0, 4.0, 0.125]);
+    }
+
+    #[test]
     fn rows_that_count_are_on_the_boundary_only_without_entries_beyond_it() {
         let rows = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
         let norm = EnergyNorm::of(&pair(4.0, 0.0), &rows(&[(0, 1, 1.0)])).unwrap().unwrap();

@@ -260,6 +260,30 @@ mod tests {
     }
 
     #[test]
+    fn a_travel_may_be_farther_by_the_reach_of_its_row_over_its_share() {
+        // A body of stiffness 4 moves by 1/2 for an error of one. The travel has a share of 1/2 in the row, which is
+        // open by 3 without it: it is at 6 +- 1.
+        let body = ContactProblem::of_entries(&[(0, 0, 4.0)], &[0.0], &[(0, 0, 1.0)], &[3.0]);
+        let norm = norm_on_equalities(&body).unwrap().unwrap();
+        let mut violation = [-3.0];
+        Travel { dof: 1, rows: vec![(0, 0.5)] }.bring_near(&body, &norm, 1.0, &mut violation);
+        assert!((0.5..0.5 + 1e-5).contains(&violation[0]), "{violation:?}");
+    }
+
+    #[test]
+    fn a_row_of_a_travel_is_open_if_it_is_so_by_more_than_the_error_of_the_body() {
+        // u + t <= 3 and u + t <= 4 under a load of one on t: u = 7/4 and t = 5/4.
+        let rows = [(0, 0, 1.0), (0, 1, 1.0), (1, 0, 1.0), (1, 1, 1.0)];
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0, 1.0], &rows, &[3.0, 4.0]);
+        for (error, is_open) in [(1e-3, true), (10.0, false)] {
+            let (residual, violation) = (vec![0.0; 2], vec![0.0, -1.0]);
+            let evidence = Evidence { residual, violation, error, measured: None, norm: None };
+            let proven = proven_pressed(&problem, [&[1.75, 1.25], &[-1.0, 0.0]], evidence).unwrap().unwrap();
+            assert_eq!([0, 1].map(|row| proven.open.contains(row)), [false, is_open], "{error}");
+        }
+    }
+
+    #[test]
     fn what_is_out_of_balance_without_the_open_rows_is_free_of_their_forces() {
         // K = 4, f = 8 and u = 1: a row that is proven open has no force in the exact answer, and -4 on the other
         // balances.

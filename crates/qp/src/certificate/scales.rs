@@ -205,6 +205,20 @@ mod tests {
     }
 
     #[test]
+    fn scales_are_the_squares_of_all_forces_and_of_given_ones_and_parts_act_on_each_other() {
+        // At u = 2 the body of stiffness 4 takes 8 of the forces, 6 of which are given.
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[6.0], &[], &[]);
+        let balance = Balance { residual: vec![2.0], elastic: vec![8.0], strain: 16.0, terms: vec![8.0] };
+        let scales = Scales::of(&problem, [&[2.0], &[]], &balance, &[10.0]);
+        assert_eq!((scales.whole.squares, scales.whole.force), ([[25.0, 16.0]; 2], 5.0));
+        let coupling = 2.0_f64.powi(-80);
+        let entries = [(0, 0, 4.0), (1, 0, -coupling), (1, 1, 1.0)];
+        let problem = ContactProblem::of_entries(&entries, &[0.0; 2], &[], &[]);
+        assert_eq!(couplings(&problem, &[1.0, -2.0], &[8.0, 1.0]), [3.0 * coupling, 3.0 * coupling]);
+        assert_eq!(couplings(&problem, &[0.0, -2.0], &[4.0, 0.0]), [2.0 * coupling, coupling]);
+    }
+
+    #[test]
     fn a_row_with_gap_zero_on_a_dof_without_stiffness_has_the_length_of_the_row_that_joins_the_dof_to_another() {
         // The first row moves the second dof by 8 over 1/2, which moves the second row by three times as much.
         assert_eq!(coupled_lengths(&joined(0.0), vec![8.0, 1e-31, 1e-31]), [8.0, 48.0, 1e-31]);

@@ -216,6 +216,14 @@ mod tests {
     }
 
     #[test]
+    fn a_dof_without_stiffness_moves_as_easily_as_the_softest() {
+        for (stiffness, compliance) in [([4.0, 0.0, 2.0], [0.25, 0.5, 0.5]), ([0.0; 3], [1.0; 3])] {
+            let problem = problem(&stiffness, &[&[1.0; 3]], &[1.0]);
+            assert_eq!(watched_rows(&problem, &Watch::default()).compliance, compliance);
+        }
+    }
+
+    #[test]
     fn a_closed_row_is_put_at_its_gap_by_the_shift_of_least_energy_in_any_unit() {
         for unit in [1e-12, 1.0, 1e12] {
             let problem = problem(&[4.0, 16.0], &[&[3.0, 4.0], &[0.0, 1.0]], &[25.0 * unit, 9.0 * unit]);
