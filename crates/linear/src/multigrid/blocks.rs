@@ -114,25 +114,16 @@ impl<T: Real> BlockMatrix<T> {
 
     /// `y += sign A x`.
     pub fn add_product(&self, sign: f64, x: &[T], y: &mut [T], threads: usize) {
-        let sign = T::of(sign);
-        self.shared(threads).with_vectors(self.height, [y], |rows, [mut y]| {
-            let add = |sums: &[T]| taken(&mut y, sums).iter_mut().zip(sums).for_each(|(y, &sum)| *y += sign * sum);
-            with_block_size!(each_row_product, (self.height, self.width), (self, x, rows, add));
+        self.shared(threads).with_vectors(self.height, [y], |rows, [y]| {
+            with_block_size!(add_rows, (self.height, self.width), (self, x, rows, (T::of(sign), y)));
         });
     }
 
     /// `step = keep step + gain A r`, then `x += step`.
     pub fn step(&self, r: &[T], (keep, gain): (f64, f64), [step, x]: [&mut [T]; 2], threads: usize) {
-        let (keep, gain) = (T::of(keep), T::of(gain));
-        self.shared(threads).with_vectors(self.height, [step, x], |rows, [mut step, mut x]| {
-            let put = |sums: &[T]| {
-                let nodes = taken(&mut step, sums).iter_mut().zip(taken(&mut x, sums));
-                nodes.zip(sums).for_each(|((step, x), &sum)| {
-                    *step = keep * *step + gain * sum;
-                    *x += *step;
-                });
-            };
-            with_block_size!(each_row_product, (self.height, self.width), (self, r, rows, put));
+        let weights = [T::of(keep), T::of(gain)];
+        self.shared(threads).with_vectors(self.height, [step, x], |rows, vectors| {
+            with_block_size!(step_rows, (self.height, self.width), (self, r, rows, (weights, vectors)));
         });
     }
 
@@ -337,28 +328,50 @@ impl<T: Real> BlockMatrix<T> {
     }
 }
 
-/// The next entries of a vector, as many as there are `sums`.
-#[inline(always)]
-fn taken<'a, T>(rest: &mut &'a mut [T], sums: &[T]) -> &'a mut [T] {
-    rest.split_off_mut(..sums.len()).unwrap_or_default()
-}
-
-/// Calls `take` with some rows of `A x`, one after the other.
-#[inline(always)]
-fn each_row_product<T: Real, const H: usize, const W: usize>(
+fn add_rows<T: Real, const H: usize, const W: usize>(
     matrix: &BlockMatrix<T>,
     x: &[T],
     rows: Range<usize>,
-    mut take: impl FnMut(&[T]),
+    (sign, y): (T, &mut [T]),
 ) {
-    if H > 0 {
-        return rows.for_each(|row| take(&matrix.row_product::<H, W>(row, x)));
+    if H == 0 {
+        let mut sums = vec![T::default(); matrix.height];
+        for (row, y) in rows.zip(y.chunks_exact_mut(matrix.height)) {
+            sums.fill(T::default());
+            matrix.add_row_product(row, x, &mut sums);
+            y.iter_mut().zip(&sums).for_each(|(y, &sum)| *y += sign * sum);
+        }
+        return;
     }
-    let mut sums = vec![T::default(); matrix.height];
-    for row in rows {
-        sums.fill(T::default());
-        matrix.add_row_product(row, x, &mut sums);
-        take(&sums);
+    for (row, y) in rows.zip(y.as_chunks_mut::<H>().0) {
+        let sums = matrix.row_product::<H, W>(row, x);
+        (0..H).for_each(|i| y[i] += sign * sums[i]);
+    }
+}
+
+fn step_rows<T: Real, const H: usize, const W: usize>(
+    matrix: &BlockMatrix<T>,
+    r: &[T],
+    rows: Range<usize>,
+    ([keep, gain], [step, x]): ([T; 2], [&mut [T]; 2]),
+) {
+    let put = |step: &mut T, x: &mut T, sum: T| {
+        *step = keep * *step + gain * sum;
+        *x += *step;
+    };
+    if H == 0 {
+        let mut sums = vec![T::default(); matrix.height];
+        let nodes = step.chunks_exact_mut(matrix.height).zip(x.chunks_exact_mut(matrix.height));
+        for (row, (step, x)) in rows.zip(nodes) {
+            sums.fill(T::default());
+            matrix.add_row_product(row, r, &mut sums);
+            step.iter_mut().zip(x).zip(&sums).for_each(|((step, x), &sum)| put(step, x, sum));
+        }
+        return;
+    }
+    for (row, (step, x)) in rows.zip(step.as_chunks_mut::<H>().0.iter_mut().zip(x.as_chunks_mut::<H>().0)) {
+        let sums = matrix.row_product::<H, W>(row, r);
+        (0..H).for_each(|i| put(&mut step[i], &mut x[i], sums[i]));
     }
 }
 

@@ -337,6 +337,13 @@ mod tests {
     /// The relative excess of the bound of an answer over its error, from the factor for rounding.
     const ROUNDED: f64 = 1e-5;
 
+    #[test]
+    fn the_energy_of_a_displacement_of_three_against_a_stiffness_of_four_is_thirty_six() {
+        let spring = ContactProblem::of_entries(&[(0, 0, 4.0)], &[0.0], &[], &[]);
+        let OfPart { strain, terms, moves, .. } = energy_of(&spring, &[-3.0]);
+        assert_eq!((strain, terms, moves), (36.0, 36.0, true));
+    }
+
     /// Two dofs of stiffness 4 and 16, each a part, under loads of 8 and 48, before walls at 1 and 2.
     fn parts() -> ContactProblem {
         let walls = [(0, 0, 1.0), (1, 1, 1.0)];

@@ -422,6 +422,7 @@ mod tests {
             // The second pivot of (1, -c; -c, 1) is 1 - c^2.
             let (loss, exact) = (norm(&pair(4.0, 1.0 - slack)).loss(), 1.0 / (slack * (2.0 - slack)));
             assert!((loss / exact - 1.0).abs() < 1e-8, "{loss} {exact}");
+            assert_eq!(norm(&pair(4.0, 1.0 - slack)).is_sharp(), slack > 1e-4);
             let rounding = norm(&pair(4.0, 1.0 - slack)).rounding();
             assert!((rounding - ROUNDED_BOUND - SWEEP_ROUNDING * exact).abs() < 1e-8 * rounding, "{rounding}");
         }

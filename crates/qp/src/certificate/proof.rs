@@ -261,13 +261,14 @@ mod tests {
 
     #[test]
     fn a_travel_may_be_farther_by_the_reach_of_its_row_over_its_share() {
-        // A body of stiffness 4 moves by 1/2 for an error of one. The travel has a share of 1/2 in the row, which is
-        // open by 3 without it: it is at 6 +- 1.
-        let body = ContactProblem::of_entries(&[(0, 0, 4.0)], &[0.0], &[(0, 0, 1.0)], &[3.0]);
+        // Two dofs of stiffness 4 move the row by the root of 1/2 for an error of one. The travel has a share of 1/2 in
+        // the row, which is open by 3 without it.
+        let entries = [(0, 0, 4.0), (1, 1, 4.0)];
+        let body = ContactProblem::of_entries(&entries, &[0.0; 2], &[(0, 0, 1.0), (0, 1, 1.0)], &[3.0]);
         let norm = norm_on_equalities(&body).unwrap().unwrap();
         let mut violation = [-3.0];
-        Travel { dof: 1, rows: vec![(0, 0.5)] }.bring_near(&body, &norm, 1.0, &mut violation);
-        assert!((0.5..0.5 + 1e-5).contains(&violation[0]), "{violation:?}");
+        Travel { dof: 2, rows: vec![(0, 0.5)] }.bring_near(&body, &norm, 1.0, &mut violation);
+        assert!((0.5..0.5 + 1e-5).contains(&violation[0].powi(2)), "{violation:?}");
     }
 
     #[test]

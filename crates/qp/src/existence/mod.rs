@@ -323,6 +323,15 @@ mod tests {
         ContactProblem::of_entries(&[(0, 0, 2.0)], &[4.0, 0.0][..dofs], &walls, &[1.0, 5.0][..dofs])
     }
 
+    #[test]
+    fn a_force_counts_beside_all_forces_in_balance_on_its_dof() {
+        // A force of 2 by the wall beside a load of 4 and an elastic force of 2.
+        let problem = before_a_wall(1);
+        let solution = solve(&problem, &Settings::default()).unwrap();
+        assert_eq!((&solution.displacement[..], &solution.multiplier[..]), (&[1.0][..], &[-2.0][..]));
+        assert_eq!(shares_of_forces(&problem, &solution), [0.25]);
+    }
+
     /// What is looked at to decide on `problem`, with its scaling.
     fn looked_at(problem: &ContactProblem) -> (Existence, Scaling) {
         let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
