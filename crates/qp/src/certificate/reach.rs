@@ -361,6 +361,19 @@ mod tests {
     }
 
     #[test]
+    fn the_reach_at_once_is_the_sum_of_the_ways_of_the_dofs_of_a_row() {
+        // Each dof moves by 1/2 for an energy norm of one; both together move the row by the root of 1/2.
+        let row = [(0, 0, 1.0), (0, 1, 1.0)];
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0), (1, 1, 4.0)], &[0.0; 2], &row, &[3.0]);
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        let compliance = ComplianceFactor::of(&problem, &norm);
+        assert_eq!(compliance.reach_at_once().unwrap(), [norm.rounding()]);
+        assert!((compliance.reach(0) / norm.rounding() - 0.5_f64.sqrt()).abs() < 1e-15);
+        // Three rows on two dofs: nine products of two terms, and a triangle of three.
+        assert_eq!(compliance.work(3), 45.0);
+    }
+
+    #[test]
     fn a_row_has_the_same_reach_on_the_boundary_and_in_the_whole_body() {
         // With K = tridiag(-1, 3, -1) and B = 2 the compliance is 4 K^-1, and its inverse K / 4.
         for (dofs, on_boundary) in [(30, true), (400, false)] {
