@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::entry::{direction, table};
-use super::schema::load::ProfileSpec;
+use super::schema::condition::ProfileSpec;
 use crate::error::Error;
 use crate::fem::assembly::Kinks;
 use crate::fem::geometry::{COORDINATES, cross, dot, inertia, minus, principal, trace};

@@ -3,14 +3,14 @@
 #[cfg(test)]
 mod curved_bodies;
 mod disc;
-mod gmsh;
 mod half_ball;
+mod mesh_file;
 mod rectangle;
 mod shape;
 
 pub use disc::{DiscSpec, HalfDiscSpec, RingSpec, disc, half_disc, ring};
-pub use gmsh::{DeckSpec, GmshSpec};
 pub use half_ball::{HalfBallSpec, half_ball};
+pub use mesh_file::{DeckSpec, GmshSpec};
 pub use rectangle::{BarSpec, BoxSpec, RectangleSpec, bar, cuboid, rectangle};
 pub use shape::Sides;
 pub(crate) use shape::{About, BodyShape, Site};

@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 pub(crate) mod analysis;
 pub(crate) mod body;
-pub(crate) mod load;
+pub(crate) mod condition;
 pub(crate) mod model;
 pub(crate) mod obstacle;
 pub(crate) mod tie;
@@ -17,7 +17,7 @@ pub use analysis::{
 pub use body::{
     FurtherBodySpec, InitialStressSpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec, PartSpec, TemperatureSpec,
 };
-pub use load::{LoadSpec, Place, RigidFaceSpec, SupportSpec, SymmetryPlane};
+pub use condition::{LoadSpec, Place, RigidFaceSpec, SupportSpec, SymmetryPlane};
 pub use model::{ModelSpec, Rule};
 pub use obstacle::{ContactSpec, ObstacleSpec};
 pub use tie::{

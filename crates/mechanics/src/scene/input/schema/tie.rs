@@ -1,6 +1,6 @@
 //! Ties, springs and reference points as they are written in a scene: sums of displacements.
 
-use super::load::{Place, RotationSpec};
+use super::condition::{Place, RotationSpec};
 use crate::scene::input::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -18,7 +18,7 @@ use crate::fem::{Formulation, Region};
 use crate::scene::Model;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::obstacle::{Between, PlacedObstacle};
-use crate::scene::input::schema::load::LoadSpec;
+use crate::scene::input::schema::condition::LoadSpec;
 use crate::scene::input::schema::{Rule, Scene};
 
 /// Times that facets partly within the reach of a pressed obstacle are refined.

@@ -11,7 +11,7 @@ use crate::fem::geometry::{COORDINATES, cross, dot, minus, sorted, unit};
 use crate::fem::mesh::pieces::Pieces;
 use crate::scene::Model;
 use crate::scene::input::entry::boundary;
-use crate::scene::input::schema::load::{LoadSpec, PressureSpec, ProfileSpec, TractionSpec};
+use crate::scene::input::schema::condition::{LoadSpec, PressureSpec, ProfileSpec, TractionSpec};
 use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
 use crate::scene::input::sum::Profile;
 use crate::scene::models::load::spread;

@@ -123,7 +123,7 @@ impl BodyShape for DeckSpec {
     }
 
     fn block(&self, files: Option<Files>) -> Block {
-        super::gmsh::block_of_file(&self.file, files)
+        block_of_file(&self.file, files)
     }
 
     fn refine(&mut self, _: usize) -> Result<(), Error> {
