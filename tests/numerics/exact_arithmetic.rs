@@ -20,7 +20,7 @@ const SEEDS: [u64; 4] = [1, 20, 300, 4000];
 
 /// Problems of other seeds that once had a fault. Of seed 77: the first fault of each sort with each kind of stiffness,
 /// and every wrong proof.
-const ONCE_WRONG: [(u64, &[u64]); 23] = [
+const ONCE_WRONG: [(u64, &[u64]); 24] = [
     (301, &[10625]),
     (303, &[19129]),
     (502, &[15150]),
@@ -28,6 +28,7 @@ const ONCE_WRONG: [(u64, &[u64]); 23] = [
     (603, &[14668]),
     (771, &[14940]),
     (772, &[666]),
+    (773, &[16185]),
     (7101, &[13080]),
     (7102, &[983]),
     (7301, &[2201, 4846, 7629, 13149, 14000, 14290, 16646]),

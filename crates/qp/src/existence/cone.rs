@@ -166,6 +166,16 @@ mod tests {
     }
 
     #[test]
+    fn rows_in_any_unit_stop_the_point_in_doubles() {
+        for unit in [1e-30, 1.0, 1e30] {
+            let rows = [row([unit, 0.0])];
+            let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-28, is_exact: true };
+            let nearest = cone.nearest_in_doubles(&[1.0, -1.0]).unwrap();
+            assert!(nearest[0].abs() < TIP && (nearest[1] + 1.0).abs() < TIP, "{unit:e}: {nearest:?}");
+        }
+    }
+
+    #[test]
     fn rounded_walls_on_both_sides_leave_the_way_between_them() {
         // x + h y = 0 at three heights h, from both sides; z is off by its rounding.
         let heights = [(0.0, 1e-12), (0.5, -2e-12), (1.0, 3e-12)];

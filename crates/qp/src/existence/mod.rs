@@ -373,6 +373,20 @@ mod tests {
     }
 
     #[test]
+    fn walls_nearer_than_the_rounding_of_the_strain_leave_no_freedom() {
+        // A dof without stiffness between two walls, beside one of stiffness 2 under a force of 4 before its wall.
+        let rows = [(0, 0, 1.0), (1, 1, 1.0), (2, 1, -1.0)];
+        let is_free = |room: f64| {
+            let problem = ContactProblem::of_entries(&[(0, 0, 2.0)], &[4.0, 0.0], &rows, &[1.0, room, room]);
+            let mut solution = solve(&before_a_wall(1), &Settings::default()).unwrap();
+            (solution.displacement, solution.multiplier) = (vec![1.0, 0.0], vec![-2.0, 0.0, 0.0]);
+            looked_at(&problem).0.freedom(&problem, &solution).is_some()
+        };
+        // In these units the displacement counts as 1e-11, the load as 1e-13 of itself.
+        assert!(is_free(1e-9) && !is_free(1e-12) && !is_free(0.0));
+    }
+
+    #[test]
     fn a_force_out_of_balance_moves_a_row_a_thousand_times_as_far_as_its_dof_alone() {
         let springs = [(0, 0, 2.0), (1, 1, 8.0)];
         let rows = [(0, 0, -3.0), (0, 1, 1.0), (1, 2, 1.0)];

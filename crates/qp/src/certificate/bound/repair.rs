@@ -60,6 +60,7 @@ pub struct Repair<'a> {
     pub answer: &'a Answer<'a>,
     rows: RowsOnBoundary,
     pub violation: Vec<f64>,
+    pub gap: Vec<f64>,
     pub multiplier: Vec<f64>,
     /// The sweep of the residual: squares of the interior, and the boundary.
     interior: f64,
@@ -78,8 +79,9 @@ impl<'a> Repair<'a> {
         };
         let unit = norm.equilibration.factor;
         let (violation, multiplier) = (scaled(&answer.violation, 1, unit), scaled(answer.multiplier, -1, 0));
+        let gap = scaled(&answer.problem.gap, 1, unit);
         let (interior, swept) = norm.sweep(&answer.residual);
-        Some(Repair { norm, boundary, answer, rows, violation, multiplier, interior, swept })
+        Some(Repair { norm, boundary, answer, rows, violation, gap, multiplier, interior, swept })
     }
 
     pub fn count(&self) -> usize {
@@ -214,7 +216,10 @@ impl<'a> Repair<'a> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::certificate::energy_norm::Springs;
     use crate::problem::ContactProblem;
 
     /// Rounding of a repair of one or two dofs.
@@ -238,12 +243,47 @@ mod tests {
         assert!((repair.bound(&witness).whole - 1.0).abs() < ROUNDING, "{:?}", repair.bound(&witness));
         // The residual and the change of the force, one each, move the spring by 1/2 in energy norm each.
         assert!((repair.cancelled(&witness) / CANCELLED - 1.0).abs() < ROUNDING, "{:e}", repair.cancelled(&witness));
+        assert!(repair.vague(&witness) < ROUNDING && !witness.is_rounded, "{:e}", repair.vague(&witness));
         // A distance that is left to the gap counts for the answer, for its residual and for its rounding.
         let open = Witness { rest: vec![0.25], ..witness };
         assert!((repair.bound(&open).whole - (1.0 + 3.0 * 0.25)).abs() < ROUNDING, "{:?}", repair.bound(&open));
         // If the force stays 3, a force of 1 is left at the gap; it moves the spring by 1/4, 1/2 in energy norm.
         let kept = repair.settle(&[true], false).unwrap();
         assert!((repair.bound(&kept).whole - 1.5).abs() < ROUNDING, "{:?}", repair.bound(&kept));
+    }
+
+    #[test]
+    fn a_residual_loses_the_digits_that_a_factor_loses() {
+        // Two dofs coupled by nearly their stiffness, out of balance by one each: K (1, 1) = (1, 1) slack.
+        let slack = 1e-3;
+        let stiffness = [(0, 0, 1.0), (1, 0, slack - 1.0), (1, 1, 1.0)];
+        let problem = ContactProblem::of_entries(&stiffness, &[1.0, 1.0], &[(0, 0, 1.0), (1, 1, 1.0)], &[9e9, 9e9]);
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        let answer = Answer::of(&problem, &[0.0; 2], &[0.0; 2]);
+        let repair = Repair::new(&norm, &answer).unwrap();
+        let cancelled = repair.cancelled(&repair.settle(&[false; 2], true).unwrap());
+        let length = (2.0 / slack).sqrt();
+        assert!((cancelled / (CANCELLED * norm.loss() * length) - 1.0).abs() < 1e-9 && norm.loss() > 100.0);
+    }
+
+    #[test]
+    fn a_row_with_a_spring_holds_by_the_force_that_is_no_rounding_of_its_terms() {
+        let problem = ContactProblem::of_entries(&[(0, 0, 4.0)], &[8.0], &[(0, 0, 1.0)], &[1.0]);
+        let springs = Springs { stiffness: vec![1.0], are_equalities: vec![false] };
+        let mut norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        norm.springs = Some(Arc::new(springs));
+        let answer = Answer::of(&problem, &[1.0], &[-4.0]);
+        let repair = Repair::new(&norm, &answer).unwrap();
+        let holds = |terms: [f64; 2]| {
+            let mut witness = repair.settle(&[true], true).unwrap();
+            [witness.error.terms[0], witness.left.terms[0]] = terms;
+            repair.bound(&witness).whole.is_finite()
+        };
+        // The terms of both forces add up; a force of 4 beside terms of 5e15 is rounding, beside 1e15 it is not.
+        assert!(holds([0.0, 0.0]));
+        for terms in [[1e16, 0.0], [0.0, 1e16], [1e16, 1e16]] {
+            assert!(!holds(terms), "{terms:?}");
+        }
     }
 
     #[test]

@@ -21,8 +21,18 @@ const NO_WEIGHT: f64 = 64.0 * f64::EPSILON;
 /// still rounding.
 const KEPT: f64 = 1024.0 * f64::EPSILON;
 
+/// Share of the gaps beyond which the rounding of a distance hides whether dependent rows contradict each other.
+const HIDDEN: f64 = 1e-8;
+
 /// Rounding of a row's distance after a shift, in units of its terms.
 const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Returns `true` if a row that follows from others has another gap than they leave it, while distances that small are
+/// rounding. `gaps` are its own and those of the others, times their weights; a row without others never does.
+fn contradict(gaps: &[f64], rounding: f64) -> bool {
+    let terms: f64 = gaps.iter().map(|gap| gap.abs()).sum();
+    gaps.len() > 1 && rounding > HIDDEN * terms && gaps.iter().sum::<f64>().abs() > DEPENDENT * terms
+}
 
 impl Repair<'_> {
     /// The equilibrium of the rows that look closed if all these rows push, otherwise the better of both repairs.
@@ -74,6 +84,12 @@ impl Repair<'_> {
                 let is_excused =
                     |row: usize| !closed[row] && tolerance[row] > 0.0 && distance[row].abs() <= tolerance[row];
                 let is_rounded = has_dependent || (0..rows).any(is_excused);
+                if set.iter().zip(triangle.weights()).any(|(&row, weights)| {
+                    let of_others = weights.map(|(other, weight)| -weight * self.gap[set[other]]);
+                    contradict(&of_others.chain([self.gap[row]]).collect::<Vec<_>>(), tolerance[row])
+                }) {
+                    return None;
+                }
                 return Some(Witness { is_rounded, ..self.witness(&set, fitted, closed, balances) });
             }
             // Of copies that differ by rounding the tightest comes first in the end, unless they contradict each other.
@@ -400,7 +416,18 @@ mod tests {
                 assert!((product - exact).abs() < ROUNDING * unit * unit * 6.0, "{unit:e}, {a}, {b}");
             }
             assert!(of(&columns, true).is_none());
+            // The products alone tell that the first two are independent.
+            let product = |a: usize, b: usize| dot(columns[a], columns[b]);
+            assert_eq!(of_products(3, product, &|| false).unwrap().kept, [0, 1], "{unit:e}");
         }
+    }
+
+    #[test]
+    fn gaps_of_dependent_rows_contradict_each_other_if_rounding_of_distances_could_hide_it() {
+        assert!(contradict(&[-1.0, 2.0, -1.1], 1e-3) && contradict(&[-1e20, 2e20, -1.1e20], 1e17));
+        // Equal gaps, distances with half of their digits or more, and a row that follows from no other.
+        assert!(!contradict(&[-1.0, 2.0, -1.0], 1e-3));
+        assert!(!contradict(&[-1.0, 2.0, -1.1], 1e-8) && !contradict(&[1.0], 1.0));
     }
 
     #[test]
