@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::bound::Bracket;
-use super::simplex::{MOST_CORNERS, Point, Sample, Simplex, Tensor, Weights, less, middle};
+use super::integration::Sample;
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, less, middle};
 use crate::error::Error;
 use crate::fem::element::Tabulated;
 use crate::fem::geometry::{key, midpoint};
@@ -147,7 +148,7 @@ impl Bracket<'_> {
         let mut mean = [0.0; 6];
         for k in 0..parts {
             let place = self.mesh.simplex(cell).part(k).at(centre);
-            let of_displacement = self.law(cell, place).stress(self.strain(&self.primal.values, cell, k, centre));
+            let of_displacement = self.law(cell).stress(self.strain(&self.primal.values, cell, k, centre));
             let elastic = middle(of_displacement, self.elastic_stress(cell, k, centre));
             let own = medium.own_stress(place);
             (0..6).for_each(|entry| mean[entry] += (elastic[entry] + own[entry]) / parts as f64);
@@ -180,7 +181,7 @@ pub enum Strain<S> {
 impl Bracket<'_> {
     /// Judges a displacement by its strain in an element of the first mesh. The displacement needs no other property:
     /// the bound follows from its distance to the centre of the ball and the radius. Integrals of a constant or linear
-    /// strain are exact, except where axes turn; those of others are by five points in each direction on each part of a
+    /// strain are exact; those of others are by five points in each direction on each part of a
     /// simplex.
     pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> Strain<S> + Sync) -> Judged {
         let fine = self.fine_rule();
@@ -199,7 +200,7 @@ impl Bracket<'_> {
                     Strain::Varying(strain) => strain(at.place),
                     _ => mean(&at_corners, simplex.in_whole(k, at.weights)),
                 };
-                let law = self.law(cell, at.place);
+                let law = self.law(cell);
                 let of_bracket = self.strain(&self.primal.values, cell, k, at.weights);
                 let balanced = law.compliance(self.elastic_stress(cell, k, at.weights));
                 [less(own, middle(of_bracket, balanced)), less(own, of_bracket), own]
@@ -207,7 +208,7 @@ impl Bracket<'_> {
             };
             match strain {
                 Strain::Varying(_) => self.sums(cell, &fine, squares),
-                _ => self.sums(cell, &self.rule(cell), squares),
+                _ => self.sums(cell, &self.rule(), squares),
             }
         };
         let of_cells = each(self.mesh.count(), of_cell);

@@ -15,11 +15,11 @@
 
 use super::balance::Balance;
 use super::displacement::Displacements;
-use super::integration::samples;
+use super::integration::{Sample, samples};
 use super::mesh::SimplexMesh;
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Law};
-use super::simplex::{Point, Sample, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
+use super::simplex::{Simplex, Tensor, Weights, corners_of_side, less, traction, work};
 use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
 use crate::error::Error;
@@ -228,9 +228,9 @@ impl<'a> Bracket<'a> {
         self.displacements.strain(coefficients, cell, self.mesh.simplex(cell).in_whole(k, weights))
     }
 
-    /// The law on a simplex at a place.
-    pub fn law(&self, cell: usize, place: Point) -> Law<'_> {
-        self.problem.law(self.mesh.origins[cell], place)
+    /// The law on a simplex.
+    pub fn law(&self, cell: usize) -> Law<'_> {
+        self.problem.law(self.mesh.origins[cell])
     }
 
     /// The stress in balance less that without strain, at a point of part k of a simplex, given by the weights of the
@@ -256,8 +256,8 @@ impl<'a> Bracket<'a> {
     }
 
     /// The points of integration on a part of a simplex, at which squares of linear functions are exact.
-    pub fn rule(&self, cell: usize) -> impl Fn(&Simplex) -> Vec<Sample> + '_ {
-        move |part| samples(self.problem, self.mesh.origins[cell], part)
+    pub fn rule(&self) -> impl Fn(&Simplex) -> Vec<Sample> + '_ {
+        |part| samples(self.problem, part)
     }
 
     /// The sums over points on the parts of a simplex.
@@ -278,12 +278,12 @@ impl<'a> Bracket<'a> {
 
     /// One such sum.
     pub fn sum(&self, cell: usize, value: impl Fn(usize, &Sample) -> f64) -> f64 {
-        self.sums(cell, &self.rule(cell), |k, at| [value(k, at)])[0]
+        self.sums(cell, &self.rule(), |k, at| [value(k, at)])[0]
     }
 
     /// The same of the difference of a strain and that of an elastic stress.
     pub fn square_of_rest(&self, cell: usize, at: &Sample, strain: Tensor, stress: Tensor) -> f64 {
-        let law = self.law(cell, at.place);
+        let law = self.law(cell);
         let of_stress = law.compliance(stress);
         let square = at.weight * law.square(less(strain, of_stress));
         square + self.by_polynomial(cell, at, strain, stress)
@@ -295,7 +295,7 @@ impl<'a> Bracket<'a> {
         if at.extra == 0.0 {
             return 0.0;
         }
-        let law = self.law(cell, at.place);
+        let law = self.law(cell);
         at.extra * (law.over_radius(strain, strain) + work(stress, law.compliance(stress)))
     }
 
@@ -304,10 +304,10 @@ impl<'a> Bracket<'a> {
         let values = &self.primal.values;
         // Half the square of the misfit, the energy, and what a polynomial adds to it.
         let of_cell = |cell: usize| {
-            self.sums(cell, &self.rule(cell), |k, at| {
+            self.sums(cell, &self.rule(), |k, at| {
                 let strain = self.strain(values, cell, k, at.weights);
                 let misfit = self.square_of_rest(cell, at, strain, self.elastic_stress(cell, k, at.weights));
-                let energy = at.weight * self.law(cell, at.place).square(strain);
+                let energy = at.weight * self.law(cell).square(strain);
                 [misfit / 2.0, energy, self.by_polynomial(cell, at, strain, [0.0; 6])]
             })
         };

@@ -68,8 +68,7 @@ impl Bracket<'_> {
         let corners = self.mesh.dimension + 1;
         let centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
         let strain = |cell: usize| self.displacements.strain(&self.primal.values, cell, centre);
-        let at = |cell: usize| self.mesh.simplex(cell).centre();
-        let of_displacement = (0..self.stress.len()).map(|cell| self.law(cell, at(cell)).stress(strain(cell)));
+        let of_displacement = (0..self.stress.len()).map(|cell| self.law(cell).stress(strain(cell)));
         let in_balance = (0..self.stress.len()).flat_map(|cell| {
             (0..corners).map(move |k| {
                 let at_centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
@@ -237,7 +236,7 @@ mod tests {
             } else {
                 [0.01, -0.02, 0.01, 0.005, 0.01, 0.02]
             };
-            let law = problem.law(0, [0.0; 3]);
+            let law = problem.law(0);
             let size = |strain: Tensor| law.square(strain);
             let of_cell = |cell: usize, square: &dyn Fn(Tensor, Tensor) -> f64| {
                 bracket.sum(cell, |k, at| {

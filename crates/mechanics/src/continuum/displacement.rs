@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use super::integration::{samples, samples_on_facet};
+use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::simplex::{MOST_CORNERS, Point, Sample, Simplex, Tensor, Weights, corners_of_side, pairs, work};
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, pairs, work};
 use super::stress::Place;
 use super::system::{Block, Numbers, Row, Unknowns, add_springs};
 use crate::error::Error;
@@ -158,11 +158,10 @@ impl<'a> Displacements<'a> {
 
     fn stiffness(&self, cell: usize) -> Block {
         let (simplex, count) = (self.mesh.simplex(cell), self.numbers.of(cell).len());
-        let origin = self.mesh.origins[cell];
+        let law = self.problem.law(self.mesh.origins[cell]);
         let mut block = vec![0.0; count * count];
         let mut strains: Vec<Tensor> = Vec::with_capacity(count);
-        for sample in samples(self.problem, origin, &simplex) {
-            let law = self.problem.law(origin, sample.place);
+        for sample in samples(self.problem, &simplex) {
             strains.clear();
             strains.extend(self.strains_of_functions(&simplex, sample.weights));
             for (first, &strain) in strains.iter().enumerate() {
@@ -191,7 +190,7 @@ impl<'a> Displacements<'a> {
             if medium.body_force == [0.0; 3] && medium.own_stress.is_none() {
                 continue;
             }
-            for Sample { weights, place, weight, .. } in samples(problem, mesh.origins[cell], &simplex) {
+            for Sample { weights, place, weight, .. } in samples(problem, &simplex) {
                 let own = medium.own_stress(place);
                 let values = values_of_functions(dimension, weights);
                 let forces =

@@ -131,12 +131,12 @@ impl Bracket<'_> {
         // The square of the rest of the pair, its product with the mean stress, and by as much the polynomial for a
         // power of a radius may change such products.
         let of_cell = |cell: usize| {
-            self.sums(cell, &self.rule(cell), |k, at| {
+            self.sums(cell, &self.rule(), |k, at| {
                 let strain = self.strain(&test.displacement, cell, k, at.weights);
                 let stress = self.stress_of(&test.stress, cell, k, at.weights);
                 let own = self.strain(&self.primal.values, cell, k, at.weights);
                 let elastic = self.elastic_stress(cell, k, at.weights);
-                let law = self.law(cell, at.place);
+                let law = self.law(cell);
                 let rest = less(strain, law.compliance(stress));
                 let mut base = at.weight * work(middle(law.stress(own), elastic), rest);
                 if at.extra != 0.0 {

@@ -15,7 +15,7 @@ use super::integration::samples;
 use super::normal::{Lower, add, null_space};
 use super::part_stress::{PartStress, QUADRATIC, quadratic_factors};
 use super::problem::{ContinuumProblem, Law, Medium};
-use super::simplex::{ENTRIES, Point, Sample, Simplex, corners_of_side, traction};
+use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
 use crate::fem::material::engineering;
 use signorini_qp::dot;
 
@@ -86,7 +86,8 @@ impl Element {
         let medium = problem.medium(origin);
         let basis = Basis::of(problem, simplex);
         let carried = basis.stresses();
-        let strains = strains_of_all(problem, origin, simplex, &carried);
+        let (law, products) = (problem.law(origin), products(problem, simplex));
+        let strains: Vec<_> = carried.iter().map(|stress| strains_of(&law, &products, stress)).collect();
         let energies = |(k, strain): (usize, &Vec<f64>)| -> Vec<f64> {
             carried[..=k].iter().map(|stress| dot(strain, stress.entries())).collect()
         };
@@ -185,19 +186,19 @@ fn own_stress(problem: &ContinuumProblem, medium: &Medium, simplex: &Simplex) ->
 type Products = [[f64; QUADRATIC]; QUADRATIC];
 
 /// These integrals on each part; about an axis over the radius, for products of r times a stress.
-fn products(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Vec<Products> {
+fn products(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<Products> {
     let corners = simplex.dimension + 1;
     if problem.is_axisymmetric {
-        return (0..corners).map(|k| products_over_radius(problem, origin, &simplex.part(k))).collect();
+        return (0..corners).map(|k| products_over_radius(problem, &simplex.part(k))).collect();
     }
     let of_product = problem.thickness * simplex.size() / (corners * corners * (corners + 1)) as f64;
     let entry = |i: usize, j: usize| if i == j { 2.0 * of_product } else { of_product };
     vec![std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))); corners]
 }
 
-fn products_over_radius(problem: &ContinuumProblem, origin: usize, part: &Simplex) -> Products {
+fn products_over_radius(problem: &ContinuumProblem, part: &Simplex) -> Products {
     let mut products = [[0.0; QUADRATIC]; QUADRATIC];
-    for sample in samples(problem, origin, part) {
+    for sample in samples(problem, part) {
         let weight = (sample.weight + sample.extra) / sample.place[0].powi(2);
         let factors = quadratic_factors(sample.weights);
         for (line, of_line) in products.iter_mut().zip(factors) {
@@ -205,33 +206,6 @@ fn products_over_radius(problem: &ContinuumProblem, origin: usize, part: &Simple
         }
     }
     products
-}
-
-/// For each stress its complementary energies with each coefficient of another one.
-fn strains_of_all(
-    problem: &ContinuumProblem,
-    origin: usize,
-    simplex: &Simplex,
-    stresses: &[PartStress],
-) -> Vec<Vec<f64>> {
-    if problem.medium(origin).turns_around().is_none() {
-        let (law, products) = (problem.law(origin, simplex.centre()), products(problem, origin, simplex));
-        return stresses.iter().map(|stress| strains_of(&law, &products, stress)).collect();
-    }
-    let of_part = |k: usize| samples(problem, origin, &simplex.part(k)).into_iter().map(move |at| (k, at));
-    let points: Vec<(usize, Sample)> = (0..=simplex.dimension).flat_map(of_part).collect();
-    let strains_of = |stress: &PartStress| {
-        let mut strains = PartStress::zero(simplex.dimension + 1, stress.of_part());
-        for (k, at) in &points {
-            let strain = engineering(&problem.law(origin, at.place).compliance(stress.at(*k, at.weights)));
-            let values = strains.values_mut().iter_mut().skip(k * stress.of_part());
-            values.zip(at.weights).take(stress.of_part()).for_each(|(value, share)| {
-                add(value, share * (at.weight + at.extra), &strain);
-            });
-        }
-        strains.entries().to_vec()
-    };
-    stresses.iter().map(strains_of).collect()
 }
 
 /// The complementary energies of a stress with each coefficient of another one.
@@ -454,7 +428,7 @@ mod tests {
             }
             let strain =
                 if dimension == 2 { [0.5, -0.25, 0.0, 0.375, 0.0, 0.0] } else { [0.5, -0.25, 0.75, 0.375, 0.25, -0.5] };
-            let exact = material.thickness * simplex.size() * material.law(0, [0.0; 3]).square(strain);
+            let exact = material.thickness * simplex.size() * material.law(0).square(strain);
             let moved = energy(&sides(&simplex, &|at| traction(strain, at)));
             assert!((moved / exact - 1.0).abs() < ROUNDING, "{moved} {exact}");
         }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::simplex::{ENTRIES, Point, Tensor, pairs, work};
 use crate::fem::geometry::{COORDINATES, distance, dot, minus, plus};
-use crate::fem::material::{Lame, Matrix, Stiffness, back, engineering, local};
+use crate::fem::material::{Lame, Matrix, Stiffness, engineering};
 
 /// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
 #[derive(Clone, Debug)]
@@ -35,8 +35,7 @@ pub struct ContinuumProblem {
 /// What fills a part of the body.
 #[derive(Clone, Debug)]
 pub struct Medium {
-    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates, or turn around
-    /// a point of the plane.
+    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates.
     pub stiffness: Stiffness,
     /// The stress `[xx, yy, zz, xy, yz, zx]` without strain, if there is one, in force per area.
     pub own_stress: Option<[Linear; 6]>,
@@ -363,15 +362,10 @@ impl ContinuumProblem {
         &self.media[self.medium_of[origin]]
     }
 
-    /// The law of the medium of an element of the first mesh at a place.
-    pub fn law(&self, origin: usize, place: Point) -> Law<'_> {
+    /// The law of the medium of an element of the first mesh.
+    pub fn law(&self, origin: usize) -> Law<'_> {
         let normals = if self.is_axisymmetric { 3 } else { self.dimension };
-        let stiffness = &self.medium(origin).stiffness;
-        let axes = match stiffness {
-            Stiffness::Isotropic(_) => None,
-            Stiffness::General(matrices) => matrices.axes(|| place),
-        };
-        Law { normals, stiffness, axes }
+        Law { normals, stiffness: &self.medium(origin).stiffness }
     }
 
     /// The largest stiffness against a strain of one component, in force per area.
@@ -385,14 +379,6 @@ impl ContinuumProblem {
 }
 
 impl Medium {
-    /// The point of the plane around which its axes turn, if they do.
-    pub fn turns_around(&self) -> Option<Point> {
-        match &self.stiffness {
-            Stiffness::Isotropic(_) => None,
-            Stiffness::General(matrices) => matrices.around.map(|line| line.point()),
-        }
-    }
-
     /// The stress without strain at a place.
     pub fn own_stress(&self, place: Point) -> Tensor {
         self.own_stress.map_or([0.0; 6], |own| own.map(|component| component.at(place)))
@@ -405,8 +391,6 @@ pub struct Law<'a> {
     /// Components on the diagonal of a tensor, 2 in the plane.
     normals: usize,
     stiffness: &'a Stiffness,
-    /// The axes of the stiffness, if they are not those of the coordinates.
-    axes: Option<[Point; 3]>,
 }
 
 impl Law<'_> {
@@ -420,8 +404,8 @@ impl Law<'_> {
         let &Lame { lambda, mu } = match self.stiffness {
             Stiffness::Isotropic(lame) => lame,
             Stiffness::General(matrices) => {
-                let [xx, yy, zz, xy, yz, zx] = self.product(&matrices.compliance, local(&stress, &self.axes));
-                return back([xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0], &self.axes);
+                let [xx, yy, zz, xy, yz, zx] = self.product(&matrices.compliance, stress);
+                return [xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0];
             }
         };
         let count = self.normals as f64;
@@ -438,10 +422,7 @@ impl Law<'_> {
     pub fn stress(&self, strain: Tensor) -> Tensor {
         let &Lame { lambda, mu } = match self.stiffness {
             Stiffness::Isotropic(lame) => lame,
-            Stiffness::General(matrices) => {
-                let strain = engineering(&local(&strain, &self.axes));
-                return back(self.product(&matrices.stiffness, strain), &self.axes);
-            }
+            Stiffness::General(matrices) => return self.product(&matrices.stiffness, engineering(&strain)),
         };
         let count = self.normals as f64;
         let volume = strain.iter().take(self.normals).sum::<f64>() / count;
@@ -453,16 +434,12 @@ impl Law<'_> {
         std::array::from_fn(of_entry)
     }
 
-    /// The stress of that part of a strain whose energy contains a power of a radius: of the strain around an axis, or
-    /// of all where the axes turn.
+    /// The stress of the strain around an axis, whose energy contains a power of a radius.
     pub fn stress_over_radius(&self, strain: Tensor) -> Tensor {
-        match self.axes {
-            Some(_) => self.stress(strain),
-            None => [0.0, 0.0, self.stress([0.0, 0.0, strain[2], 0.0, 0.0, 0.0])[2], 0.0, 0.0, 0.0],
-        }
+        [0.0, 0.0, self.stress([0.0, 0.0, strain[2], 0.0, 0.0, 0.0])[2], 0.0, 0.0, 0.0]
     }
 
-    /// The product of two strains, per volume, of these parts.
+    /// The product of two such strains, per volume.
     pub fn over_radius(&self, strain: Tensor, other: Tensor) -> f64 {
         work(self.stress_over_radius(strain), other)
     }
@@ -538,7 +515,7 @@ mod tests {
         for (dimension, strain) in [(2, [0.25, -0.5, 0.0, 0.125, 0.0, 0.0]), (3, [0.25, -0.5, 0.75, 0.125, 0.5, -0.25])]
         {
             let material = filled(dimension, Lame { lambda: 3.0, mu: 0.5 }, [0.0; 3]);
-            let material = material.law(0, [0.0; 3]);
+            let material = material.law(0);
             let back = material.compliance(material.stress(strain));
             (0..6).for_each(|entry| assert!((back[entry] - strain[entry]).abs() < 1e-15, "{back:?}"));
             // sigma = lambda tr(eps) I + 2 mu eps.

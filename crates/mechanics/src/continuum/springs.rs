@@ -3,9 +3,9 @@
 
 use super::bound::Bracket;
 use super::displacement::on_facet;
-use super::integration::samples_on_facet;
+use super::integration::{Sample, samples_on_facet};
 use super::problem::Foundation;
-use super::simplex::{Point, Sample};
+use super::simplex::Point;
 use crate::fem::geometry::{dot, minus};
 
 /// A point of a facet on springs under a displacement and a stress.

@@ -55,7 +55,7 @@ impl<'a> Stresses<'a> {
             let simplex = mesh.simplex(cell);
             let (origin, bits) = (mesh.origins[cell], |point: Point| point.map(f64::to_bits));
             let medium = problem.medium(origin);
-            let depends = problem.is_axisymmetric || medium.own_stress.is_some() || medium.turns_around().is_some();
+            let depends = problem.is_axisymmetric || medium.own_stress.is_some();
             let place = depends.then(|| bits(simplex.corners()[0]));
             let congruence = (simplex.edges().map(bits), problem.medium_of[origin], place);
             if let Some(element) = known.get(&congruence) {
