@@ -141,5 +141,9 @@ fn axes_around_a_line_have_an_estimate() {
         "shear": [3.8e6, 3.8e6, 3.8e6], "around": {"point": [-0.2, 0.3]}}});
     let (code, report, message) = solved(&scene, &["--total-error", "0.05"]);
     assert!(code == 0 && report["total_error"]["guaranteed"] == false, "{message}");
-    assert!(report["reason"].as_str().unwrap().contains("axes around a line has no guaranteed bound"), "{}", report["reason"]);
+    assert!(
+        report["reason"].as_str().unwrap().contains("axes around a line has no guaranteed bound"),
+        "{}",
+        report["reason"]
+    );
 }

@@ -7,8 +7,8 @@
 //! for s. On the axis s is zero.
 
 use super::normal::null_space;
-use super::part_stress::{PartStress, QUADRATIC};
-use super::simplex::{Point, Simplex, corners_of_side, pairs, traction};
+use super::part_stress::{PartStress, QUADRATIC, add_traction};
+use super::simplex::{Point, Simplex, corners_of_side, number_of_pair, pairs};
 
 /// The entries of s that have conditions.
 const ENTRIES: [usize; 3] = [0, 1, 3];
@@ -20,15 +20,12 @@ fn product(one: [f64; 3], other: [f64; 3]) -> impl Iterator<Item = f64> {
 
 /// The stresses s of a triangle without axial divergence and with tractions that are linear on its sides.
 pub fn stresses(triangle: &Simplex) -> Vec<PartStress> {
-    let of_vector = |vector: Vec<f64>| {
-        let mut stress = PartStress::zero(3, QUADRATIC);
-        for (value, of_value) in stress.values_mut().iter_mut().zip(vector.chunks_exact(ENTRIES.len())) {
-            ENTRIES.iter().zip(of_value).for_each(|(&entry, &part)| value[entry] = part);
-        }
+    let of_vector = |vector: &Vec<f64>| {
+        let mut stress = PartStress::of_vector(3, QUADRATIC, &ENTRIES, vector);
         add_hoop(triangle, &mut stress);
         stress
     };
-    null_space(conditions(triangle)).into_iter().map(of_vector).collect()
+    null_space(conditions(triangle)).iter().map(of_vector).collect()
 }
 
 /// The gradient at a corner of a quadratic function by its coefficients.
@@ -61,19 +58,14 @@ fn add_hoop(triangle: &Simplex, stress: &mut PartStress) {
 /// The conditions on the values of s: no axial divergence, equal tractions between parts, linear ones outside, and zero
 /// on the axis.
 fn conditions(triangle: &Simplex) -> Vec<Vec<f64>> {
-    let place = |a: usize, b: usize| pairs(3).position(|pair| pair == [a.min(b), a.max(b)]).unwrap_or(0);
+    let place = |a: usize, b: usize| number_of_pair(3, a, b);
     let column = |k: usize, coefficient: usize, entry: usize| (k * QUADRATIC + coefficient) * ENTRIES.len() + entry;
     let zero = || vec![0.0; column(3, 0, 0)];
     let size = triangle.size().sqrt();
     let slopes = [0, 1, 2].map(|k| triangle.part(k).slopes().map(|slope| slope.map(|part| size * part)));
     let is_on_axis = |corner: usize| triangle.corners()[corner][0] == 0.0;
     let add_traction = |rows: &mut [Vec<f64>], k: usize, coefficient: usize, normal: Point, factor: f64| {
-        for (index, &entry) in ENTRIES.iter().enumerate() {
-            let mut one = [0.0; 6];
-            one[entry] = factor;
-            let pull = traction(one, normal);
-            rows.iter_mut().zip(pull).for_each(|(row, part)| row[column(k, coefficient, index)] += part);
-        }
+        add_traction(rows, column(k, coefficient, 0), &ENTRIES, factor, normal);
     };
     let mut conditions = Vec::new();
     for k in 0..3 {
@@ -149,7 +141,7 @@ mod tests {
                     [0, 1, 2, 3, 4, 5].map(|entry| (above[entry] - below[entry]) / 0.02)
                 };
                 let ([by_r, by_y], hoop) = ([along(0), along(1)], stress.at(k, at)[2]);
-                let size = stress.entries().iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+                let size = signorini_qp::largest(stress.entries());
                 assert!((part.at(at)[0] * (by_r[0] + by_y[3]) - hoop).abs() < 1e-11 * size, "{radii:?}");
                 assert!((by_r[3] + by_y[1]).abs() < 1e-10 * size, "{radii:?}");
             }

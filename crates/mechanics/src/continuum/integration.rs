@@ -6,7 +6,7 @@
 use std::sync::OnceLock;
 
 use super::problem::ContinuumProblem;
-use super::simplex::{Point, Simplex, Weights, size_of_facet};
+use super::simplex::{Point, Simplex, Weights, mixed, size_of_facet};
 use crate::fem::element::gauss_legendre;
 
 /// Gauss points in each direction: exact for degree 15. P times a product of two quadratic functions has 13; on facets
@@ -29,7 +29,6 @@ pub struct Sample {
     pub extra: f64,
 }
 
-/// The points of integration on a simplex.
 pub fn samples(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<Sample> {
     if problem.is_axisymmetric {
         return around(problem.thickness * simplex.size(), simplex);
@@ -81,8 +80,7 @@ pub fn samples_on_facet(problem: &ContinuumProblem, corners: &[Point]) -> Vec<Sa
     let size = problem.thickness * size_of_facet(corners);
     let radii: Vec<f64> = corners.iter().map(|&corner| problem.radius(corner)).collect();
     let sample = |weights: Weights, share: f64| {
-        let along = |axis: usize| corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum();
-        let place = [0, 1, 2].map(along);
+        let place = mixed(corners, &weights);
         let radius = problem.radius(place);
         let too_much = match radii[..] {
             // Towards a corner on the axis the stress is r times a polynomial.

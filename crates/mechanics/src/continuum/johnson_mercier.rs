@@ -13,8 +13,8 @@ use std::sync::OnceLock;
 use super::axis::stresses;
 use super::integration::samples;
 use super::normal::{Lower, add, null_space};
-use super::part_stress::{PartStress, QUADRATIC, quadratic_factors};
-use super::problem::{ContinuumProblem, Law, Medium};
+use super::part_stress::{PartStress, QUADRATIC, add_traction, quadratic_factors};
+use super::problem::{ContinuumProblem, ElasticLaw, Medium};
 use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
 use crate::fem::material::engineering;
 use signorini_qp::dot;
@@ -33,16 +33,15 @@ impl Basis {
     }
 
     fn stresses(&self) -> Vec<PartStress> {
-        let carried = |simplex: &Simplex, stress: &PartStress| stress.map(|value| simplex.carried(value));
         match self {
             Basis::Carried(simplex) => {
-                reference(simplex.dimension).iter().map(|stress| carried(simplex, stress)).collect()
+                let carried = |stress: &PartStress| stress.map(|value| simplex.carried(value));
+                reference(simplex.dimension).iter().map(carried).collect()
             }
             Basis::About(stresses) => stresses.clone(),
         }
     }
 
-    /// Adds these amounts of the stresses.
     fn add_to(&self, stress: &mut PartStress, amounts: &[f64]) {
         match self {
             Basis::Carried(simplex) => {
@@ -63,7 +62,7 @@ const REFINED: usize = 2;
 
 /// The stresses without divergence on a simplex, with their tractions and energies.
 #[derive(Clone, Debug)]
-pub struct Element {
+pub struct StressElement {
     basis: Basis,
     /// The factor L of the complementary energies of the stresses of the basis. The stresses `L^-1` times these have
     /// the energy one, and none with the others.
@@ -80,7 +79,7 @@ pub struct Element {
     of_works: OnceLock<Option<Lower>>,
 }
 
-impl Element {
+impl StressElement {
     /// The element on a simplex of the medium of an element of the first mesh; `None` if it is flat.
     pub fn new(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Option<Self> {
         let medium = problem.medium(origin);
@@ -109,7 +108,15 @@ impl Element {
         factor.forward(&mut particular_energies);
         let particular_tractions = works(problem, simplex, &particular);
         let of_works = OnceLock::new();
-        Some(Element { basis, factor, particular, tractions, particular_tractions, particular_energies, of_works })
+        Some(StressElement {
+            basis,
+            factor,
+            particular,
+            tractions,
+            particular_tractions,
+            particular_energies,
+            of_works,
+        })
     }
 
     /// The particular stress and these amounts of the others.
@@ -153,7 +160,6 @@ impl Element {
         sum
     }
 
-    /// The stress under displacements of the sides.
     pub fn stress(&self, sides: &[f64]) -> PartStress {
         self.sum(self.amounts(sides))
     }
@@ -209,7 +215,7 @@ fn products_over_radius(problem: &ContinuumProblem, part: &Simplex) -> Products 
 }
 
 /// The complementary energies of a stress with each coefficient of another one.
-fn strains_of(law: &Law, products: &[Products], stress: &PartStress) -> Vec<f64> {
+fn strains_of(law: &ElasticLaw, products: &[Products], stress: &PartStress) -> Vec<f64> {
     let mut strains = PartStress::zero(products.len(), stress.of_part());
     let parts =
         strains.values_mut().chunks_exact_mut(stress.of_part()).zip(stress.values().chunks_exact(stress.of_part()));
@@ -262,14 +268,8 @@ fn reference(dimension: usize) -> &'static [PartStress] {
     static STRESSES: [OnceLock<Vec<PartStress>>; 2] = [OnceLock::new(), OnceLock::new()];
     let entries = ENTRIES[dimension - 2];
     STRESSES[dimension - 2].get_or_init(|| {
-        let of_vector = |vector: Vec<f64>| {
-            let mut stress = PartStress::zero(dimension + 1, dimension + 1);
-            for (value, of_value) in stress.values_mut().iter_mut().zip(vector.chunks_exact(entries.len())) {
-                entries.iter().zip(of_value).for_each(|(&entry, &part)| value[entry] = part);
-            }
-            stress
-        };
-        null_space(conditions(dimension)).into_iter().map(of_vector).collect()
+        let of_vector = |vector: &Vec<f64>| PartStress::of_vector(dimension + 1, dimension + 1, entries, vector);
+        null_space(conditions(dimension)).iter().map(of_vector).collect()
     })
 }
 
@@ -284,14 +284,8 @@ fn conditions(dimension: usize) -> Vec<Vec<f64>> {
     let simplex = Simplex::new(dimension, (0..=dimension).map(unit));
     let entries = ENTRIES[dimension - 2];
     let count = value_at(dimension, dimension + 1, 0);
-    // The rows of the traction on a surface with this normal, at a corner of part k.
     let add_traction = |rows: &mut [Vec<f64>], k: usize, corner: usize, normal: Point| {
-        for (place, &entry) in entries.iter().enumerate() {
-            let mut one = [0.0; 6];
-            one[entry] = 1.0;
-            let pull = traction(one, normal);
-            rows.iter_mut().zip(pull).for_each(|(row, part)| row[value_at(dimension, k, corner) + place] += part);
-        }
+        add_traction(rows, value_at(dimension, k, corner), entries, 1.0, normal);
     };
     let mut conditions = Vec::new();
     for k in 0..=dimension {
@@ -316,7 +310,7 @@ fn conditions(dimension: usize) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bodies::filled;
+    use super::super::bodies::{any_simplex, filled};
     use super::super::simplex::{Tensor, less};
     use super::*;
     use crate::fem::geometry::plus;
@@ -333,18 +327,12 @@ mod tests {
         }
     }
 
-    fn simplex(dimension: usize) -> Simplex {
-        let plane = [[0.25, -0.5, 0.0], [2.0, 0.125, 0.0], [0.75, 1.5, 0.0]];
-        let space = [[0.25, -0.5, 0.1], [2.0, 0.125, -0.2], [0.75, 1.5, 0.3], [0.5, 0.4, 1.7]];
-        if dimension == 2 { Simplex::new(2, plane) } else { Simplex::new(3, space) }
-    }
-
     /// About an axis the force `0.75` along the radius is balanced by the hoop stress `0.75 r`, both times r; a force
     /// along the axis by the axial stress.
     #[test]
     fn a_body_force_about_an_axis_is_in_balance() {
         let problem = ContinuumProblem { is_axisymmetric: true, ..material(2) };
-        let (simplex, at) = (simplex(2), [0.2, 0.5, 0.3, 0.0]);
+        let (simplex, at) = (any_simplex(2), [0.2, 0.5, 0.3, 0.0]);
         let stress = balancing(&problem, &problem.media[0], &simplex);
         for k in 0..3 {
             let radius = simplex.part(k).at(at)[0];
@@ -366,8 +354,8 @@ mod tests {
     #[test]
     fn stresses_are_in_balance_and_continuous() {
         for dimension in [2, 3] {
-            let (material, simplex) = (material(dimension), simplex(dimension));
-            let element = Element::new(&material, 0, &simplex).unwrap();
+            let (material, simplex) = (material(dimension), any_simplex(dimension));
+            let element = StressElement::new(&material, 0, &simplex).unwrap();
             let unknowns = (dimension + 1) * dimension * dimension;
             for unknown in 0..unknowns {
                 let sides: Vec<f64> = (0..unknowns).map(|place| f64::from(u8::from(place == unknown))).collect();
@@ -414,8 +402,8 @@ mod tests {
     #[test]
     fn only_rigid_body_motions_cost_nothing() {
         for dimension in [2, 3] {
-            let (material, simplex) = (material(dimension).unloaded(), simplex(dimension));
-            let block = Element::new(&material, 0, &simplex).unwrap().block();
+            let (material, simplex) = (material(dimension).unloaded(), any_simplex(dimension));
+            let block = StressElement::new(&material, 0, &simplex).unwrap().block();
             let energy = |values: &[f64]| -> f64 {
                 block.chunks_exact(values.len()).zip(values).map(|(line, value)| value * dot(line, values)).sum()
             };

@@ -12,24 +12,16 @@ use super::problem::{
     Surface,
 };
 use super::simplex::Point;
+use super::two_bodies::medium;
 use crate::fem::Formulation;
 use crate::fem::geometry::{COORDINATES, cross, dot};
-use crate::fem::material::{Lame, Material, Stiffness};
+use crate::fem::material::{Lame, Material};
 
 /// Relative rounding of the energies and forces of a column with these keys.
 const ROUNDING: f64 = 1e-11;
 
 /// Young's modulus of a column that does not bulge.
 const YOUNG: f64 = 2.0;
-
-/// A medium of this modulus that does not bulge.
-fn medium(young: f64) -> Medium {
-    Medium {
-        stiffness: Stiffness::Isotropic(Lame { lambda: 0.0, mu: young / 2.0 }),
-        own_stress: None,
-        body_force: [0.0; 3],
-    }
-}
 
 /// The same distance everywhere.
 #[derive(Debug)]
@@ -42,7 +34,6 @@ impl Distance for Flat {
     }
 }
 
-/// A rigid plane across an axis at this distance.
 fn plane(axis: usize, distance: f64) -> Vec<Facing> {
     vec![Facing { normal: COORDINATES[axis], surface: Surface::Rigid(Arc::new(Flat(distance))), pressed: None }]
 }
@@ -72,7 +63,7 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
         let (up, area) = (dimension - 1, problem.thickness);
         let mut own = [Linear::default(); 6];
         own[up] = Linear::constant(OWN);
-        problem.media = vec![Medium { own_stress: Some(own), ..medium(YOUNG) }];
+        problem.media = vec![Medium { own_stress: Some(own), ..medium(YOUNG, 0.0) }];
         problem.conditions.iter_mut().for_each(|condition| condition.traction = Default::default());
         let along = [0, 1, 2].map(|axis| if axis == up { 0.0 } else { 1.0 });
         problem.conditions[0] = Condition { springs: Foundation { along, normal: SPRINGS }, ..Condition::default() };
@@ -160,7 +151,7 @@ fn layers(media: [Medium; 2], between: Condition) -> (ContinuumProblem, SimplexM
 #[test]
 fn layers_of_two_media_share_their_shortening() {
     let [lower, upper] = [2.0, 8.0];
-    let (mut problem, mesh) = layers([medium(lower), medium(upper)], Condition::default());
+    let (mut problem, mesh) = layers([lower, upper].map(|young| medium(young, 0.0)), Condition::default());
     problem.conditions[1].obstacles = vec![0];
     problem.obstacles = plane(1, -0.1);
     let pressure = 0.1 / (0.5 / lower + 0.5 / upper);
@@ -174,12 +165,12 @@ fn loads_and_supports_on_edges_inside_are_exact() {
     let pull = 0.3;
     let mut between = Condition::default();
     between.pull_along([Linear::default(), Linear::constant(pull), Linear::default()]);
-    let (problem, mesh) = layers([medium(YOUNG), medium(YOUNG)], between);
+    let (problem, mesh) = layers([medium(YOUNG, 0.0), medium(YOUNG, 0.0)], between);
     assert!(mesh.surface().any(|outer| mesh.cells_at()[outer.facet][1].is_some()));
     assert_exact(&solved(&problem, &mesh), -pull * pull / (4.0 * YOUNG));
     let moved = pull / YOUNG / 2.0;
     let held = vec![Held { value: Linear::constant(moved), ..held(1) }];
-    let (problem, mesh) = layers([medium(YOUNG), medium(YOUNG)], Condition { held, ..Condition::default() });
+    let (problem, mesh) = layers([medium(YOUNG, 0.0), medium(YOUNG, 0.0)], Condition { held, ..Condition::default() });
     assert_exact(&solved(&problem, &mesh), YOUNG * moved * moved);
 }
 

@@ -55,7 +55,6 @@ pub struct Linear {
 pub struct Condition {
     /// The prescribed components of the displacement.
     pub held: Vec<Held>,
-    /// The number of the rigid face that the facet belongs to.
     pub rigid_face: Option<usize>,
     /// The traction along each axis, in force per area.
     pub traction: [Linear; 3],
@@ -143,7 +142,6 @@ impl Linear {
         Linear { at_origin: factor * self.at_origin, slope: self.slope.map(|part| factor * part) }
     }
 
-    /// The sum of two functions.
     pub fn plus(&self, other: Linear) -> Self {
         let slope = plus(self.slope, other.slope);
         Linear { at_origin: self.at_origin + other.at_origin, slope }
@@ -166,7 +164,6 @@ impl Condition {
 pub struct Facing {
     /// The unit vector from the body towards the obstacle.
     pub normal: Point,
-    /// What the body meets.
     pub surface: Surface,
     /// What presses it, if it moves.
     pub pressed: Option<Pressed>,
@@ -336,11 +333,13 @@ impl ContinuumProblem {
         if self.obstacles.is_empty() { None } else { self.obstacles.iter().map(along_normal).sum() }
     }
 
-    /// The number among these of the travel of an obstacle; `None` if it stands still.
-    pub fn travel(&self, obstacle: usize) -> Option<usize> {
-        self.obstacles[obstacle].pressed?;
+    /// The unknown travel of a pressed obstacle, behind the displacements of this number of places and the motions of
+    /// rigid faces, with the cosine of its angle to the normal; `None` without a force.
+    pub fn travel(&self, obstacle: usize, places: usize) -> Option<(usize, f64)> {
+        let cosine = self.obstacles[obstacle].pressed?.cosine;
         let before = self.obstacles[..obstacle].iter().filter(|facing| facing.pressed.is_some()).count();
-        Some(self.rigid_faces.iter().map(|face| face.free.len()).sum::<usize>() + before)
+        let of_faces: usize = self.rigid_faces.iter().map(|face| face.free.len()).sum();
+        Some((self.dimension * places + of_faces + before, cosine))
     }
 
     /// The factor between a stress and what the elements of the stress hold: the radius about an axis, else 1.
@@ -363,9 +362,9 @@ impl ContinuumProblem {
     }
 
     /// The law of the medium of an element of the first mesh.
-    pub fn law(&self, origin: usize) -> Law<'_> {
+    pub fn law(&self, origin: usize) -> ElasticLaw<'_> {
         let normals = if self.is_axisymmetric { 3 } else { self.dimension };
-        Law { normals, stiffness: &self.medium(origin).stiffness }
+        ElasticLaw { normals, stiffness: &self.medium(origin).stiffness }
     }
 
     /// The largest stiffness against a strain of one component, in force per area.
@@ -387,13 +386,13 @@ impl Medium {
 
 /// The law of stress and strain of a medium in the plane or in space. In the plane the components with z are zero.
 #[derive(Clone, Copy, Debug)]
-pub struct Law<'a> {
+pub struct ElasticLaw<'a> {
     /// Components on the diagonal of a tensor, 2 in the plane.
     normals: usize,
     stiffness: &'a Stiffness,
 }
 
-impl Law<'_> {
+impl ElasticLaw<'_> {
     /// Returns `true` for an entry of a tensor on the diagonal, if it exists in the plane or in space.
     fn is_on_diagonal(&self, entry: usize) -> bool {
         entry < self.normals

@@ -1,7 +1,7 @@
 //! A triangle in the plane or a tetrahedron in space, by its corners. The order of the corners does
 //! not matter: sizes are positive.
 
-use crate::fem::geometry::{Symmetric, cross, distance, dot, length, minus};
+use crate::fem::geometry::{Symmetric, cross, distance, dot, key, length, minus};
 
 /// Coordinates or components `[x, y, z]`; in the plane z is zero.
 pub type Point = [f64; 3];
@@ -34,6 +34,16 @@ pub fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> + Clone {
 /// The corners of the side opposite to a corner, in their order.
 pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = usize> + Clone {
     (0..=dimension).filter(move |&corner| corner != side)
+}
+
+/// The number among these of the pair of two numbers.
+pub fn number_of_pair(count: usize, one: usize, other: usize) -> usize {
+    pairs(count).position(|pair| pair == key(one, other)).unwrap_or(0)
+}
+
+/// The barycentric coordinates of the centre.
+pub fn weights_of_centre(dimension: usize) -> Weights {
+    std::array::from_fn(|corner| if corner <= dimension { 1.0 / (dimension + 1) as f64 } else { 0.0 })
 }
 
 /// The length of an edge, or the area of a triangle in space.
@@ -122,7 +132,7 @@ impl Simplex {
 
     /// The point with these barycentric coordinates.
     pub fn at(&self, weights: Weights) -> Point {
-        [0, 1, 2].map(|axis| self.corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum())
+        mixed(&self.corners, &weights)
     }
 
     /// A stress on the simplex of the origin and the unit vectors, carried to this one: the map of Piola, which
@@ -134,6 +144,11 @@ impl Simplex {
         let entry = |i: usize, j: usize| dot(along(i), rows.map(|row| dot(row, along(j)))) / size;
         [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(2, 0)]
     }
+}
+
+/// The sum of points times their weights.
+pub fn mixed(points: &[Point], weights: &[f64]) -> Point {
+    [0, 1, 2].map(|axis| points.iter().zip(weights).map(|(point, weight)| weight * point[axis]).sum())
 }
 
 /// The traction of a stress on a surface with this normal.
@@ -158,19 +173,13 @@ pub fn middle(a: Tensor, b: Tensor) -> Tensor {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bodies::any_simplex;
     use super::*;
     use crate::fem::geometry::shifted;
 
-    /// A triangle and a tetrahedron.
-    fn simplices() -> [Simplex; 2] {
-        let plane = [[0.25, -0.5, 0.0], [2.0, 0.125, 0.0], [0.75, 1.5, 0.0]];
-        let space = [[0.25, -0.5, 0.1], [2.0, 0.125, -0.2], [0.75, 1.5, 0.3], [0.5, 0.4, 1.7]];
-        [Simplex::new(2, plane), Simplex::new(3, space)]
-    }
-
     #[test]
     fn normals_point_outwards_and_close_the_surface_and_parts_fill_the_simplex() {
-        for simplex in simplices() {
+        for simplex in [2, 3].map(any_simplex) {
             let count = simplex.dimension + 1;
             let mut sum = [0.0; 3];
             for corner in 0..count {

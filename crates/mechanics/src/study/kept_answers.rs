@@ -132,9 +132,6 @@ impl ExactPath {
     }
 
     /// The pressures of all rows at both ends of a stretch, in force per area.
-    ///
-    /// # Errors
-    /// As [`Model::pressure`], which the rows of this scene do not raise.
     pub fn pressures(&self, piece: usize) -> Result<[Vec<f64>; 2], Error> {
         let [from, to] = self.multipliers(piece);
         Ok([self.model.pressure(&from)?, self.model.pressure(&to)?])
@@ -148,9 +145,6 @@ impl ExactPath {
     }
 
     /// The answer at a share of the path, without its own certificate.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary`](signorini_qp::Prepared::boundary) and [`Model::with_gap`].
     pub fn answer(&self, share: f64) -> Result<Answer, Error> {
         let model = std::sync::Arc::new(self.model.with_gap(self.gap(share))?);
         let (displacement, multiplier) = (self.path.displacement(share)?, self.path.multiplier(share));

@@ -23,7 +23,7 @@ const SAME: f64 = 1e-9;
 impl Summary {
     /// The numbers of `solution` to a problem without a scene.
     pub fn of_problem(
-        problem: &signorini_qp::ContactProblem,
+        problem: &ContactProblem,
         solution: Solution,
         goal: impl Into<Goal>,
         assemble_seconds: f64,
@@ -34,9 +34,7 @@ impl Summary {
         summary.warnings.extend(of_rows.chain(warning));
         summary
     }
-}
 
-impl Summary {
     /// The numbers of `solution`, the solution behind `answer`: with pressures, the width of the contact, and the
     /// balance of all forces.
     ///
@@ -96,7 +94,7 @@ impl Summary {
 /// The component of the displacement with the largest magnitude; of several that agree up to rounding, the first.
 fn largest_displacement(answer: &Answer) -> Option<LargestDisplacement> {
     let (mesh, values) = (answer.model().mesh(), answer.displacement());
-    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let largest = signorini_qp::largest(values);
     let number = values.iter().position(|value| value.abs() >= (1.0 - SAME) * largest)?;
     let (node, axis) = (number / mesh.dimension(), number % mesh.dimension());
     let place = mesh.nodes().get(node)?[..mesh.dimension()].to_vec();

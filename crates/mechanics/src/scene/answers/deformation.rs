@@ -1,7 +1,7 @@
 //! The size of the deformation of an answer, and whether the equations of small displacements still describe it.
 
 use crate::fem::body::Region;
-use crate::fem::geometry::unit;
+use crate::fem::geometry::{shifted, unit};
 use crate::fem::mesh::extent;
 use crate::fem::recovery::state::Deformation;
 use crate::scene::Model;
@@ -67,10 +67,7 @@ impl TooDeep {
             let deep: Vec<&ContactRow> = model.rows().iter().filter(own).collect();
             let start = |row: &ContactRow| model.mesh().nodes()[row.node];
             let inward = |row: &ContactRow| unit(row.outward.map(|part| -part));
-            let end = |row: &ContactRow| {
-                let (start, way) = (start(row), inward(row));
-                [0, 1, 2].map(|axis| start[axis] + depth_at_start(model, row) * way[axis])
-            };
+            let end = |row: &ContactRow| shifted(start(row), depth_at_start(model, row), inward(row));
             let ends: Vec<[f64; 3]> = deep.iter().flat_map(|row| [start(row), end(row)]).collect();
             let skin = (!deep.is_empty()).then(|| body.skin_within(region, extent(&ends).into()));
             let of_row = move |row: &ContactRow| {

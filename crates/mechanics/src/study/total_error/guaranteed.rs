@@ -3,8 +3,10 @@
 
 use std::sync::Arc;
 
-use super::found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, Search as Given, TotalError};
-use super::goal::{Ended, LEAST, MARKED, PER_UNKNOWN, marked, shortage};
+use super::found::{
+    Asked, Bound, Domain, Ended, Guarantee, JudgedMesh, LEAST, Level, LevelKind, MARKED, PER_UNKNOWN, TotalError,
+    marked, shortage,
+};
 use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use crate::error::Error;
 use crate::fem::ElementKind;
@@ -24,7 +26,7 @@ const COARSE: usize = 6;
 const OF_SOLVER: f64 = 1e-4;
 
 /// Refines the mesh of a problem until its total error is small enough, or time or memory end.
-pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
+pub(super) fn total_error(given: &Asked, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
     if given.goal.force_error.is_some() && !problem.has_one_direction() {
         let message = "the contact force has a guaranteed interval only if all obstacles stand still, in one direction from the body";
         return Err(Error::Scene { path: "obstacles".into(), message: message.into() });
@@ -52,7 +54,7 @@ pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: Simpl
 /// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the
 /// bound, which is at most `distance`, plus the one from that displacement.
 fn on_last_mesh(
-    given: &Given,
+    given: &Asked,
     of_bound: &ContinuumAnswer,
     distance: f64,
 ) -> Result<((Answer, Solution), JudgedMesh), Error> {
@@ -81,7 +83,7 @@ pub(super) fn compared(answer: &Answer, of_bound: &ContinuumAnswer) -> Result<[f
 
 /// The continuum problem and the settings of a guaranteed bound, the same on every mesh.
 struct Search<'a> {
-    given: &'a Given<'a>,
+    given: &'a Asked<'a>,
     problem: &'a ContinuumProblem,
     settings: Settings,
 }
@@ -371,9 +373,6 @@ pub struct Examined {
 
 impl Examined {
     /// Brackets on the mesh of a scene and on `levels` finer ones, from the first to the last.
-    ///
-    /// # Errors
-    /// Those of the total error; [`Error::Scene`] for a scene without a guaranteed bound.
     pub fn of(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
         let model = Arc::new(scene.build()?);
         let (problem, mut mesh) = scene.continuum_problem(&model)?;

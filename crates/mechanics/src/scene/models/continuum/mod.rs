@@ -186,7 +186,7 @@ fn within_reach(problem: ContinuumProblem, mut mesh: SimplexMesh) -> Result<(Con
             has_facet[obstacle] |= gap.above.is_finite();
             partly.push((outer.cell, obstacle));
         }
-        let is_missed = |obstacle: &usize| !has_facet[*obstacle] && problem.travel(*obstacle).is_some();
+        let is_missed = |obstacle: &usize| !has_facet[*obstacle] && problem.obstacles[*obstacle].pressed.is_some();
         let Some(obstacle) = (0..has_facet.len()).find(is_missed) else { break };
         let mut marked = vec![false; mesh.count()];
         partly.iter().filter(|of| of.1 == obstacle).for_each(|of| marked[of.0] = true);
