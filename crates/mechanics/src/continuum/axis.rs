@@ -13,11 +13,6 @@ use super::simplex::{Point, Simplex, corners_of_side, number_of_pair, pairs};
 /// The entries of s that have conditions.
 const ENTRIES: [usize; 3] = [0, 1, 3];
 
-/// The coefficients in Bernstein's basis of the product of two linear functions, by their values at the corners.
-fn product(one: [f64; 3], other: [f64; 3]) -> impl Iterator<Item = f64> {
-    pairs(3).map(move |[i, j]| (one[i] * other[j] + one[j] * other[i]) / 2.0)
-}
-
 /// The stresses s of a triangle without axial divergence and with tractions that are linear on its sides.
 pub fn stresses(triangle: &Simplex) -> Vec<PartStress> {
     let of_vector = |vector: &Vec<f64>| {
@@ -51,7 +46,9 @@ fn add_hoop(triangle: &Simplex, stress: &mut PartStress) {
                 + gradient(&slopes, corner, |place| values[place][3])[1]
         });
         let radii = [0, 1, 2].map(|corner: usize| corners[corner][0]);
-        values.iter_mut().zip(product(radii, hoop)).for_each(|(value, hoop)| value[2] = hoop);
+        // The product of two linear functions, in Bernstein's basis.
+        let product = |[i, j]: [usize; 2]| (radii[i] * hoop[j] + radii[j] * hoop[i]) / 2.0;
+        values.iter_mut().zip(pairs(3)).for_each(|(value, pair)| value[2] = product(pair));
     }
 }
 

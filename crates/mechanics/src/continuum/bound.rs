@@ -244,13 +244,11 @@ impl<'a> Bracket<'a> {
 
     pub fn stress_of(&self, stress: &[PartStress], cell: usize, k: usize, weights: Weights) -> Tensor {
         let value = stress[cell].at(k, weights);
-        match self.problem.is_axisymmetric {
-            true => {
-                let radius = self.mesh.simplex(cell).part(k).at(weights)[0];
-                value.map(|part| part / radius)
-            }
-            false => value,
+        if !self.problem.is_axisymmetric {
+            return value;
         }
+        let radius = self.mesh.simplex(cell).part(k).at(weights)[0];
+        value.map(|part| part / radius)
     }
 
     /// The points of integration on a part of a simplex, at which squares of linear functions are exact.

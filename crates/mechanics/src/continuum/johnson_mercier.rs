@@ -94,7 +94,8 @@ impl StressElement {
         let particular = balancing(problem, medium, simplex);
         let mut elastic = particular.clone();
         if medium.own_stress.is_some() {
-            elastic.add(-1.0, &own_stress(problem, medium, simplex));
+            let own = |place| medium.own_stress(place).map(|part| problem.radius(place) * part);
+            elastic.add(-1.0, &PartStress::of(problem, simplex, own));
         }
         let mut tractions = vec![Vec::new(); carried.len()];
         let of_carried: Vec<Vec<f64>> = carried.iter().map(|stress| works(problem, simplex, stress)).collect();
@@ -181,11 +182,6 @@ impl StressElement {
         }
         Some(self.sum(amounts))
     }
-}
-
-/// The stress without strain of a medium, as a stress of an element.
-fn own_stress(problem: &ContinuumProblem, medium: &Medium, simplex: &Simplex) -> PartStress {
-    PartStress::of(problem, simplex, |place| medium.own_stress(place).map(|part| problem.radius(place) * part))
 }
 
 /// The integrals of the products of the functions of two coefficients on a part.

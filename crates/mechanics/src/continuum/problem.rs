@@ -393,11 +393,6 @@ pub struct ElasticLaw<'a> {
 }
 
 impl ElasticLaw<'_> {
-    /// Returns `true` for an entry of a tensor on the diagonal, if it exists in the plane or in space.
-    fn is_on_diagonal(&self, entry: usize) -> bool {
-        entry < self.normals
-    }
-
     /// The strain of a stress.
     pub fn compliance(&self, stress: Tensor) -> Tensor {
         let &Lame { lambda, mu } = match self.stiffness {
@@ -411,7 +406,7 @@ impl ElasticLaw<'_> {
         let mean = stress.iter().take(self.normals).sum::<f64>() / count;
         // The parts are kept separate: near incompressibility their sum would lose digits.
         let volume = mean / (count * lambda + 2.0 * mu);
-        let of_entry = |entry: usize| match self.is_on_diagonal(entry) {
+        let of_entry = |entry: usize| match entry < self.normals {
             true => volume + (stress[entry] - mean) / (2.0 * mu),
             false => stress[entry] / (2.0 * mu),
         };
@@ -426,7 +421,7 @@ impl ElasticLaw<'_> {
         let count = self.normals as f64;
         let volume = strain.iter().take(self.normals).sum::<f64>() / count;
         let mean = (count * lambda + 2.0 * mu) * volume;
-        let of_entry = |entry: usize| match self.is_on_diagonal(entry) {
+        let of_entry = |entry: usize| match entry < self.normals {
             true => mean + 2.0 * mu * (strain[entry] - volume),
             false => 2.0 * mu * strain[entry],
         };

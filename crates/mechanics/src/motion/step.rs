@@ -121,11 +121,6 @@ impl Stepping {
         Self::new(&ContactProblem::new(matrix, vec![0.0; statics.dofs()], contact, gap)?, settings)
     }
 
-    /// Factorises the mass of a motion, for initial accelerations, projected predictions and impulses.
-    pub fn of_mass(problem: &DynamicProblem, settings: &Settings) -> Result<Self, Error> {
-        Self::of(problem, problem.mass().clone(), settings)
-    }
-
     /// Factorises the matrix of `problem`; its load and gaps only determine which rows exist.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let diagonal = problem.stiffness().diagonal();

@@ -39,7 +39,7 @@ pub(super) static ABOUT: AboutScheme = AboutScheme {
     load_times: &[0.0],
     prepare: |problem, step, restitution, settings| {
         check_step(problem, step)?;
-        let mass = Stepping::of_mass(problem, settings)?;
+        let mass = Stepping::of(problem, problem.mass().clone(), settings)?;
         Ok(Box::new(CentralDifference { restitution, mass, diagonal: problem.mass().diagonal() }))
     },
     ..TRAPEZOIDAL
@@ -96,10 +96,8 @@ impl Advance for CentralDifference {
         let back = if state.steps == 0 { 0.0 } else { step };
         let velocity = plus(&state.velocity, -back / 2.0, &state.acceleration);
         let momentum = problem.mass().mul(&velocity);
-        let rate = match state.rate.is_empty() {
-            true => problem.statics().stiffness().mul(&velocity),
-            false => state.rate.clone(),
-        };
+        let elastic = || problem.statics().stiffness().mul(&velocity);
+        let rate = if state.rate.is_empty() { elastic() } else { state.rate.clone() };
         Some(halfway(back, 0.0, state, (&velocity, &momentum), &rate))
     }
 

@@ -234,10 +234,7 @@ fn along_rows_of_step(problem: &DynamicProblem, step: f64, state: &State, veloci
 
 /// K v, one entry per dof, in force over time.
 fn elastic_rate(problem: &DynamicProblem, state: &State) -> Vec<f64> {
-    match state.rate.is_empty() {
-        true => problem.statics().stiffness().mul(&state.velocity),
-        false => state.rate.clone(),
-    }
+    if state.rate.is_empty() { problem.statics().stiffness().mul(&state.velocity) } else { state.rate.clone() }
 }
 
 /// The mass that a force along each row moves if the dofs have the masses S: `1/(b'S^-1 b)`, or its share in the mass

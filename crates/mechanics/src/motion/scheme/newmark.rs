@@ -50,7 +50,7 @@ impl Newmark {
         let weight = 1.0 + alpha;
         let matrix = problem.combination(inertia, weight * gamma / (beta * step), weight)?;
         let stepping = Stepping::of(problem, matrix, settings)?;
-        Ok(Newmark { alpha, beta, gamma, stepping, mass: Stepping::of_mass(problem, rigid)? })
+        Ok(Newmark { alpha, beta, gamma, stepping, mass: Stepping::of(problem, problem.mass().clone(), rigid)? })
     }
 
     /// The contact problem of the step from `state`.
@@ -165,7 +165,7 @@ pub(super) static CONTACT_STABILISED: AboutScheme = AboutScheme {
         // The equation above, multiplied by two.
         let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
         let stepping = Stepping::of(problem, matrix, settings)?;
-        Ok(Box::new(ContactStabilised { stepping, mass: Stepping::of_mass(problem, settings)? }))
+        Ok(Box::new(ContactStabilised { stepping, mass: Stepping::of(problem, problem.mass().clone(), settings)? }))
     },
     ..TRAPEZOIDAL
 };

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::found::{Answering, Asked, Bound, Ended, Level, LevelKind, PER_UNKNOWN, TotalError, marked, shortage};
+use super::found::{Answering, Asked, Ended, Level, LevelKind, PER_UNKNOWN, TotalError, marked, shortage};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::bisection::Tetrahedra;
@@ -37,19 +37,7 @@ pub(super) fn total_error(given: &Asked, reason: String) -> Result<TotalError, E
     let settings = given.settings.clone().with_accuracy(OF_ALGEBRA * given.goal.total_error);
     let given = &Asked { settings: &settings, ..*given };
     let mut refinement = Refinement::of(given.scene)?;
-    let mut now = TotalError {
-        status: Status::NotCertified,
-        goal: given.goal,
-        ended: Ended::Time,
-        total_error: Bound { bound: f64::INFINITY, guaranteed: false },
-        reason: Some(reason),
-        guarantee: None,
-        levels: Vec::new(),
-        model: ModelSize::of(given.model.problem()),
-        seconds: 0.0,
-        meshes: Vec::new(),
-        last: Err("it is not computed yet".into()),
-    };
+    let mut now = given.begun(Some(reason));
     let mut shares = given.solve_on(given.model.clone(), &mut now)?;
     let ended = loop {
         if now.levels.last().is_some_and(|level| level.meets(given.goal)) {

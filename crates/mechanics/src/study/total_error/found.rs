@@ -234,6 +234,23 @@ pub(super) struct Asked<'a> {
 }
 
 impl Asked<'_> {
+    /// What is found before the first mesh; an estimate has a `reason`.
+    pub fn begun(&self, reason: Option<String>) -> TotalError {
+        TotalError {
+            status: Status::NotCertified,
+            goal: self.goal,
+            ended: Ended::Time,
+            total_error: Bound { bound: f64::INFINITY, guaranteed: reason.is_none() },
+            reason,
+            guarantee: None,
+            levels: Vec::new(),
+            model: ModelSize::of(self.model.problem()),
+            seconds: 0.0,
+            meshes: Vec::new(),
+            last: Err("it is not computed yet".into()),
+        }
+    }
+
     /// Seconds since the start of the search.
     pub fn seconds(&self) -> f64 {
         self.clock.elapsed().as_secs_f64()
