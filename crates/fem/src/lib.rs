@@ -1,6 +1,16 @@
 //! Linear elastic bodies by finite elements: meshes, elements, materials, assembly of K and f, recovery of stresses,
 //! error norms. It depends on no contact problem, no quadratic program and no scene.
 //!
+//! ```
+//! use signorini_fem::{DofMap, ElasticBody, ElementKind, Formulation, Material, Mesh, stiffness};
+//! // A rod of two elements, E A / L = 100 x 1 / 2 each, held at its left end.
+//! let mesh = Mesh::new([0.0, 2.0, 4.0].map(|x| [x, 0.0, 0.0]).to_vec(), ElementKind::Line2, vec![0, 1, 1, 2], vec![])?;
+//! let body = ElasticBody::new(mesh, Material::new(100.0, 0.0)?, Formulation::Bar { area: 1.0 })?;
+//! let k = stiffness(&body, &DofMap::new(vec![Some(0.0), None, None])?)?;
+//! assert_eq!(k.mul(&[1.0, 1.0]), [50.0, 0.0]);
+//! # Ok::<(), signorini_fem::Error>(())
+//! ```
+//!
 //! The hidden modules are for the crates of this workspace. The sentence of an [`Error`] names the value that is wrong
 //! and what is allowed: functions list only the errors by which a caller may decide.
 
