@@ -1,6 +1,6 @@
 //! Malformed binary mesh files: each error is one sentence with the line of the section and the byte of the record.
 
-use signorini::{Error, qp};
+use signorini::{fem::Error, qp};
 use std::path::Path;
 
 use signorini::fem::{GmshFile, Mesh};

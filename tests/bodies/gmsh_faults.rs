@@ -1,7 +1,7 @@
 //! Malformed mesh files: each error is one sentence with file and line.
 
 use signorini::fem::GmshFile;
-use signorini::{Error, qp};
+use signorini::{fem::Error, qp};
 
 /// A unit square of two triangles in version 2.2; a test may replace any line.
 const V2: [&str; 24] = [

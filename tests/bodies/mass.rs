@@ -8,7 +8,7 @@ use signorini::fem::{
 };
 use signorini::qp::{Cholesky, dot};
 use signorini::scene::{bar, cuboid};
-use signorini::{Error, qp};
+use signorini::{fem::Error, qp};
 use support::bodies::{distort, distorted, nodal_of};
 
 /// Rounding of sums over a mesh with two quadratures.

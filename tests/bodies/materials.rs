@@ -2,7 +2,7 @@
 
 use signorini::fem::{self, DofMap, ElasticBody, ElementKind, Formulation, MassForm, Material};
 use signorini::scene::{cuboid, rectangle};
-use signorini::{Error, qp};
+use signorini::{fem::Error, qp};
 use support::bodies::{difference, distorted, largest, nodal, solve_held};
 
 const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };

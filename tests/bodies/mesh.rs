@@ -1,6 +1,6 @@
 //! Structured meshes: geometry, boundaries, and refused input.
 
-use signorini::Error;
+use signorini::fem::Error;
 use signorini::fem::{Axis, Boundary, ElasticBody, ElementKind, FacetKind, Formulation, Material, Mesh};
 use signorini::scene::rectangle;
 

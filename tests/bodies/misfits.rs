@@ -1,8 +1,8 @@
 //! The library refuses parts that do not match, each in a sentence that names both.
 
 use signorini::fem::{
-    DofMap, ElasticBody, ElementKind, Formulation, Integration, MassForm, Material, Mesh, discretisation_error, mass,
-    stress,
+    self, DofMap, ElasticBody, ElementKind, Formulation, Integration, MassForm, Material, Mesh, discretisation_error,
+    mass, stress,
 };
 use signorini::motion::DynamicProblem;
 use signorini::scene::{bar, cuboid, rectangle, ring};
@@ -23,7 +23,7 @@ fn square(kind: ElementKind) -> Mesh {
     rectangle(&LINES, &LINES, kind).unwrap()
 }
 
-fn body(mesh: Mesh, formulation: Formulation) -> Result<ElasticBody, Error> {
+fn body(mesh: Mesh, formulation: Formulation) -> Result<ElasticBody, fem::Error> {
     ElasticBody::new(mesh, Material::new(1.0, 0.3)?, formulation)
 }
 

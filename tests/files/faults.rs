@@ -30,7 +30,7 @@ fn refused(desk: &Path, name: &str) -> Option<Error> {
                 Scene::read(&file).and_then(|scene| scene.build()).map_err(|error| Scene::located(error, &file));
             built.and_then(|model| solved(model.problem()).map_err(|error| model.explain(error))).err()
         }
-        Some("msh") => GmshFile::read(&file).and_then(|mesh| mesh.mesh(&[], 1.0)).err(),
+        Some("msh") => GmshFile::read(&file).and_then(|mesh| mesh.mesh(&[], 1.0)).err().map(Error::from),
         _ => read_problem(desk).and_then(|problem| solved(&problem)).err().map(Error::from),
     }
 }

@@ -122,7 +122,7 @@ const FOREIGN: [(&str, &[&str]); 6] = [
     ("feral_metis", &["crates/linear/src/ordering.rs"]),
     ("nalgebra", &[]),
     ("nalgebra_sparse", &["crates/linear/src/foreign.rs"]),
-    ("rayon", &["crates/linear/src/threads.rs", "crates/mechanics/src/fem/threads.rs"]),
+    ("rayon", &["crates/linear/src/threads.rs", "crates/fem/src/threads.rs"]),
 ];
 
 #[test]
@@ -150,7 +150,7 @@ fn only_the_ending_of_a_run_constructs_the_error_of_an_answer_that_is_not_certif
 /// counts in any letters.
 const WORDS: [(&[&str], &[&str], &[&str]); 8] = [
     // Bodies do not know contact problems.
-    (&["ContactProblem", "ContactSet", "Solution"], &["crates/mechanics/src/fem"], &[]),
+    (&["ContactProblem", "ContactSet", "Solution"], &["crates/fem/src"], &[]),
     // Methods speak no mechanics, and do not call each other.
     (&["mesh", "element", "node", "stress", "young", "poisson", "obstacle"], &["crates/qp/src/method"], &[]),
     (&["active_set::"], &["crates/qp/src/method/penalty.rs", "crates/qp/src/method/interior_point.rs"], &[]),

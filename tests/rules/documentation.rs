@@ -8,7 +8,7 @@ use syn::{
     PathArguments, PathSegment, Signature, TraitItem, Type, Visibility,
 };
 
-use crate::sources::{Sources, crates, root};
+use crate::sources::{Sources, crates, is_hidden, root};
 
 /// Words by which an array has a length and an order.
 const SHAPE: [&str; 11] =
@@ -89,8 +89,7 @@ struct Found(Vec<(String, String, Arrays)>);
 
 impl Found {
     fn add(&mut self, name: &Ident, attributes: &[Attribute], visit: impl Fn(&mut Arrays)) {
-        let is_hidden = |one: &Attribute| one.path().is_ident("doc") && matches!(one.meta, Meta::List(_));
-        if !attributes.iter().any(is_hidden) {
+        if !is_hidden(attributes) {
             let mut arrays = Arrays::default();
             visit(&mut arrays);
             self.0.push((name.to_string(), prose(attributes), arrays));

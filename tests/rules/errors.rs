@@ -104,7 +104,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
         ("Mesh", ("mesh", gmsh_of_another_body())),
         ("SceneSyntax", ("scene", Scene::from_json("{", "plane.json").map(drop).unwrap_err())),
         ("Scene", ("scene", scene(("\"bottom\"", "\"below\""))?.build().map(drop).unwrap_err())),
-        ("FileSyntax", ("file-syntax", GmshFile::parse("", "square.msh").map(drop).unwrap_err())),
+        ("FileSyntax", ("file-syntax", GmshFile::parse("", "square.msh").map(drop).unwrap_err().into())),
         ("FileBytes", ("file-syntax", empty_surface())),
         ("File", ("file", read_problem(nowhere).unwrap_err().into())),
     ]))
@@ -115,7 +115,7 @@ fn empty_surface() -> Error {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("die.stl");
     fs::write(&file, "").unwrap();
-    ClosedSurface::read(&file, 1.0, [0.0; 3]).map(drop).unwrap_err()
+    ClosedSurface::read(&file, 1.0, [0.0; 3]).map(drop).unwrap_err().into()
 }
 
 /// The error of a mesh file without the requested group.
@@ -124,11 +124,12 @@ fn gmsh_of_another_body() -> Error {
         .and_then(|file| file.mesh(&["another"], 1.0))
         .map(drop)
         .unwrap_err()
+        .into()
 }
 
 /// The variants with their codes, as the table of `Error::code` lists them.
 fn variants() -> BTreeMap<String, String> {
-    let text = ["linear", "qp", "mechanics"].map(|name| read(&format!("crates/{name}/src/error.rs"))).concat();
+    let text = ["linear", "qp", "fem", "mechanics"].map(|name| read(&format!("crates/{name}/src/error.rs"))).concat();
     let arms = text.lines().filter(|line| line.trim().starts_with("Error::"));
     let arms = arms.filter_map(|line| {
         let (patterns, class) = line.trim().split_once(" => ")?;
@@ -151,7 +152,12 @@ fn every_variant_is_provoked_with_its_code_and_one_sentence() {
         // The errors of other crates come in their wrapping.
         let named = format!("{error:?}");
         assert_eq!(
-            named.trim_start_matches("Qp(").trim_start_matches("Linear(").split([' ', ')']).next(),
+            named
+                .trim_start_matches("Qp(")
+                .trim_start_matches("Fem(")
+                .trim_start_matches("Linear(")
+                .split([' ', ')'])
+                .next(),
             Some(variant),
             "{error:?}"
         );

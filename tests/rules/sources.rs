@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use syn::visit::{self, Visit};
-use syn::{Attribute, File, Item, UseTree, Visibility};
+use syn::{Attribute, File, Item, Meta, UseTree, Visibility};
 
 /// A module by its crate and its names: `signorini_qp::method::start`.
 pub type Module = Vec<String>;
@@ -57,6 +57,10 @@ pub fn crates() -> Vec<(String, PathBuf)> {
 
 pub fn has(attributes: &[Attribute], name: &str) -> bool {
     attributes.iter().any(|attribute| attribute.path().is_ident(name))
+}
+
+pub fn is_hidden(attributes: &[Attribute]) -> bool {
+    attributes.iter().any(|one| one.path().is_ident("doc") && matches!(one.meta, Meta::List(_)))
 }
 
 pub fn is_for_tests(attributes: &[Attribute]) -> bool {
@@ -246,6 +250,7 @@ impl<'a> Visit<'a> for Reader<'_> {
             Item::Const(one) => (&one.vis, &one.ident),
             Item::Enum(one) => (&one.vis, &one.ident),
             Item::Fn(one) => (&one.vis, &one.sig.ident),
+            Item::Mod(one) if is_hidden(&one.attrs) => return visit::visit_item(self, item),
             Item::Mod(one) => (&one.vis, &one.ident),
             Item::Struct(one) => (&one.vis, &one.ident),
             Item::Trait(one) => (&one.vis, &one.ident),
@@ -264,7 +269,7 @@ impl<'a> Visit<'a> for Reader<'_> {
     }
 
     fn visit_item_use(&mut self, one: &'a syn::ItemUse) {
-        self.declare(&one.tree, Module::new(), matches!(one.vis, Visibility::Public(_)));
+        self.declare(&one.tree, Module::new(), matches!(one.vis, Visibility::Public(_)) && !is_hidden(&one.attrs));
     }
 
     fn visit_path(&mut self, path: &'a syn::Path) {
@@ -303,6 +308,8 @@ fn declarations_paths_and_macros_are_read_and_tests_are_not() {
         r#"
         use crate::d::{self, x::Y as Z};
         pub use super::G;
+        #[doc(hidden)]
+        pub mod t;
         pub(in crate::scope) fn f<'a>(h: &'a c::H<crate::I>) -> faer::J { e::k(Z::l, json!({"m": [self::n::o("p")]})) }
         fn r() -> S { S::T { u: 1 } }
         #[cfg(test)]

@@ -1,7 +1,7 @@
 //! GOAL: normals and coordinates that are prescribed at one node form one frame or are refused; rigid-body modes along
 //! rollers are named; the dof map transforms vectors in both directions.
 
-use signorini::{Error, Scene, qp, solve_qp};
+use signorini::{Error, Scene, fem, qp, solve_qp};
 use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
@@ -194,12 +194,15 @@ fn frames_transform_vectors_in_both_directions() {
 
     for given in [&[[1.0, 1.0, 0.0]][..], &[[1.0, 0.0, 0.0], [0.6, 0.8, 0.0]], &[[0.0, 0.0, 1.0]], &[[f64::NAN; 3]]] {
         assert!(
-            matches!(Frame::completing(given, 2), Err(Error::Linear(qp::LinearError::Setting { name: "frame", .. }))),
+            matches!(
+                Frame::completing(given, 2),
+                Err(fem::Error::Linear(qp::LinearError::Setting { name: "frame", .. }))
+            ),
             "{given:?}"
         );
     }
     assert!(Frame::completing(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 2).is_err());
     let outside = DofMap::with_frames(vec![None; 4], 2, BTreeMap::from([(2, plane)]));
-    assert!(matches!(outside, Err(Error::Mesh { .. })));
+    assert!(matches!(outside, Err(fem::Error::Mesh { .. })));
     assert!(DofMap::with_frames(vec![None; 4], 0, BTreeMap::from([(0, plane)])).is_err());
 }

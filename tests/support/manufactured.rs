@@ -42,7 +42,7 @@ impl SolvedBlock<'_> {
     /// # Errors
     /// None for a block made by [`solve_block`].
     pub fn errors(&self) -> Result<ErrorNorms, Error> {
-        error_norms(&self.body, &self.displacement, |at| state(self.exact, at))
+        Ok(error_norms(&self.body, &self.displacement, |at| state(self.exact, at))?)
     }
 
     /// The relative errors of the displacement, with one quadrature rule for every element.
@@ -50,7 +50,7 @@ impl SolvedBlock<'_> {
     /// # Errors
     /// None for a block made by [`solve_block`].
     pub fn errors_by(&self, rule: &[QuadraturePoint]) -> Result<ErrorNorms, Error> {
-        error_norms_by(rule, &self.body, &self.displacement, |at| state(self.exact, at))
+        Ok(error_norms_by(rule, &self.body, &self.displacement, |at| state(self.exact, at))?)
     }
 
     /// The relative error in energy, estimated from the stresses without the exact solution.
@@ -58,7 +58,7 @@ impl SolvedBlock<'_> {
     /// # Errors
     /// None for a block made by [`solve_block`].
     pub fn estimated_energy_error(&self) -> Result<f64, Error> {
-        discretisation_error(&self.body, &self.displacement, &stress(&self.body, &self.displacement)?)
+        Ok(discretisation_error(&self.body, &self.displacement, &stress(&self.body, &self.displacement)?)?)
     }
 
     /// The largest nodal pressure of the answer, and the largest of the exact solution at the nodes.
@@ -131,7 +131,7 @@ pub fn solve_plate(exact: &dyn ContactSolution, kind: ElementKind, cells: usize)
 /// a contact row `-u_y <= gap(x)`.
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element that is not plane or an unsuitable integration, [`Error::Setting`] for invalid
+/// [`Error::Fem`] for an element that is not plane or an unsuitable integration, [`Error::Setting`] for invalid
 /// elastic constants, and the errors of [`solve_qp`].
 pub fn solve_block(
     exact: &dyn ContactSolution,

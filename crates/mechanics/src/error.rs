@@ -1,5 +1,6 @@
 //! The one error type of a user: each error states what is wrong, where, which value, and what is allowed.
 
+pub use signorini_fem::{nearest, nearly};
 use signorini_qp::memory::in_words as memory;
 use signorini_qp::{Failure, Solution};
 
@@ -34,12 +35,9 @@ pub enum Error {
         /// Memory that all may take, in bytes.
         allowed: f64,
     },
-    /// Nodes and elements that form no mesh.
-    #[error("mesh: {message}")]
-    Mesh {
-        /// A sentence on the node or element, its fault, and what is allowed.
-        message: String,
-    },
+    /// Nodes and elements that form no mesh, with the same sentence and the same code.
+    #[error(transparent)]
+    Fem(signorini_fem::Error),
     /// A scene with JSON of the wrong form or with a wrong value, at its place in the text.
     #[error("{source_name}:{line}:{column}: at {}: {message}", place_in_scene(path))]
     SceneSyntax {
@@ -95,6 +93,15 @@ impl From<signorini_qp::Error> for Error {
     }
 }
 
+impl From<signorini_fem::Error> for Error {
+    fn from(error: signorini_fem::Error) -> Self {
+        match error {
+            signorini_fem::Error::Linear(error) => Error::Linear(error),
+            error => Error::Fem(error),
+        }
+    }
+}
+
 impl Error {
     /// The best answer of a solve that ended without a certified one; `None` for every other error.
     pub fn into_best(self) -> Option<Solution> {
@@ -112,7 +119,7 @@ impl Error {
             Error::Linear(error) => error.class().0,
             Error::Qp(error) => error.code(),
             Error::TooManyAnswers { .. } => "too-large",
-            Error::Mesh { .. } => "mesh",
+            Error::Fem(error) => error.code(),
             Error::SceneSyntax { .. } | Error::Scene { .. } => "scene",
             Error::Refused { code, .. } => code,
             Error::BeyondSmallDisplacements { .. } => "beyond-small-displacements",
@@ -144,30 +151,4 @@ impl Error {
 /// A JSON path in words; `.` is the scene itself.
 fn place_in_scene(path: &str) -> String {
     if path == "." { "the top level".to_string() } else { format!("`{path}`") }
-}
-
-/// Names longer than this are no spelling errors.
-const LONGEST_NAME: usize = 100;
-
-/// `; did you mean ...?` for a name that differs from one of `names` by a few letters, otherwise nothing.
-pub fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(name, names).map_or_else(String::new, |other| format!("; did you mean `{other}`?"))
-}
-
-/// The nearest of `names` if it differs from `name` by a few letters.
-///
-/// One letter in three may be replaced, missing, added, or exchanged with its neighbour.
-pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    if name.len() > LONGEST_NAME {
-        return None;
-    }
-    let length = name.chars().count();
-    let most = length.max(3) / 3;
-    let written = name.to_lowercase();
-    let away = |other: &str| strsim::damerau_levenshtein(&written, &other.to_lowercase());
-    let others = names.into_iter().filter(|other| !other.is_empty() && other.len() <= LONGEST_NAME);
-    let near = others.map(|other| (away(other), other));
-    // A name of one letter that differs has no letter in common.
-    let near = near.filter(|(away, other)| *away <= most && *away < length.max(other.chars().count()));
-    near.min_by_key(|(away, _)| *away).map(|(_, other)| other)
 }

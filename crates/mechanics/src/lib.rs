@@ -38,10 +38,10 @@
 mod bytes;
 mod continuum;
 mod error;
-pub mod fem;
 pub mod motion;
 pub mod scene;
 pub mod study;
 
 pub use error::{Error, nearest};
 pub use scene::{Model, Scene};
+pub use signorini_fem as fem;

@@ -114,7 +114,7 @@ pub fn read(name: &str, bytes: &[u8], desk: &Path) -> Result<(), Error> {
             })?;
             Scene::read(&file)?.build().map_err(|error| Scene::located(error, &file)).map(drop)
         }
-        Some("msh") => GmshFile::parse(bytes, name)?.mesh(&[], 1.0).map(drop),
+        Some("msh") => Ok(GmshFile::parse(bytes, name)?.mesh(&[], 1.0).map(drop)?),
         _ => {
             let io = |source| qp::LinearError::File { action: "write", path: desk.into(), source };
             std::fs::write(desk.join(name), bytes).map_err(io)?;

@@ -59,7 +59,7 @@ impl ContinuumAnswer {
             Boundary::new(name, self.kind.facet(), facets.concat()).part(name, |_| true)
         };
         let boundaries = self.boundaries.iter().filter(|boundary| keeps(&boundary.0)).map(boundary).collect();
-        Mesh::new(self.nodes.clone(), self.kind, self.elements.concat(), boundaries)
+        Ok(Mesh::new(self.nodes.clone(), self.kind, self.elements.concat(), boundaries)?)
     }
 }
 

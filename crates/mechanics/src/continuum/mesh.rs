@@ -204,7 +204,7 @@ impl SimplexMesh {
         next: Bisection,
     ) -> Self {
         let cells: Vec<_> = cells.collect();
-        let (mut edges, mut facets) = (Lattice::new(), Lattice::new());
+        let (mut edges, mut facets) = (Lattice::default(), Lattice::default());
         let (mut edges_of, mut sides) = (Vec::new(), Vec::new());
         for cell in &cells {
             let corners = &cell[..=dimension];

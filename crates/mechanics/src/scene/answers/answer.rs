@@ -266,19 +266,19 @@ impl Answer {
     /// The strain at each node, dimensionless tensor components `[xx, yy, zz, xy, yz, zx]`, extension positive, in the
     /// order of the mesh: recovered and averaged as the stress. The expansion by temperature is a part of it.
     pub fn strain(&self) -> Result<Vec<[f64; 6]>, Error> {
-        nodal_strain(self.model.body(), &self.displacement)
+        Ok(nodal_strain(self.model.body(), &self.displacement)?)
     }
 
     /// Strain (dimensionless) and stress (force per area) in some elements of the mesh, numbered from 0, at the points
     /// at which CalculiX prints them, in its order: tensor components `[xx, yy, zz, xy, yz, zx]`, extension and tension
     /// positive.
     pub fn strain_and_stress(&self, elements: &[usize]) -> Result<Vec<Vec<[[f64; 6]; 2]>>, Error> {
-        at_points(self.model.body(), &self.displacement, elements)
+        Ok(at_points(self.model.body(), &self.displacement, elements)?)
     }
 
     /// The volume of each element, and its strain energy, in force times length, in the order of the mesh.
     pub fn volume_and_energy(&self) -> Result<Vec<[f64; 2]>, Error> {
-        volume_and_energy(self.model.body(), &self.displacement)
+        Ok(volume_and_energy(self.model.body(), &self.displacement)?)
     }
 
     /// The forces on all nodes by their source; computed at the first call.
@@ -323,7 +323,7 @@ impl Answer {
     /// # Source
     /// [`recovery::discretisation_error`].
     pub fn discretisation_error(&self) -> Result<f64, Error> {
-        recovery::discretisation_error(self.model.body(), &self.displacement, self.stress()?)
+        Ok(recovery::discretisation_error(self.model.body(), &self.displacement, self.stress()?)?)
     }
 
     /// The same, and the strain energy of the meshed part, in force times length.
@@ -333,7 +333,7 @@ impl Answer {
     }
 
     pub(crate) fn estimated_error(&self) -> Result<recovery::patches::EstimatedError, Error> {
-        recovery::patches::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)
+        Ok(recovery::patches::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)?)
     }
 }
 

@@ -106,8 +106,8 @@ pub(crate) fn direction(path: &str, entries: &[f64], dimension: usize) -> Result
 }
 
 /// A setting that a lower module refused, with its place in the scene.
-pub(crate) fn located(error: Error, prefix: &str) -> Error {
-    match error {
+pub(crate) fn located(error: impl Into<Error>, prefix: &str) -> Error {
+    match error.into() {
         Error::Linear(qp::LinearError::Setting { name, value, allowed }) => {
             wrong(format!("{prefix}{name}"), format!("{} is not allowed: it must be {allowed}", number(value)))
         }
@@ -243,11 +243,11 @@ pub(crate) struct MeshFiles {
 impl MeshFiles {
     /// The deck in a file, whose includes lie in `folder` if it is given.
     pub fn deck(&self, file: PathBuf, folder: Option<&Path>, step: Option<usize>) -> Result<Rc<Deck>, Error> {
-        once(&self.decks, (file.clone(), step), || Deck::read(&file, folder, step))
+        once(&self.decks, (file.clone(), step), || Ok(Deck::read(&file, folder, step)?))
     }
 
     pub fn gmsh(&self, file: PathBuf) -> Result<Rc<GmshFile>, Error> {
-        once(&self.meshes, file.clone(), || GmshFile::read(file))
+        once(&self.meshes, file.clone(), || Ok(GmshFile::read(file)?))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::materials::{BodyMaterials, Selection, centroids};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::fem::{ElementKind, Formulation, Integration, Mesh, Region};
+use crate::fem::{self, ElementKind, Formulation, Integration, Mesh, Region};
 use crate::scene::Warning;
 use crate::scene::input::body::{BodySpec, Site};
 use crate::scene::input::entry::{MeshFiles, finite, located, point, vector, wrong};
@@ -106,9 +106,9 @@ impl DescribedBody<'_> {
     }
 
     /// An error of the mesh at its place in the scene; an error with its own file and line keeps them.
-    fn at_body(&self, error: Error) -> Error {
-        match error {
-            Error::Mesh { message } => wrong(self.path(""), message),
+    fn at_body(&self, error: impl Into<Error>) -> Error {
+        match error.into() {
+            Error::Fem(fem::Error::Mesh { message }) => wrong(self.path(""), message),
             other => located(other, &self.path(".")),
         }
     }
@@ -144,14 +144,14 @@ impl DescribedBody<'_> {
         self.materials.check(&formulation)?;
         let at_body = |error| match error {
             // A setting next to the body: the thickness.
-            Error::Linear(qp::LinearError::Setting { .. }) => located(error, ""),
+            fem::Error::Linear(qp::LinearError::Setting { .. }) => located(error, ""),
             other => self.at_body(other),
         };
         let body = ElasticBody::new(self.mesh(read)?, first, formulation).map_err(at_body)?;
         let body = self.unstrained.placed(self.materials.placed(body)?, &self.place, self.scene.dynamic())?;
         body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
-            Error::Mesh { message } => wrong(self.path(".integration"), message),
-            other => other,
+            fem::Error::Mesh { message } => wrong(self.path(".integration"), message),
+            other => other.into(),
         })
     }
 }
@@ -256,7 +256,7 @@ fn warmed(body: ElasticBody, spec: &TemperatureSpec, path: &str) -> Result<Elast
         let message = format!("the material at {at} has no `expansion`, which a temperature needs; give it");
         return Err(wrong(path, message));
     }
-    body.with_temperature(&elements, spec.value, gradient)
+    Ok(body.with_temperature(&elements, spec.value, gradient)?)
 }
 
 /// The body with the initial stress at the JSON path `path`.
@@ -273,5 +273,5 @@ fn stressed(body: ElasticBody, spec: &InitialStressSpec, path: &str) -> Result<E
     }
     let selection = Selection { group: spec.group.as_deref(), cuboid: spec.cuboid.as_ref() };
     let elements = selection.elements(&body, path)?;
-    body.with_initial_stress(&elements, stress)
+    Ok(body.with_initial_stress(&elements, stress)?)
 }

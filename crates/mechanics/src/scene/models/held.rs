@@ -106,7 +106,7 @@ impl Held {
         if prescribed.iter().all(Option::is_some) {
             return Err(wrong("supports", "every node is held in all directions: nothing is left to solve for"));
         }
-        DofMap::with_frames(prescribed, dimension, frames)
+        Ok(DofMap::with_frames(prescribed, dimension, frames)?)
     }
 
     /// The held nodes with the directions along which they are held, each once.

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, nearly};
 use crate::fem::body::ElasticBody;
-use crate::fem::{Formulation, Material};
+use crate::fem::{self, Formulation, Material};
 use crate::scene::input::entry::{located, number, point, vector, wrong};
 use crate::scene::input::schema::body::PartBoxSpec;
 use crate::scene::input::schema::{MaterialPartSpec, MaterialSpec, ModelSpec, OrthotropicSpec};
@@ -175,7 +175,7 @@ impl BodyMaterials<'_> {
     }
 
     /// An error of the material at the JSON path `path`; the allowed range is that of the model.
-    fn in_material(&self, error: Error, path: &str) -> Error {
+    fn in_material(&self, error: fem::Error, path: &str) -> Error {
         let prefix = format!("{path}.");
         let allowed = match self.model {
             ModelSpec::Bar => "above -1 and at most 0.5 in a bar",
@@ -185,10 +185,10 @@ impl BodyMaterials<'_> {
             ModelSpec::Space => "above -1 and below 0.5 in space",
         };
         match error {
-            Error::Linear(qp::LinearError::Setting { name: "poisson", value, .. }) => {
-                located(qp::LinearError::Setting { name: "poisson", value, allowed }.into(), &prefix)
+            fem::Error::Linear(qp::LinearError::Setting { name: "poisson", value, .. }) => {
+                located(qp::LinearError::Setting { name: "poisson", value, allowed }, &prefix)
             }
-            Error::Linear(qp::LinearError::Setting { name: "orthotropic.poisson", value, .. }) => {
+            fem::Error::Linear(qp::LinearError::Setting { name: "orthotropic.poisson", value, .. }) => {
                 let message = format!(
                     "the ratios make no positive definite stiffness: 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 is {}; it \
                      must be positive",

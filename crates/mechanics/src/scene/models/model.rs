@@ -62,8 +62,8 @@ impl Model {
         if !(parts.moves || parts.vibrates && built.rows.is_empty()) {
             RigidBodyModes::of_parts(&parts).check_held(&parts, &built.rows)?;
         }
-        let stiffness = stiffness(&parts.body, &parts.dofs).and_then(|of_body| parts.on_springs(of_body));
-        let of_free = stiffness.map_err(|error| match error {
+        let of_body = stiffness(&parts.body, &parts.dofs).map_err(Error::from);
+        let of_free = of_body.and_then(|of_body| parts.on_springs(of_body)).map_err(|error| match error {
             Error::Linear(qp::LinearError::NotFinite { .. }) => {
                 let message = "the stiffness that it makes with body and thickness overflows; choose other units";
                 wrong("material", message)
@@ -362,12 +362,12 @@ impl Model {
     /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs; supports have their
     /// prescribed values.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
-        self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
+        Ok(self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)?)
     }
 
     /// Nodal velocities, length `dim * n_nodes`, in length over time, from those of the unknowns; supports stand still.
     pub fn nodal_velocity(&self, velocity: &[f64]) -> Result<Vec<f64>, Error> {
-        self.parts.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)
+        Ok(self.parts.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)?)
     }
 
     /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these

@@ -61,7 +61,7 @@ impl Parts {
     pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
         match self.springs.is_empty() {
             true => Ok(of_body),
-            false => Springs::added_to(&self.springs, &of_body, &self.dofs, self.body.dimension()),
+            false => Ok(Springs::added_to(&self.springs, &of_body, &self.dofs, self.body.dimension())?),
         }
     }
 

@@ -308,7 +308,7 @@ impl Model {
         let mut on_face = vec![false; self.mesh().nodes().len()];
         faces.flat_map(|(_, face)| &face.nodes).for_each(|&node| on_face[node] = true);
         let dimension = self.body().dimension();
-        self.dofs().part(forces, |dof| on_face[dof / dimension])
+        Ok(self.dofs().part(forces, |dof| on_face[dof / dimension])?)
     }
 
     /// The resultants of the rigid faces on the body, in the order of the scene, with their motions.

@@ -2,9 +2,9 @@
 
 use super::model::Model;
 use crate::error::Error;
-use crate::fem::MassForm;
 use crate::fem::assembly::{free_mass, nodal_mass};
 use crate::fem::geometry::unit;
+use crate::fem::{self, MassForm};
 use crate::scene::input::entry::{located, wrong};
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
@@ -66,7 +66,7 @@ impl Model {
     pub(crate) fn nodal_mass(&self, form: MassForm) -> Result<SparseMatrix, Error> {
         let contact_nodes: Vec<usize> = self.rows().iter().flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
         nodal_mass(self.body(), form, &contact_nodes).map_err(|error| match error {
-            Error::Mesh { message } => wrong("body", message),
+            fem::Error::Mesh { message } => wrong("body", message),
             other => located(other, "material."),
         })
     }

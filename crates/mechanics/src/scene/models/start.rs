@@ -42,7 +42,7 @@ impl Scene {
             }
         }
         let message = format!("no first scene holds one boundary of this mesh and presses another: {reason}");
-        Err(Error::Mesh { message })
+        fail(message)
     }
 }
 
@@ -241,7 +241,7 @@ impl Bodies {
             sets.push(Glued::default());
         }
         let mesh = |set: &Glued| file.mesh(&set.groups.iter().map(String::as_str).collect::<Vec<_>>(), 1.0);
-        let meshes: Vec<Mesh> = sets.iter().map(mesh).collect::<Result<_, Error>>()?;
+        let meshes: Vec<Mesh> = sets.iter().map(mesh).collect::<Result<_, _>>()?;
         let corners: Vec<[f64; 3]> = meshes.iter().map(Mesh::extent).flat_map(|(low, high)| [low, high]).collect();
         let (low, high) = extent(&corners);
         let are_in_millimetres = distance(low, high) > LARGEST_IN_METRES;

@@ -120,7 +120,7 @@ impl Bisected {
         self.cells.refine(&of_cells, GENERATIONS);
         let parents = self.cells.parents();
         self.elements = (0..parents.len()).collect();
-        self.body.on(self.cells.mesh()?, &parents)
+        Ok(self.body.on(self.cells.mesh()?, &parents)?)
     }
 }
 

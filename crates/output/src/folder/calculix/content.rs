@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use signorini_mechanics::Error;
-use signorini_mechanics::fem::Formulation;
+use signorini_mechanics::fem::{self, Formulation};
 use signorini_mechanics::scene::{Answer, ContactRow, Requests};
 
 /// CalculiX computes a wedge of two degrees of a body of revolution, and prints its forces and volumes in tables.
@@ -28,7 +28,7 @@ impl<'a> Content<'a> {
         let mesh = answer.model().mesh();
         let (Some(numbers), Some(elements)) = (mesh.node_numbers(), mesh.element_numbers()) else {
             let message = "the nodes and elements have no numbers: the mesh does not come from a deck of CalculiX";
-            return Err(Error::Mesh { message: message.into() });
+            return fem::mesh::fail(message.into());
         };
         let (nodes, elements) = (increasing(&numbers), increasing(elements));
         let references = answer.of_references(requests)?;

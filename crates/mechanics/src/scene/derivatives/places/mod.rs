@@ -44,10 +44,13 @@ use crate::scene::input::sum::Profile;
 use crate::scene::models::load::Acting;
 use crate::scene::models::rows::ContactRow;
 
+fn said(error: impl ToString) -> String {
+    error.to_string()
+}
+
 /// The change of R with the place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), per length.
 pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, String> {
     refused(scene).map_or(Ok(()), Err)?;
-    let said = |error: Error| error.to_string();
     let (answer, model) = (pairing.answer, pairing.answer.model());
     let (body, parts) = (model.body(), &model.parts);
     model.check_multiplier(pairing.forces).map_err(said)?;

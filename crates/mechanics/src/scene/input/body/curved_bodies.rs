@@ -228,7 +228,7 @@ fn values_out_of_their_range_are_refused_by_name() {
         (ring([0.0; 2], &[1.0, 2.0], &[0.0], ElementKind::Q4).unwrap_err(), "angle lines"),
     ];
     for (error, phrase) in cases {
-        assert!(matches!(error, Error::Linear(qp::LinearError::Setting { .. }) | Error::Mesh { .. }), "{error:?}");
+        assert!(matches!(error, Error::Linear(qp::LinearError::Setting { .. }) | Error::Fem(_)), "{error:?}");
         assert!(error.to_string().contains(phrase), "{error}\n  lacks: {phrase}");
     }
 }

@@ -102,7 +102,7 @@ pub fn disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: Elem
         let both = [side.connectivity.clone(), mirrored(&side.connectivity)].concat();
         boundaries.push(Boundary::new("symmetry-x", side.kind, both));
     }
-    Mesh::new(nodes, kind, connectivity, boundaries)
+    Ok(Mesh::new(nodes, kind, connectivity, boundaries)?)
 }
 
 /// Half of a disc, the lower half by default.
@@ -189,7 +189,7 @@ pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind:
     }
 
     // Keys are [shell, column, row] in half steps. Shell 0 is the core, in which columns run right and rows run down.
-    let mut lattice = Lattice::new();
+    let mut lattice = Lattice::default();
     let mut connectivity = Vec::new();
     for row in 0..rows {
         for column in 0..columns {
@@ -310,7 +310,7 @@ pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) 
     let (layers, sectors) = (radii.len() - 1, angles.len() - 1);
     let is_closed = span == 360.0;
     let (radii, angles) = (half_steps(radii), half_steps(angles));
-    let mut lattice = Lattice::new();
+    let mut lattice = Lattice::default();
     let mut connectivity = Vec::new();
     for sector in 0..sectors {
         for layer in 0..layers {

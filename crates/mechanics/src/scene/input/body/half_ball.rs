@@ -114,7 +114,7 @@ pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, sides: [Sides; 2]) 
     }
 
     // Keys are [shell, line along x, along y, down]: shell 0 is the core.
-    let mut lattice = Lattice::new();
+    let mut lattice = Lattice::default();
     let mut connectivity = Vec::new();
     for down in 0..k {
         for y in 0..j {

@@ -116,7 +116,7 @@ pub fn rectangle(x: &[f64], y: &[f64], kind: ElementKind) -> Result<Mesh, Error>
         side("bottom", columns, &|i| node(i, 0)),
         side("top", columns, &|i| node(i, last_y)),
     ];
-    Mesh::new(nodes, kind, connectivity, boundaries)
+    Ok(Mesh::new(nodes, kind, connectivity, boundaries)?)
 }
 
 /// A bar along x.
@@ -164,12 +164,13 @@ pub fn bar(x: &[f64]) -> Result<Mesh, Error> {
     check_lines(&[("x", x)], 1)?;
     let cells = x.len() - 1;
     let end = |name: &str, node| Boundary::new(name, FacetKind::Point1, vec![node]);
-    Mesh::new(
+    let mesh = Mesh::new(
         x.iter().map(|&x| [x, 0.0, 0.0]).collect(),
         ElementKind::Line2,
         (0..cells).flat_map(|cell| [cell, cell + 1]).collect(),
         vec![end("left", 0), end("right", cells)],
-    )
+    );
+    Ok(mesh?)
 }
 
 /// The corners of a cell, in steps along x, y and z, in the order of a brick.
@@ -241,7 +242,7 @@ pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh
         return fail(format!("a box cannot have a mesh of {}", kind.name()));
     }
     if kind.is_quadratic() {
-        return cuboid(x, y, z, kind.linear())?.elevated(kind);
+        return Ok(cuboid(x, y, z, kind.linear())?.elevated(kind)?);
     }
     check_lines(&[("x", x), ("y", y), ("z", z)], 1)?;
     let count = [x.len() - 1, y.len() - 1, z.len() - 1];
@@ -283,5 +284,5 @@ pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh
         }
         Boundary::new(name, kind.facet(), facets)
     };
-    Mesh::new(nodes, kind, connectivity, SIDES.map(side).to_vec())
+    Ok(Mesh::new(nodes, kind, connectivity, SIDES.map(side).to_vec())?)
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
 /// An amplitude: its points, each a time with a factor, and whether the times count from the start of the first step.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::amplitudes::Temperatures;
 use super::keywords::{Entry, object};
 use super::materials::{Section, Sections};
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::mesh::deck::{Deck, Place, Surface};
 use serde_json::{Value, json};
 

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::bodies::side;
 use super::keywords::{Entry, object};
-use crate::error::{Error, nearly};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
+use crate::fem::{Error, nearly};
 use serde_json::{Value, json};
 
 /// The contacts of a scene, and what a reader should know of them.

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::mesh::deck::{Card, Deck, Line, Place};
 use crate::scene::input::sum::{Sum, following, mean};
 

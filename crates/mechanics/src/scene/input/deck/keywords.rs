@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 use crate::scene::input::entry::number;
 use serde_json::{Map, Value};

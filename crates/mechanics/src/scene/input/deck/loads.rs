@@ -7,7 +7,7 @@ use super::bodies::{name_of_node, names_of_faces, names_of_nodes};
 use super::keywords::{Entry, object};
 use super::references::References;
 use super::rigid::Transforms;
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::geometry::{dot, unit};
 use crate::fem::mesh::deck::{Card, Deck, Fields, Place, key};
 use serde_json::{Value, json};

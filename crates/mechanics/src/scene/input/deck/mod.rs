@@ -77,7 +77,7 @@ impl DeckScene {
                 "the deck has {} bodies that share no node; merge the nodes in the mesher: at most {MOST_BODIES} are allowed",
                 deck.bodies
             );
-            return Err(deck.source.fault(deck.place_of_body(1), message));
+            return Err(deck.source.fault(deck.place_of_body(1), message).into());
         }
         let space = space(&deck)?;
         let amplitudes = Amplitudes::of(&deck)?;
@@ -110,7 +110,7 @@ impl DeckScene {
             text.one("thickness", &keywords::Entry::new(thickness.into(), place));
         }
         let bodies = (0..deck.bodies).map(|index| Body::of(&deck, index, named, &sections, &temperatures));
-        add_bodies(&mut text, bodies.collect::<Result<_, Error>>()?);
+        add_bodies(&mut text, bodies.collect::<Result<_, _>>()?);
         text.list("supports", &supports);
         text.list("rigid-faces", &rigid_faces);
         text.list("points", &entries.points);
@@ -240,7 +240,7 @@ fn space(deck: &Deck) -> Result<Space, Error> {
                 of_type.name,
                 model(first)
             );
-            Err(deck.source.fault(*place, message))
+            Err(deck.source.fault(*place, message).into())
         }
     }
 }

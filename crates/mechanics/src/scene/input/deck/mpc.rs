@@ -6,7 +6,7 @@
 
 use super::coupling::Equation;
 use super::rigid::Transforms;
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::geometry::{COORDINATES, across, cross, distance, dot, length, minus, shifted, unit};
 use crate::fem::mesh::deck::{Card, Deck, Place, SpringType, key};
 use crate::scene::input::sum::Sum;

@@ -8,7 +8,7 @@ use super::coupling::{Coupling, Equation, Kind};
 use super::keywords::{Entry, object};
 use super::mpc::{Spring, constraints, equations, springs};
 use super::rigid::{Of, ReferenceNode, RigidBodies, Transforms};
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::mesh::deck::{Deck, Place};
 use crate::scene::input::sum::{Component, Sum};
 use serde_json::{Value, json};

@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::amplitudes::{Amplitudes, Temperatures, periods};
 use super::rigid::{ReferenceNode, RigidBodies, Transforms};
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 
 /// The results that a deck asks for, under the labels of CalculiX in capitals.
@@ -153,8 +153,7 @@ impl Requests {
 fn labels(deck: &Deck, card: &Card) -> Vec<(String, Place)> {
     let mut labels = Vec::new();
     for line in &card.lines {
-        let mut fields = deck.source.fields(line);
-        while let Some(field) = fields.next() {
+        for field in deck.source.fields(line) {
             let label = key(&String::from_utf8_lossy(field));
             if !label.is_empty() {
                 labels.push((label, line.place));

@@ -7,7 +7,7 @@ use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
 use super::contacts::Bolts;
 use super::coupling::{Coupling, Joined, couplings};
 use super::keywords::Entry;
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::geometry::{cross, length, minus, unit};
 use crate::fem::material::Cylinder;
 use crate::fem::mesh::deck::{Card, Deck, Place};

@@ -7,7 +7,7 @@ use super::bodies::{name_of_node, names_of_nodes};
 use super::keywords::Entry;
 use super::references::{NO_Z, References};
 use super::rigid::{Displacements, Transforms};
-use crate::error::Error;
+use crate::fem::Error;
 use crate::fem::geometry::{COORDINATES, dot};
 use crate::fem::mesh::deck::{Card, Deck, Place, key};
 use serde_json::{Value, json};

@@ -7,7 +7,7 @@ use super::shape::Site;
 use crate::error::Error;
 use crate::fem::assembly::{PositiveBasis, outward};
 use crate::fem::mortar::{Found, MortarRow, Opposite};
-use crate::fem::{Boundary, DofMap, ElasticBody, Mortar};
+use crate::fem::{self, Boundary, DofMap, ElasticBody, Mortar};
 use crate::scene::Warning;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::schema::model::Rule;
@@ -94,8 +94,8 @@ pub(crate) fn means(
         _ => mortar,
     };
     mortar.found().map_err(|error| match error {
-        Error::Mesh { message } => wrong(path, message),
-        other => other,
+        fem::Error::Mesh { message } => wrong(path, message),
+        other => other.into(),
     })
 }
 

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::fem::body::{ON_THE_AXIS, Phase};
 use crate::fem::geometry::{COORDINATES, dot};
 use crate::fem::mesh::pieces::Pieces;
-use crate::fem::{Formulation, Region};
+use crate::fem::{self, Formulation, Region};
 use crate::scene::Model;
 use crate::scene::input::entry::wrong;
 use crate::scene::input::obstacle::{Between, PlacedObstacle};
@@ -74,9 +74,9 @@ impl Scene {
                 .map(|boundary| (boundary.name.clone(), body.region_of(boundary).unwrap_or(0)))
                 .collect(),
         };
-        let at_body = |error: Error| match error {
-            Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
-            other => other.into(),
+        let at_body = |error: fem::Error| match error {
+            fem::Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
+            other => Error::from(other).into(),
         };
         let mut pieces = Pieces::of(model.mesh()).map_err(at_body)?;
         if problem.is_axisymmetric {
