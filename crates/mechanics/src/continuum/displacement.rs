@@ -31,7 +31,7 @@ impl<'a> Displacements<'a> {
         let along_axes = |function: usize| dimension * function..dimension * (function + 1);
         let numbers = (0..mesh.count()).flat_map(functions).flat_map(along_axes).collect();
         let of_cell = dimension * (dimension + 1) * (dimension + 2) / 2;
-        Displacements { problem, mesh, numbers: CellNumbers::new(of_cell, numbers) }
+        Displacements { problem, mesh, numbers: CellNumbers { of_cell, numbers } }
     }
 
     /// The places of the functions: a linear displacement has its values there as coefficients.

@@ -356,7 +356,6 @@ impl ContinuumProblem {
         self.conditions[condition].pull(normal, place).map(|part| self.radius(place) * part)
     }
 
-    /// The medium of an element of the first mesh.
     pub fn medium(&self, origin: usize) -> &Medium {
         &self.media[self.medium_of[origin]]
     }
@@ -378,7 +377,6 @@ impl ContinuumProblem {
 }
 
 impl Medium {
-    /// The stress without strain at a place.
     pub fn own_stress(&self, place: Point) -> Tensor {
         self.own_stress.map_or([0.0; 6], |own| own.map(|component| component.at(place)))
     }

@@ -49,7 +49,7 @@ impl<'a> Stresses<'a> {
         // The corners of a side have the order of the nodes of the facet: both increase.
         let of_side = |&facet: &usize| of_facet * facet..of_facet * (facet + 1);
         let numbers = (0..mesh.count()).flat_map(|cell| mesh.sides(cell).iter().flat_map(of_side)).collect();
-        let numbers = CellNumbers::new((dimension + 1) * of_facet, numbers);
+        let numbers = CellNumbers { of_cell: (dimension + 1) * of_facet, numbers };
         let mut known: HashMap<Congruence, Arc<StressElement>> = HashMap::new();
         let element = |cell: usize| {
             let simplex = mesh.simplex(cell);
@@ -72,7 +72,6 @@ impl<'a> Stresses<'a> {
         Ok(Stresses { problem, mesh, numbers, elements })
     }
 
-    /// The number of the place at a corner of a facet.
     pub fn place(&self, facet: usize, corner: usize) -> usize {
         facet * self.mesh.dimension + corner
     }
@@ -143,7 +142,6 @@ impl<'a> Stresses<'a> {
         Some((partner.on, partner.corners[place.corner]))
     }
 
-    /// The unknowns of each simplex, with its element.
     pub fn with_elements(&self) -> impl Iterator<Item = (&[usize], &StressElement)> + '_ {
         self.numbers.iter().zip(&self.elements).map(|(numbers, element)| (numbers, &**element))
     }

@@ -167,10 +167,8 @@ impl Midpoint {
         let changes = state.velocity.iter().zip(&found.change);
         let velocity: Vec<f64> = changes.map(|(v, w)| 4.0 / step * w - v).collect();
         let massless = self.massless.as_ref();
-        massless
-            .iter()
-            .flat_map(|massless| &massless.dofs)
-            .for_each(|&dof| displacement[dof] = state.displacement[dof]);
+        let dofs = massless.iter().flat_map(|massless| &massless.dofs);
+        dofs.for_each(|&dof| displacement[dof] = state.displacement[dof]);
         let contact = (found.multiplier.clone(), found.contact_set.clone());
         let mut end = next(problem, state, [displacement, velocity], contact);
         if let Some(massless) = massless {
