@@ -21,7 +21,7 @@ use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, ElasticLaw, Foundation};
 use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
 use super::stress::{Place, Stresses};
-use super::system::{FreeUnknowns, Row};
+use super::system::{Affine, Row};
 use crate::error::Error;
 use crate::fem::geometry::{dot, length, minus};
 use crate::fem::threads::each;
@@ -67,7 +67,7 @@ pub struct Bracket<'a> {
 /// One of the two problems with its answer.
 #[derive(Debug)]
 pub struct Half {
-    pub unknowns: FreeUnknowns,
+    pub unknowns: Affine,
     pub rows: Vec<Row>,
     pub solution: Solution,
     /// The problem, prepared for other gaps and loads, if it serves for the pairs of the force.
@@ -80,7 +80,7 @@ pub struct Half {
 
 impl Half {
     pub(super) fn solved(
-        unknowns: FreeUnknowns,
+        unknowns: Affine,
         rows: Vec<Row>,
         problem: &ContactProblem,
         start: Option<ContactSet>,

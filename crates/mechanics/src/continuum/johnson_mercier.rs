@@ -109,15 +109,7 @@ impl StressElement {
         factor.forward(&mut particular_energies);
         let particular_tractions = works(problem, simplex, &particular);
         let of_works = OnceLock::new();
-        Some(StressElement {
-            basis,
-            factor,
-            particular,
-            tractions,
-            particular_tractions,
-            particular_energies,
-            of_works,
-        })
+        Some(Self { basis, factor, particular, tractions, particular_tractions, particular_energies, of_works })
     }
 
     /// The particular stress and these amounts of the others.

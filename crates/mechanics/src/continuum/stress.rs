@@ -13,7 +13,7 @@ use super::mesh::{OuterFacet, SimplexMesh};
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
-use super::system::{Block, CellNumbers, FreeUnknowns, Row, add_springs};
+use super::system::{Affine, Block, CellNumbers, Row, add_springs};
 use crate::error::Error;
 use crate::fem::geometry::COORDINATES;
 use crate::fem::threads::each;
@@ -93,7 +93,7 @@ impl<'a> Stresses<'a> {
     }
 
     /// The unknown displacements of facets: those on the axis of revolution are held.
-    pub fn unknowns(&self) -> FreeUnknowns {
+    pub fn unknowns(&self) -> Affine {
         // On the axis a stress times its radius does no work.
         let corners = (0..self.mesh.facet_count()).flat_map(|facet| {
             let corners = self.mesh.corners_of_facet(facet).into_iter().enumerate();
@@ -101,7 +101,7 @@ impl<'a> Stresses<'a> {
         });
         let on_axis = corners.filter(|&(_, at)| self.problem.is_on_axis(at));
         let held = on_axis.flat_map(|(place, _)| [0, 1].map(|axis| (place, COORDINATES[axis])));
-        FreeUnknowns::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
+        Affine::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
     }
 
     /// Number of places on all facets.
@@ -112,7 +112,7 @@ impl<'a> Stresses<'a> {
     /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on
     /// the weighted means of the distance. A row that `may_touch` does not hold for, given its place and gap, is left
     /// out: there the stress has no pressure, which keeps it in balance.
-    pub fn rows(&self, unknowns: &FreeUnknowns, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
+    pub fn rows(&self, unknowns: &Affine, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
         for (on, obstacle) in self.problem.facing(self.mesh) {
             let facing = &self.problem.obstacles[obstacle];

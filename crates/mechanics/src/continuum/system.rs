@@ -107,7 +107,7 @@ fn along(place: usize, dimension: usize, vector: Point) -> impl Iterator<Item = 
 
 /// All unknowns as linear functions of the free ones.
 #[derive(Clone, Debug)]
-pub struct FreeUnknowns {
+pub struct Affine {
     /// How many are free.
     pub free: usize,
     /// How many of these, the first ones, belong to one place each.
@@ -160,7 +160,7 @@ impl Supported {
     }
 }
 
-impl FreeUnknowns {
+impl Affine {
     /// The unknowns of a mesh at these places; `fixed` are those of them that do not move along an axis, `on` gives the
     /// places on a facet.
     pub fn new(
@@ -203,7 +203,7 @@ impl FreeUnknowns {
         }));
         let free = own + problem.loads_of_motions().len();
         let count = dimension * places.len() + free - own;
-        let mut unknowns = FreeUnknowns {
+        let mut unknowns = Affine {
             free,
             own,
             moves_rigidly: !problem.is_axisymmetric && own == free,
@@ -327,7 +327,7 @@ impl FreeUnknowns {
         if others().any(|other| held.contains_key(&other.0)) {
             return None;
         }
-        let mut unknowns = FreeUnknowns {
+        let mut unknowns = Affine {
             free: self.free - held.len(),
             own: self.own - held.len(),
             moves_rigidly: self.moves_rigidly && others().next().is_none(),

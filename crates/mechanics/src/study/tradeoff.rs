@@ -216,7 +216,11 @@ impl Tradeoff {
             let of_mesh = self.meshes.get(point.mesh).and_then(|mesh| mesh.discretisation_error);
             point.total_error = of_mesh.map(|of_mesh| point.energy_error.hypot(of_mesh));
         }
-        mark_best(&mut self.points);
+        for of_mesh in self.points.chunk_by_mut(|a, b| a.mesh == b.mesh) {
+            let costs = of_mesh.iter().map(|point| [point.seconds, point.error_above_rounding()]);
+            let best = Tradeoff::on_front(&costs.collect::<Vec<_>>());
+            of_mesh.iter_mut().zip(best).for_each(|(point, best)| point.best = best);
+        }
         self.advice = advice(&self.points);
         if self.meshes.iter().any(|mesh| mesh.discretisation_error.is_some()) {
             self.advice.extend(advice_of_meshes(&self.points));
@@ -391,14 +395,6 @@ fn timed(problem: &ContactProblem, ways: &[Trial], runs: usize, watch: &Watch) -
 impl TradeoffPoint {
     fn error_above_rounding(&self) -> f64 {
         self.energy_error.max(ERROR_ROUNDING)
-    }
-}
-
-/// Marks the Pareto front of each mesh.
-fn mark_best(points: &mut [TradeoffPoint]) {
-    for of_mesh in points.chunk_by_mut(|a, b| a.mesh == b.mesh) {
-        let costs: Vec<[f64; 2]> = of_mesh.iter().map(|point| [point.seconds, point.error_above_rounding()]).collect();
-        of_mesh.iter_mut().zip(Tradeoff::on_front(&costs)).for_each(|(point, best)| point.best = best);
     }
 }
 

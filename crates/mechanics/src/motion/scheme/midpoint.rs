@@ -20,7 +20,7 @@
 use super::newmark::TRAPEZOIDAL;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{AboutScheme, Advance, Found, Stepping, next, plus};
+use crate::motion::step::{Advance, Facts, Found, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp::{ContactProblem, ContactSet, Settings, SparseMatrix, SymmetricMatrix, dot, largest};
 
@@ -36,7 +36,7 @@ const NEGLIGIBLE_FORCE: f64 = 1e-9;
 /// Largest number of trial shares of the correction.
 const TRIALS: usize = 8;
 
-pub(super) static ABOUT: AboutScheme = AboutScheme {
+pub(super) static ABOUT: Facts = Facts {
     name: "midpoint",
     masses: &[MassForm::Redistributed, MassForm::Consistent, MassForm::Lumped],
     gains_energy: false,
