@@ -128,9 +128,8 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
     }
     if temperature.is_empty() && initial.is_empty() && draws.next() < 0.5 {
         let moduli = [0, 1, 2].map(|_| young * 10_f64.powf(draws.between(-0.5, 0.5)));
-        let point = [-width * draws.between(0.05, 1.0), height * draws.between(-0.5, 1.5)];
         scene["material"] = json!({"density": 1, "orthotropic": {
-            "young": moduli, "poisson": [0.1, 0.15, 0.05], "shear": moduli.map(|modulus| 0.4 * modulus), "around": {"point": point}}});
+            "young": moduli, "poisson": [0.1, 0.15, 0.05], "shear": moduli.map(|modulus| 0.4 * modulus)}});
     }
     let keys = [
         ("materials", materials),

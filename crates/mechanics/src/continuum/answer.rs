@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::bound::Bracket;
-use super::simplex::{MOST_CORNERS, Point, Sample, Simplex, Tensor, Weights, less, middle};
+use super::integration::Sample;
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, less, middle, weights_of_centre};
 use crate::error::Error;
 use crate::fem::element::Tabulated;
 use crate::fem::geometry::{key, midpoint};
@@ -47,9 +48,6 @@ impl ContinuumAnswer {
     }
 
     /// Nodes, elements and boundaries with their names, for a model of its own.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] for elements that form no mesh.
     pub fn mesh(&self) -> Result<Mesh, Error> {
         self.mesh_with(|_| true)
     }
@@ -118,7 +116,6 @@ impl Bracket<'_> {
         }
     }
 
-    /// The number of the body that contains a simplex.
     fn body_of(&self, cell: usize) -> usize {
         let contains = |body: &Range<usize>| body.contains(&self.mesh.origins[cell]);
         self.problem.bodies.iter().position(contains).unwrap_or(0)
@@ -142,12 +139,12 @@ impl Bracket<'_> {
     /// The mean over a simplex of both stresses.
     fn mean_stress(&self, cell: usize) -> Tensor {
         let parts = self.mesh.dimension + 1;
-        let centre = std::array::from_fn(|corner| if corner < parts { 1.0 / parts as f64 } else { 0.0 });
+        let centre = weights_of_centre(self.mesh.dimension);
         let medium = self.problem.medium(self.mesh.origins[cell]);
         let mut mean = [0.0; 6];
         for k in 0..parts {
             let place = self.mesh.simplex(cell).part(k).at(centre);
-            let of_displacement = self.law(cell, place).stress(self.strain(&self.primal.values, cell, k, centre));
+            let of_displacement = self.law(cell).stress(self.strain(&self.primal.values, cell, k, centre));
             let elastic = middle(of_displacement, self.elastic_stress(cell, k, centre));
             let own = medium.own_stress(place);
             (0..6).for_each(|entry| mean[entry] += (elastic[entry] + own[entry]) / parts as f64);
@@ -180,8 +177,7 @@ pub enum Strain<S> {
 impl Bracket<'_> {
     /// Judges a displacement by its strain in an element of the first mesh. The displacement needs no other property:
     /// the bound follows from its distance to the centre of the ball and the radius. Integrals of a constant or linear
-    /// strain are exact, except where axes turn; those of others are by five points in each direction on each part of a
-    /// simplex.
+    /// strain are exact; those of others are by five points in each direction on each part of a simplex.
     pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> Strain<S> + Sync) -> Judged {
         let fine = self.fine_rule();
         let of_cell = |cell: usize| {
@@ -199,7 +195,7 @@ impl Bracket<'_> {
                     Strain::Varying(strain) => strain(at.place),
                     _ => mean(&at_corners, simplex.in_whole(k, at.weights)),
                 };
-                let law = self.law(cell, at.place);
+                let law = self.law(cell);
                 let of_bracket = self.strain(&self.primal.values, cell, k, at.weights);
                 let balanced = law.compliance(self.elastic_stress(cell, k, at.weights));
                 [less(own, middle(of_bracket, balanced)), less(own, of_bracket), own]
@@ -207,7 +203,7 @@ impl Bracket<'_> {
             };
             match strain {
                 Strain::Varying(_) => self.sums(cell, &fine, squares),
-                _ => self.sums(cell, &self.rule(cell), squares),
+                _ => self.sums(cell, &self.rule(), squares),
             }
         };
         let of_cells = each(self.mesh.count(), of_cell);
@@ -236,7 +232,6 @@ impl Bracket<'_> {
     }
 }
 
-/// The mean of tensors at the corners of a simplex with these weights.
 fn mean(at_corners: &[Tensor], weights: Weights) -> Tensor {
     let mut mean = [0.0; 6];
     for (own, weight) in at_corners.iter().zip(weights) {

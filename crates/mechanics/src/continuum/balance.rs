@@ -6,13 +6,13 @@
 
 use std::collections::BTreeMap;
 
-use super::johnson_mercier::Element;
+use super::johnson_mercier::StressElement;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::normal::{Lower, add};
 use super::part_stress::PartStress;
 use super::simplex::Point;
 use super::stress::{Place, Stresses};
-use super::system::Unknowns;
+use super::system::FreeUnknowns;
 use crate::fem::geometry::{COORDINATES, minus};
 use signorini_qp::dot;
 
@@ -21,18 +21,17 @@ const ROUNDS: usize = 2;
 
 /// The facets through which forces are carried, simplex by simplex from the roots on.
 #[derive(Debug)]
-struct Tree {
+struct CellTree {
     /// The one or two simplices at each facet of the mesh, one entry per facet.
     cells_at: Vec<[Option<usize>; 2]>,
     /// The simplices, each after the one towards its root.
     order: Vec<usize>,
     /// The facet of each simplex towards its root; `None` for a root.
     towards_root: Vec<Option<usize>>,
-    /// The root of each simplex.
     roots: Vec<usize>,
 }
 
-impl Tree {
+impl CellTree {
     fn of(mesh: &SimplexMesh) -> Self {
         let cells_at = mesh.cells_at();
         let (mut order, mut towards_root) = (Vec::with_capacity(mesh.count()), vec![None; mesh.count()]);
@@ -55,7 +54,7 @@ impl Tree {
                 }
             }
         }
-        Tree { cells_at, order, towards_root, roots }
+        CellTree { cells_at, order, towards_root, roots }
     }
 
     /// Returns `true` for a facet between two simplices.
@@ -72,7 +71,6 @@ impl Tree {
 /// Forces of unknowns, and their resultants about a centre.
 struct Levers<'a> {
     dimension: usize,
-    /// The places of the unknowns.
     places: &'a [Point],
     centre: Point,
     /// The unit of length.
@@ -83,7 +81,6 @@ struct Levers<'a> {
 type Resultant = [f64; 6];
 
 impl Levers<'_> {
-    /// The force and the moment of a force at a place.
     fn at(&self, place: usize, force: Point) -> Resultant {
         let ([x, y, z], [along_x, along_y, along_z]) =
             (minus(self.places[place], self.centre).map(|part| part / self.size), force);
@@ -99,7 +96,6 @@ impl Levers<'_> {
         self.at(unknown / self.dimension, COORDINATES[unknown % self.dimension])
     }
 
-    /// The resultants of forces along unknowns.
     fn resultants(&self, forces: impl Iterator<Item = (usize, f64)>) -> Resultant {
         let mut sum = Resultant::default();
         forces.for_each(|(unknown, force)| add(&mut sum, force, &self.of(unknown)));
@@ -122,22 +118,22 @@ fn levers(about: &Levers, held: &[(usize, Point)]) -> Vec<Resultant> {
 
 /// How forces are carried to the supports of a mesh.
 #[derive(Debug)]
-pub struct Balance {
-    tree: Tree,
+pub struct ForcePaths {
+    tree: CellTree,
     /// The places of the stress problem that supports hold, with the axes along which they do, by the root of their
     /// simplex.
     held: Vec<(usize, Vec<(usize, Point)>)>,
     places: Vec<Point>,
 }
 
-impl Balance {
+impl ForcePaths {
     /// `None` if the supports alone cannot carry every force and moment.
-    pub fn of(stresses: &Stresses, unknowns: &Unknowns) -> Option<Self> {
+    pub fn of(stresses: &Stresses, unknowns: &FreeUnknowns) -> Option<Self> {
         let (mesh, problem) = (stresses.mesh, stresses.problem);
         // What springs and rigid faces take, and where loads enter inside, follows from the solution.
         let is_plain =
             !problem.is_axisymmetric && problem.loads_of_motions().is_empty() && problem.rigid_faces.is_empty();
-        let tree = Tree::of(mesh);
+        let tree = CellTree::of(mesh);
         let acts_inside = |outer: OuterFacet| tree.is_inside(outer.facet) && problem.conditions[outer.condition].acts();
         if !is_plain || mesh.surface().any(acts_inside) || stresses.on_springs().next().is_some() {
             return None;
@@ -146,11 +142,11 @@ impl Balance {
             tree.roots.iter().map(|&root| (root, Vec::new())).collect();
         for outer in mesh.surface() {
             let at_root = held.entry(tree.roots[outer.cell]).or_default();
-            for place in (0..mesh.dimension).map(|corner| stresses.place(outer.facet, corner)) {
+            for place in stresses.on_facet(&outer) {
                 at_root.extend(unknowns.supports.get(&place).into_iter().flatten().map(|&axis| (place, axis)));
             }
         }
-        let balance = Balance { tree, held: held.into_iter().collect(), places: stresses.places() };
+        let balance = ForcePaths { tree, held: held.into_iter().collect(), places: stresses.places() };
         let carries = |(_, held): &(usize, Vec<_>)| {
             let of_body = balance.of_body(mesh);
             of_body.amounts(&levers(&of_body, held), &Resultant::default()).is_some()
@@ -158,7 +154,6 @@ impl Balance {
         balance.held.iter().all(carries).then_some(balance)
     }
 
-    /// The levers of a whole body.
     fn of_body(&self, mesh: &SimplexMesh) -> Levers<'_> {
         let volume: f64 = (0..mesh.count()).map(|cell| mesh.simplex(cell).size()).sum();
         Levers { size: volume.powf(1.0 / mesh.dimension as f64), ..self.of_cell(mesh, 0) }
@@ -175,14 +170,14 @@ impl Balance {
     pub fn stress(
         &self,
         stresses: &Stresses,
-        (unknowns, displacement): (&Unknowns, &[f64]),
+        (unknowns, displacement): (&FreeUnknowns, &[f64]),
         places: &[Place],
         pulls: &[f64],
     ) -> Option<Vec<PartStress>> {
         let (mesh, tree) = (stresses.mesh, &self.tree);
         let (dimension, of_facet) = (mesh.dimension, mesh.dimension * mesh.dimension);
         let sign = |cell: usize, unknown: usize| tree.sign(cell, unknown / of_facet);
-        let elements: Vec<(&[usize], &Element)> = stresses.with_elements().collect();
+        let elements: Vec<(&[usize], &StressElement)> = stresses.with_elements().collect();
         // The forces at the unknowns are those on the first simplex of their facet.
         let mut forces = vec![0.0; displacement.len()];
         for (cell, &(numbers, element)) in elements.iter().enumerate() {
@@ -195,7 +190,7 @@ impl Balance {
         // On the surface only the part along supports is free.
         let given = stresses.given_forces(displacement, places, pulls);
         let outside = mesh.surface().filter(|outer| !tree.is_inside(outer.facet));
-        for place in outside.flat_map(|outer| (0..dimension).map(move |corner| stresses.place(outer.facet, corner))) {
+        for place in outside.flat_map(|outer| stresses.on_facet(&outer)) {
             let own = dimension * place..dimension * (place + 1);
             let rest: Vec<f64> = own.clone().map(|unknown| forces[unknown] - given[unknown]).collect();
             forces[own.clone()].copy_from_slice(&given[own.clone()]);
@@ -230,7 +225,7 @@ impl Balance {
                 of_side.iter().zip(taken).for_each(|(&unknown, taken)| forces[unknown] -= sign * taken);
             }
         }
-        let stress = |(cell, &(numbers, element)): (usize, &(&[usize], &Element))| {
+        let stress = |(cell, &(numbers, element)): (usize, &(&[usize], &StressElement))| {
             element.stress_with(&numbers.iter().map(|&number| sign(cell, number) * forces[number]).collect::<Vec<_>>())
         };
         elements.iter().enumerate().map(stress).collect()
@@ -251,7 +246,7 @@ mod tests {
         for (problem, mesh) in [body(2), body(3)] {
             let mut bracket = solved(&problem, &mesh);
             let exact = bracket.distance();
-            let largest = bracket.dual.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            let largest = signorini_qp::largest(&bracket.dual.values);
             let disturbed: Vec<f64> = (bracket.dual.values.iter().enumerate())
                 .map(|(unknown, value)| value + 1e-3 * largest * (unknown as f64).sin())
                 .collect();
@@ -288,7 +283,7 @@ mod tests {
             let held = |axis: usize| Held { direction: COORDINATES[axis], value: Linear::default() };
             let carries = |problem: &ContinuumProblem| {
                 let stresses = Stresses::new(problem, &mesh).unwrap();
-                Balance::of(&stresses, &stresses.unknowns()).is_some()
+                ForcePaths::of(&stresses, &stresses.unknowns()).is_some()
             };
             problem.conditions[0].held = vec![held(problem.dimension - 1)];
             assert!(!carries(&problem));

@@ -1,12 +1,11 @@
 //! Bodies for tests.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::bound::Bracket;
 use super::mesh::{Cells, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Surface};
-use super::simplex::{Point, pairs};
+use super::simplex::{Point, Simplex, pairs};
 use crate::fem::geometry::{COORDINATES, midpoint};
 use crate::fem::material::{Lame, Stiffness};
 use signorini_qp::{Method, Settings};
@@ -74,36 +73,43 @@ pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
         }],
         ..filled(dimension, Lame { lambda: 1.5, mu: 1.0 }, body_force)
     };
+    let (bottom, top, right) = (2 * (dimension - 1), 2 * dimension - 1, 1);
+    let mut cells = unit(dimension);
+    for condition in cells.surface.values_mut() {
+        *condition = [bottom, right, top].iter().position(|side| side == condition).unwrap_or(3);
+    }
+    cells.origins.fill(0);
+    let mut mesh = SimplexMesh::new(dimension, cells).unwrap();
+    for _ in 0..if dimension == 2 { 2 } else { 4 } {
+        mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
+    }
+    (problem, mesh)
+}
+
+/// The simplices of a square or a cube of side 1; the number of a condition is twice that of the axis across its side,
+/// and one more if the side lies at 1.
+pub fn unit(dimension: usize) -> Cells {
+    let nodes = (0..1 << dimension).map(|node| [0, 1, 2].map(|axis| f64::from(node >> axis & 1))).collect();
     // Each order of the axes is the way of a simplex from the origin to the opposite corner.
-    let nodes: Vec<Point> = (0..1 << dimension).map(|node| [0, 1, 2].map(|axis| f64::from(node >> axis & 1))).collect();
     let orders: &[&[usize]] = match dimension {
         2 => &[&[0, 1, 3], &[0, 2, 3]],
         _ => &[&[0, 1, 3, 7], &[0, 1, 5, 7], &[0, 2, 3, 7], &[0, 2, 6, 7], &[0, 4, 5, 7], &[0, 4, 6, 7]],
     };
     let cells: Vec<Vec<usize>> = orders.iter().map(|order| order.to_vec()).collect();
-    let on = |facet: &[usize], axis: usize, at: f64| facet.iter().all(|&node| nodes[node][axis] == at);
-    let condition = |facet: &[usize]| match facet {
-        _ if on(facet, dimension - 1, 0.0) => Some(0),
-        _ if on(facet, 0, 1.0) => Some(1),
-        _ if on(facet, dimension - 1, 1.0) => Some(2),
-        _ => (0..dimension).any(|axis| on(facet, axis, 0.0) || on(facet, axis, 1.0)).then_some(3),
-    };
-    let mut surface = HashMap::new();
-    for cell in &cells {
-        for local in 0..cell.len() {
-            let mut facet = cell.clone();
-            facet.remove(local);
-            if let Some(condition) = condition(&facet) {
-                surface.insert(facet, condition);
-            }
-        }
-    }
-    let origins = vec![0; cells.len()];
-    let mut mesh = SimplexMesh::new(dimension, Cells { nodes, cells, origins, surface }).unwrap();
-    for _ in 0..if dimension == 2 { 2 } else { 4 } {
-        mesh = problem.refined(&mesh, &vec![true; mesh.count()]);
-    }
-    (problem, mesh)
+    let facets =
+        cells.iter().flat_map(|cell| (0..cell.len()).map(|local| [&cell[..local], &cell[local + 1..]].concat()));
+    let side_of =
+        |facet: &[usize]| (0..2 * dimension).find(|side| facet.iter().all(|&node| node >> (side / 2) & 1 == side % 2));
+    let surface =
+        facets.filter_map(|facet| Some((side_of(&facet)?, facet))).map(|(side, facet)| (facet, side)).collect();
+    Cells { nodes, origins: (0..cells.len()).collect(), cells, surface }
+}
+
+/// A triangle or a tetrahedron of no special shape.
+pub fn any_simplex(dimension: usize) -> Simplex {
+    let plane = [[0.25, -0.5, 0.0], [2.0, 0.125, 0.0], [0.75, 1.5, 0.0]];
+    let space = [[0.25, -0.5, 0.1], [2.0, 0.125, -0.2], [0.75, 1.5, 0.3], [0.5, 0.4, 1.7]];
+    if dimension == 2 { Simplex::new(2, plane) } else { Simplex::new(3, space) }
 }
 
 /// The bracket of a problem on a mesh, with settings for an exact answer.

@@ -13,17 +13,17 @@
 //! load. Springs on the surface are a part of the body: w is the displacement of a facet with which their forces are in
 //! balance, and they add half of the work of their forces under `v - w` with it.
 
-use super::balance::Balance;
-use super::displacement::Displacements;
-use super::integration::samples;
+use super::balance::ForcePaths;
+use super::displacement::{Displacements, values_of_functions};
+use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::SimplexMesh;
 use super::part_stress::PartStress;
-use super::problem::{ContinuumProblem, Law};
-use super::simplex::{Point, Sample, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
+use super::problem::{ContinuumProblem, ElasticLaw, Foundation};
+use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
 use super::stress::{Place, Stresses};
-use super::system::{Row, Unknowns};
+use super::system::{FreeUnknowns, Row};
 use crate::error::Error;
-use crate::fem::geometry::length;
+use crate::fem::geometry::{dot, length, minus};
 use crate::fem::threads::each;
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, Solution, solve};
@@ -40,16 +40,15 @@ pub struct Bracket<'a> {
     pub displacements: Displacements<'a>,
     pub stresses: Stresses<'a>,
     /// The displacement problem and the stress problem, each with its answer.
-    pub primal: Side,
+    pub primal: Half,
     /// Rows of the displacement that supports hold.
     pub held_rows: Vec<Row>,
-    pub dual: Side,
+    pub dual: Half,
     /// The places at which the rows of the stress act.
     pub places: Vec<Place>,
     pub settings: Settings,
     /// How forces are carried to the supports; `None` if these cannot carry every force.
-    pub balance: Option<Balance>,
-    /// The stress on each simplex.
+    pub balance: Option<ForcePaths>,
     pub stress: Vec<PartStress>,
     /// The force of each row of the stress along its obstacle, `<= 0`.
     pub pulls: Vec<f64>,
@@ -67,8 +66,8 @@ pub struct Bracket<'a> {
 
 /// One of the two problems with its answer.
 #[derive(Debug)]
-pub struct Side {
-    pub unknowns: Unknowns,
+pub struct Half {
+    pub unknowns: FreeUnknowns,
     pub rows: Vec<Row>,
     pub solution: Solution,
     /// The problem, prepared for other gaps and loads, if it serves for the pairs of the force.
@@ -79,9 +78,9 @@ pub struct Side {
     pub seconds: f64,
 }
 
-impl Side {
+impl Half {
     pub(super) fn solved(
-        unknowns: Unknowns,
+        unknowns: FreeUnknowns,
         rows: Vec<Row>,
         problem: &ContactProblem,
         start: Option<ContactSet>,
@@ -107,7 +106,7 @@ impl Side {
             },
         };
         let values = unknowns.expanded(&solution.displacement);
-        Ok(Side { unknowns, rows, solution, prepared, values, seconds: 0.0 })
+        Ok(Half { unknowns, rows, solution, prepared, values, seconds: 0.0 })
     }
 
     /// Moves values beyond the bounds of rows, as those of a penalty method, to the bounds: the displacement stays out
@@ -130,8 +129,9 @@ impl<'a> Bracket<'a> {
         let clock = std::time::Instant::now();
         let stresses = Stresses::new(problem, mesh)?;
         let of_stress = stresses.unknowns();
-        let balance = Balance::of(&stresses, &of_stress);
-        let settings = &settings_for(settings, balance.is_some());
+        let balance = ForcePaths::of(&stresses, &of_stress);
+        // Without a balance, a stress needs a linear solve with a settled contact set.
+        let settings = &if balance.is_some() { settings.clone() } else { settings.clone().exactly() };
         let displacements = Displacements::new(problem, mesh);
         let unknowns = displacements.unknowns();
         let [rows, held_rows] = displacements.rows(&unknowns)?;
@@ -150,7 +150,7 @@ impl<'a> Bracket<'a> {
                 edge => edges[edge - count].iter().all(|&end| nodes[end]),
             })
         });
-        let mut primal = Side::solved(unknowns, rows, &posed, start, settings)?;
+        let mut primal = Half::solved(unknowns, rows, &posed, start, settings)?;
         // Without a balance a pair needs its rows held exactly; in the plane its factor costs little, and the memory
         // counts.
         let serves = balance.is_some() && mesh.dimension == 3;
@@ -160,7 +160,7 @@ impl<'a> Bracket<'a> {
         let largest = displacements.largest(&primal.values);
         let (rows, places) = stresses.rows(&of_stress, |place, gap| {
             // What presses must touch, however far it is from a coarse facet.
-            problem.travel(place.obstacle).is_some()
+            problem.obstacles[place.obstacle].pressed.is_some()
                 || gap - displacements.mean_towards(&primal.values, place) <= largest
         });
         let posed = of_stress.problem(
@@ -172,7 +172,7 @@ impl<'a> Bracket<'a> {
             &stresses.places(),
         )?;
         let start = touching.map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[places[row].node(mesh)]));
-        let mut dual = Side::solved(of_stress, rows, &posed, start, settings)?;
+        let mut dual = Half::solved(of_stress, rows, &posed, start, settings)?;
         dual.prepared.take_if(|_| !serves);
         let pulls: Vec<f64> = dual.solution.multiplier.iter().map(|force| force.min(0.0)).collect();
         let balanced = balance
@@ -217,7 +217,6 @@ impl<'a> Bracket<'a> {
         nodes
     }
 
-    /// Volume of a simplex.
     pub fn volume(&self, cell: usize) -> f64 {
         let simplex = self.mesh.simplex(cell);
         self.problem.thickness * simplex.size() * self.problem.radius(simplex.centre())
@@ -228,9 +227,8 @@ impl<'a> Bracket<'a> {
         self.displacements.strain(coefficients, cell, self.mesh.simplex(cell).in_whole(k, weights))
     }
 
-    /// The law on a simplex at a place.
-    pub fn law(&self, cell: usize, place: Point) -> Law<'_> {
-        self.problem.law(self.mesh.origins[cell], place)
+    pub fn law(&self, cell: usize) -> ElasticLaw<'_> {
+        self.problem.law(self.mesh.origins[cell])
     }
 
     /// The stress in balance less that without strain, at a point of part k of a simplex, given by the weights of the
@@ -246,18 +244,16 @@ impl<'a> Bracket<'a> {
 
     pub fn stress_of(&self, stress: &[PartStress], cell: usize, k: usize, weights: Weights) -> Tensor {
         let value = stress[cell].at(k, weights);
-        match self.problem.is_axisymmetric {
-            true => {
-                let radius = self.mesh.simplex(cell).part(k).at(weights)[0];
-                value.map(|part| part / radius)
-            }
-            false => value,
+        if !self.problem.is_axisymmetric {
+            return value;
         }
+        let radius = self.mesh.simplex(cell).part(k).at(weights)[0];
+        value.map(|part| part / radius)
     }
 
     /// The points of integration on a part of a simplex, at which squares of linear functions are exact.
-    pub fn rule(&self, cell: usize) -> impl Fn(&Simplex) -> Vec<Sample> + '_ {
-        move |part| samples(self.problem, self.mesh.origins[cell], part)
+    pub fn rule(&self) -> impl Fn(&Simplex) -> Vec<Sample> + '_ {
+        |part| samples(self.problem, part)
     }
 
     /// The sums over points on the parts of a simplex.
@@ -276,14 +272,13 @@ impl<'a> Bracket<'a> {
         sums
     }
 
-    /// One such sum.
     pub fn sum(&self, cell: usize, value: impl Fn(usize, &Sample) -> f64) -> f64 {
-        self.sums(cell, &self.rule(cell), |k, at| [value(k, at)])[0]
+        self.sums(cell, &self.rule(), |k, at| [value(k, at)])[0]
     }
 
     /// The same of the difference of a strain and that of an elastic stress.
     pub fn square_of_rest(&self, cell: usize, at: &Sample, strain: Tensor, stress: Tensor) -> f64 {
-        let law = self.law(cell, at.place);
+        let law = self.law(cell);
         let of_stress = law.compliance(stress);
         let square = at.weight * law.square(less(strain, of_stress));
         square + self.by_polynomial(cell, at, strain, stress)
@@ -295,7 +290,7 @@ impl<'a> Bracket<'a> {
         if at.extra == 0.0 {
             return 0.0;
         }
-        let law = self.law(cell, at.place);
+        let law = self.law(cell);
         at.extra * (law.over_radius(strain, strain) + work(stress, law.compliance(stress)))
     }
 
@@ -304,10 +299,10 @@ impl<'a> Bracket<'a> {
         let values = &self.primal.values;
         // Half the square of the misfit, the energy, and what a polynomial adds to it.
         let of_cell = |cell: usize| {
-            self.sums(cell, &self.rule(cell), |k, at| {
+            self.sums(cell, &self.rule(), |k, at| {
                 let strain = self.strain(values, cell, k, at.weights);
                 let misfit = self.square_of_rest(cell, at, strain, self.elastic_stress(cell, k, at.weights));
-                let energy = at.weight * self.law(cell, at.place).square(strain);
+                let energy = at.weight * self.law(cell).square(strain);
                 [misfit / 2.0, energy, self.by_polynomial(cell, at, strain, [0.0; 6])]
             })
         };
@@ -327,6 +322,31 @@ impl<'a> Bracket<'a> {
         }
         (self.shares, self.contact_share) = (shares, contact_share);
         (self.energy, self.rounded_up) = (energy, rounded_up);
+    }
+
+    /// The points of all facets on springs, under a displacement and under the stress of these unknowns.
+    pub fn on_springs<'b>(
+        &'b self,
+        displacement: &'b [f64],
+        of_stress: &'b [f64],
+    ) -> impl Iterator<Item = OnSprings> + 'b {
+        let (problem, dimension) = (self.problem, self.mesh.dimension);
+        self.stresses.on_springs().flat_map(move |outer| {
+            let (normal, _) = self.mesh.simplex(outer.cell).outward(outer.local);
+            let functions = self.displacements.on_facet(&outer);
+            let of_corners = self.stresses.displacement_at_corners(of_stress, &outer);
+            let samples = samples_on_facet(problem, &self.mesh.corners_of_facet(outer.facet));
+            samples.into_iter().map(move |at| {
+                let (mut moved, mut balanced) = ([0.0; 3], [0.0; 3]);
+                for (function, value) in functions.iter().zip(values_of_functions(dimension - 1, at.weights)) {
+                    (0..dimension).for_each(|axis| moved[axis] += value * displacement[dimension * function + axis]);
+                }
+                for (corner, weight) in of_corners.iter().zip(at.weights) {
+                    (0..3).for_each(|axis| balanced[axis] += weight * corner[axis] / problem.radius(at.place));
+                }
+                OnSprings { at, cell: outer.cell, moved, balanced, springs: problem.springs(&outer), normal }
+            })
+        })
     }
 
     /// J - D, half the square of the bound, in force times length.
@@ -433,11 +453,31 @@ impl<'a> Bracket<'a> {
     }
 }
 
-/// The settings for both problems: without a balance, a stress needs a linear solve with a settled contact set.
-fn settings_for(settings: &Settings, is_balanced: bool) -> Settings {
-    match is_balanced {
-        true => settings.clone(),
-        false => settings.clone().exactly(),
+/// A point of a facet on springs under a displacement and a stress: a part of the body without volume, whose strain is
+/// the displacement of the facet.
+pub struct OnSprings {
+    /// The point of integration.
+    pub at: Sample,
+    /// The simplex of the facet.
+    pub cell: usize,
+    /// The displacement.
+    pub moved: Point,
+    /// The displacement whose forces the springs have in balance with the stress.
+    pub balanced: Point,
+    springs: Foundation,
+    normal: Point,
+}
+
+impl OnSprings {
+    /// The product of the forces of the springs under one displacement with another one, per area.
+    pub fn product(&self, one: Point, other: Point) -> f64 {
+        dot(self.springs.resistance(self.normal, one), other)
+    }
+
+    /// The square of the difference of both displacements, times the area, with what the polynomial for 1/r adds.
+    pub fn square_of_rest(&self) -> f64 {
+        let rest = minus(self.moved, self.balanced);
+        self.at.weight * self.product(rest, rest) + self.at.extra * self.product(self.balanced, self.balanced)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::bound::{Bracket, steepest};
 use super::problem::Surface;
-use super::simplex::{pairs, traction};
+use super::simplex::{mixed, pairs, traction, weights_of_centre};
 use crate::error::Error;
 use crate::fem::geometry::plus;
 use signorini_qp as qp;
@@ -27,55 +27,34 @@ const ENERGY_ROUNDING: f64 = 1e-10;
 /// parts.
 const PARTS: usize = 4;
 
-/// The relative defect of a property, and the value up to which it is rounding.
-#[derive(Clone, Copy, Debug)]
-struct Defect {
-    what: &'static str,
-    size: f64,
-    allowed: f64,
-}
-
 impl Bracket<'_> {
     /// Refuses a bracket without the required properties; returns the largest defect otherwise.
     pub(super) fn check(&self) -> Result<f64, Error> {
-        let defects = self.defects();
-        match defects.iter().find(|defect| defect.size.is_nan() || defect.size > defect.allowed) {
-            None => Ok(defects.iter().fold(0.0, |worst, defect| f64::max(worst, defect.size))),
-            Some(Defect { what, size, allowed }) => {
-                let reason = format!(
-                    "{what} by {size:.1e}, but at most {allowed:.0e} is allowed as rounding; nothing is guaranteed"
-                );
-                Err(qp::LinearError::Numerical { step: "the guaranteed bound", reason }.into())
-            }
-        }
-    }
-
-    /// The relative defect of each property, from the stresses and displacements only.
-    fn defects(&self) -> [Defect; 4] {
         // At rest all forces are rounding.
         let strained = |defect: fn(&Self) -> f64| if self.is_at_rest() { 0.0 } else { defect(self) };
-        let defect = |what, size, allowed| Defect { what, size, allowed };
-        [
-            defect("the stress is out of balance", strained(Self::imbalance), OUT_OF_BALANCE),
-            defect("the obstacle pulls", strained(Self::adhesion), OUT_OF_BALANCE),
-            defect("the displacement goes into an obstacle", self.penetration(), self.allowed_penetration()),
-            defect("J - D differs from the sum of its shares", strained(Self::lost), LOST),
-        ]
+        // The relative defect of each property, from the stresses and displacements only, and what is rounding.
+        let defects = [
+            ("the stress is out of balance", strained(Self::imbalance), OUT_OF_BALANCE),
+            ("the obstacle pulls", strained(Self::adhesion), OUT_OF_BALANCE),
+            ("the displacement goes into an obstacle", self.penetration(), self.allowed_penetration()),
+            ("J - D differs from the sum of its shares", strained(Self::lost), LOST),
+        ];
+        let Some((what, size, allowed)) = defects.iter().find(|(_, size, allowed)| size.is_nan() || size > allowed)
+        else {
+            return Ok(defects.iter().fold(0.0, |worst, defect| f64::max(worst, defect.1)));
+        };
+        let reason =
+            format!("{what} by {size:.1e}, but at most {allowed:.0e} is allowed as rounding; nothing is guaranteed");
+        Err(qp::LinearError::Numerical { step: "the guaranteed bound", reason }.into())
     }
 
     /// The largest stress, in balance or of the displacement: the former is rounding if nothing touches yet.
     fn largest_stress(&self) -> f64 {
-        let corners = self.mesh.dimension + 1;
-        let centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
+        let (corners, centre) = (self.mesh.dimension + 1, weights_of_centre(self.mesh.dimension));
         let strain = |cell: usize| self.displacements.strain(&self.primal.values, cell, centre);
-        let at = |cell: usize| self.mesh.simplex(cell).centre();
-        let of_displacement = (0..self.stress.len()).map(|cell| self.law(cell, at(cell)).stress(strain(cell)));
-        let in_balance = (0..self.stress.len()).flat_map(|cell| {
-            (0..corners).map(move |k| {
-                let at_centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
-                self.stress_of(&self.stress, cell, k, at_centre)
-            })
-        });
+        let of_displacement = (0..self.stress.len()).map(|cell| self.law(cell).stress(strain(cell)));
+        let in_balance = (0..self.stress.len())
+            .flat_map(|cell| (0..corners).map(move |k| self.stress_of(&self.stress, cell, k, centre)));
         of_displacement.chain(in_balance).flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
     }
 
@@ -91,14 +70,14 @@ impl Bracket<'_> {
         let first = left.len() - loads.len();
         left[first..].iter_mut().zip(loads).for_each(|(left, load)| *left = -load);
         for (place, pull) in self.places.iter().zip(&self.pulls) {
-            if let Some((travel, share)) = self.stresses.travel(place.obstacle) {
+            if let Some((travel, share)) = self.problem.travel(place.obstacle, self.stresses.place_count()) {
                 left[travel] -= share * pull;
                 shares[travel] +=
                     self.problem.share_of_corner(self.mesh.simplex(place.on.cell).outward(place.on.local).1);
             }
         }
         let unknowns = &self.dual.unknowns;
-        let per_area = unknowns.gathered(&left).into_iter().zip(unknowns.gathered_sizes(&shares));
+        let per_area = unknowns.gathered(&left).into_iter().zip(unknowns.gathered_by(&shares, f64::abs));
         let worst = (0..self.mesh.count()).fold(0.0, |worst: f64, cell| worst.max(self.divergence(cell)));
         let worst = per_area.fold(worst, |worst, (force, area)| worst.max(over(force.abs(), area)));
         over(worst, self.largest_stress())
@@ -127,7 +106,7 @@ impl Bracket<'_> {
     /// The largest force of the wrong sign, over the largest force.
     fn adhesion(&self) -> f64 {
         let wrong = self.pulls.iter().fold(0.0, |worst: f64, force| worst.max(*force));
-        over(wrong, self.pulls.iter().fold(0.0, |largest: f64, force| largest.max(force.abs())))
+        over(wrong, qp::largest(&self.pulls))
     }
 
     /// The largest depth of the displacement in an obstacle, over the largest displacement.
@@ -145,9 +124,7 @@ impl Bracket<'_> {
                 };
                 let gap = match &self.problem.obstacles[obstacle].surface {
                     Surface::Rigid(distance) => {
-                        let place = [0, 1, 2].map(|axis| {
-                            corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum()
-                        });
+                        let place = mixed(&corners, &weights);
                         distance.gap(&vec![place; dimension]).map(|gap| gap.coefficients[0])
                     }
                     Surface::Body { .. } => {
@@ -164,7 +141,7 @@ impl Bracket<'_> {
 
     /// The penetration up to which it is rounding: of the displacement, or of the places of nodes and obstacle.
     fn allowed_penetration(&self) -> f64 {
-        let farthest = self.mesh.nodes.iter().flatten().fold(0.0, |most: f64, part| most.max(part.abs()));
+        let farthest = qp::largest(self.mesh.nodes.as_flattened());
         PENETRATION.max(over(OF_PLACES * farthest, self.displacements.largest(&self.primal.values)))
     }
 
@@ -198,7 +175,7 @@ fn over(value: f64, size: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::bodies::{body, settings, solved};
-    use super::super::bound::Side;
+    use super::super::bound::Half;
     use super::super::displacement::Displacements;
     use super::super::problem::ContinuumProblem;
     use super::super::simplex::{Point, Tensor, less, middle};
@@ -237,7 +214,7 @@ mod tests {
             } else {
                 [0.01, -0.02, 0.01, 0.005, 0.01, 0.02]
             };
-            let law = problem.law(0, [0.0; 3]);
+            let law = problem.law(0);
             let size = |strain: Tensor| law.square(strain);
             let of_cell = |cell: usize, square: &dyn Fn(Tensor, Tensor) -> f64| {
                 bracket.sum(cell, |k, at| {
@@ -271,8 +248,7 @@ mod tests {
         for (problem, mesh) in [body(2), body(3)] {
             let mut bracket = solved(&problem, &mesh);
             bracket.primal.values.fill(0.0);
-            let corners = mesh.dimension + 1;
-            let centre = std::array::from_fn(|corner| if corner < corners { 1.0 / corners as f64 } else { 0.0 });
+            let (corners, centre) = (mesh.dimension + 1, weights_of_centre(mesh.dimension));
             let at_centres = (0..mesh.count()).flat_map(|cell| (0..corners).map(move |k| (cell, k)));
             let entries = at_centres.flat_map(|(cell, k)| bracket.elastic_stress(cell, k, centre));
             let largest = entries.fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
@@ -321,7 +297,7 @@ mod tests {
             let (blocks, load, places) = (displacements.blocks(), displacements.load(), displacements.places());
             let posed =
                 unknowns.problem(mesh.dimension, &displacements.numbers, &blocks, &load, &rows, &places).unwrap();
-            bracket.primal = Side::solved(unknowns, rows, &posed, None, &settings()).unwrap();
+            bracket.primal = Half::solved(unknowns, rows, &posed, None, &settings()).unwrap();
             bracket.measure();
             assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));
         }

@@ -3,14 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use super::integration::{samples, samples_on_facet};
+use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::simplex::{MOST_CORNERS, Point, Sample, Simplex, Tensor, Weights, corners_of_side, pairs, work};
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, work};
 use super::stress::Place;
-use super::system::{Block, Numbers, Row, Unknowns, add_springs};
+use super::system::{Block, CellNumbers, FreeUnknowns, Row, add_springs};
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, key, midpoint};
+use crate::fem::geometry::{COORDINATES, midpoint};
 use crate::fem::threads::each;
 use signorini_qp as qp;
 
@@ -19,7 +19,7 @@ pub struct Displacements<'a> {
     problem: &'a ContinuumProblem,
     mesh: &'a SimplexMesh,
     /// The functions of each simplex, each along all axes.
-    pub numbers: Numbers,
+    pub numbers: CellNumbers,
 }
 
 impl<'a> Displacements<'a> {
@@ -31,7 +31,7 @@ impl<'a> Displacements<'a> {
         let along_axes = |function: usize| dimension * function..dimension * (function + 1);
         let numbers = (0..mesh.count()).flat_map(functions).flat_map(along_axes).collect();
         let of_cell = dimension * (dimension + 1) * (dimension + 2) / 2;
-        Displacements { problem, mesh, numbers: Numbers::new(of_cell, numbers) }
+        Displacements { problem, mesh, numbers: CellNumbers::new(of_cell, numbers) }
     }
 
     /// The places of the functions: a linear displacement has its values there as coefficients.
@@ -59,7 +59,8 @@ impl<'a> Displacements<'a> {
     /// The coefficients of a displacement on a facet towards an obstacle, less that of the obstacle.
     pub fn towards(&self, values: &[f64], outer: &OuterFacet, obstacle: usize) -> Vec<f64> {
         let (dimension, normal) = (self.mesh.dimension, self.problem.obstacles[obstacle].normal);
-        let travel = self.travel(obstacle).map_or(0.0, |(travel, share)| share * values[travel]);
+        let travel =
+            self.problem.travel(obstacle, self.function_count()).map_or(0.0, |(travel, share)| share * values[travel]);
         let own = self.along(values, outer, normal).into_iter().map(|coefficient| coefficient + travel);
         match self.mesh.partner(outer.facet, obstacle) {
             None => own.collect(),
@@ -76,23 +77,21 @@ impl<'a> Displacements<'a> {
     }
 
     pub fn largest(&self, values: &[f64]) -> f64 {
-        let functions = self.mesh.nodes.len() + self.mesh.edges.len();
-        let of_places = values.iter().take(self.mesh.dimension * functions);
-        of_places.fold(0.0, |largest, value| largest.max(value.abs()))
+        qp::largest(&values[..self.mesh.dimension * self.function_count()])
     }
 
     /// The unknown displacements: none is radial on the axis of revolution.
-    pub fn unknowns(&self) -> Unknowns {
+    pub fn unknowns(&self) -> FreeUnknowns {
         let places = self.places();
         // On the axis there is no radial displacement.
         let on_axis = (0..places.len()).filter(|&place| self.problem.is_on_axis(places[place]));
         let held = on_axis.map(|place| (place, COORDINATES[0]));
-        Unknowns::new(self.problem, self.mesh, &places, held, |outer| self.on_facet(outer))
+        FreeUnknowns::new(self.problem, self.mesh, &places, held, |outer| self.on_facet(outer))
     }
 
     /// The rows that keep a displacement out of the obstacles, each function and obstacle once: those with a free
     /// unknown, and then those that supports hold.
-    pub fn rows(&self, unknowns: &Unknowns) -> Result<[Vec<Row>; 2], Error> {
+    pub fn rows(&self, unknowns: &FreeUnknowns) -> Result<[Vec<Row>; 2], Error> {
         let mut gaps: BTreeMap<(usize, usize, Option<usize>), f64> = BTreeMap::new();
         let dimension = self.mesh.dimension;
         for (outer, number) in self.problem.facing(self.mesh) {
@@ -109,10 +108,10 @@ impl<'a> Displacements<'a> {
         }
         let (mut rows, mut held) = (Vec::with_capacity(gaps.len()), Vec::new());
         for ((number, function, other), gap) in gaps {
-            let (normal, travel) = (self.problem.obstacles[number].normal, self.travel(number));
-            let row =
-                Row::of(function, dimension, normal, gap).with_other(other, dimension, normal).with_travel(travel);
-            let (free, prescribed) = unknowns.of_row(&row);
+            let normal = self.problem.obstacles[number].normal;
+            let travel = self.problem.travel(number, self.function_count());
+            let row = Row::new((function, other), dimension, normal, travel, gap);
+            let (free, prescribed) = unknowns.of_terms(&row.terms);
             match free.is_empty() {
                 true if prescribed > gap => {
                     let overlap = prescribed - gap;
@@ -126,12 +125,9 @@ impl<'a> Displacements<'a> {
         Ok([rows, held])
     }
 
-    /// The unknown travel of a pressed obstacle, behind all displacements, with the cosine of its angle to the normal;
-    /// `None` without a force.
-    pub fn travel(&self, obstacle: usize) -> Option<(usize, f64)> {
-        let functions = self.mesh.nodes.len() + self.mesh.edges.len();
-        let share = self.problem.obstacles[obstacle].pressed?.cosine;
-        Some((self.mesh.dimension * functions + self.problem.travel(obstacle)?, share))
+    /// Number of functions: of the corners, then of the edges.
+    fn function_count(&self) -> usize {
+        self.mesh.nodes.len() + self.mesh.edges.len()
     }
 
     /// The stiffness of each simplex.
@@ -145,7 +141,7 @@ impl<'a> Displacements<'a> {
                 let local: Vec<usize> = local_functions(dimension, outer.local).collect();
                 let mut share = vec![vec![0.0; local.len()]; local.len()];
                 for at in samples_on_facet(self.problem, &self.mesh.corners_of_facet(outer.facet)) {
-                    let values: Vec<f64> = on_facet(dimension, at.weights).collect();
+                    let values: Vec<f64> = values_of_functions(dimension - 1, at.weights).collect();
                     for (line, one) in share.iter_mut().zip(&values) {
                         line.iter_mut().zip(&values).for_each(|(sum, other)| *sum += at.weight * one * other);
                     }
@@ -158,11 +154,10 @@ impl<'a> Displacements<'a> {
 
     fn stiffness(&self, cell: usize) -> Block {
         let (simplex, count) = (self.mesh.simplex(cell), self.numbers.of(cell).len());
-        let origin = self.mesh.origins[cell];
+        let law = self.problem.law(self.mesh.origins[cell]);
         let mut block = vec![0.0; count * count];
         let mut strains: Vec<Tensor> = Vec::with_capacity(count);
-        for sample in samples(self.problem, origin, &simplex) {
-            let law = self.problem.law(origin, sample.place);
+        for sample in samples(self.problem, &simplex) {
             strains.clear();
             strains.extend(self.strains_of_functions(&simplex, sample.weights));
             for (first, &strain) in strains.iter().enumerate() {
@@ -185,13 +180,13 @@ impl<'a> Displacements<'a> {
     /// The work of loads, less that of the stress without strain, on each unknown.
     pub fn load(&self) -> Vec<f64> {
         let (problem, mesh, dimension) = (self.problem, self.mesh, self.mesh.dimension);
-        let mut load = vec![0.0; dimension * (mesh.nodes.len() + mesh.edges.len())];
+        let mut load = vec![0.0; dimension * self.function_count()];
         for (cell, numbers) in self.numbers.iter().enumerate() {
             let (medium, simplex) = (problem.medium(mesh.origins[cell]), mesh.simplex(cell));
             if medium.body_force == [0.0; 3] && medium.own_stress.is_none() {
                 continue;
             }
-            for Sample { weights, place, weight, .. } in samples(problem, mesh.origins[cell], &simplex) {
+            for Sample { weights, place, weight, .. } in samples(problem, &simplex) {
                 let own = medium.own_stress(place);
                 let values = values_of_functions(dimension, weights);
                 let forces =
@@ -270,8 +265,8 @@ impl<'a> Displacements<'a> {
     }
 }
 
-/// The values of the functions at a point.
-fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
+/// The values at a point of the functions of a simplex of this dimension, or of a facet.
+pub fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
     pairs(dimension + 1).map(move |[i, j]| at[i] * at[j] * if i == j { 1.0 } else { 2.0 })
 }
 
@@ -279,8 +274,8 @@ fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f6
 fn local_functions(dimension: usize, side: usize) -> impl Iterator<Item = usize> {
     let corners: Vec<usize> = corners_of_side(dimension, side).collect();
     pairs(dimension).map(move |pair| {
-        let pair = pair.map(|corner| corners[corner]);
-        pairs(dimension + 1).position(|other| other == key(pair[0], pair[1])).unwrap_or(0)
+        let [i, j] = pair.map(|corner| corners[corner]);
+        number_of_pair(dimension + 1, i, j)
     })
 }
 
@@ -289,13 +284,8 @@ fn opposite_functions(dimension: usize, partner: &Partner) -> impl Iterator<Item
     let corners = partner.corners;
     pairs(dimension).map(move |pair| {
         let [i, j] = pair.map(|corner| corners[corner]);
-        pairs(dimension).position(|other| other == key(i, j)).unwrap_or(0)
+        number_of_pair(dimension, i, j)
     })
-}
-
-/// The values at a point of a facet of its functions: those of its corners, then those of their pairs.
-pub fn on_facet(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
-    values_of_functions(dimension - 1, at)
 }
 
 /// The strain of a displacement along an axis with this slope.

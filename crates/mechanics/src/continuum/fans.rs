@@ -6,10 +6,10 @@
 
 use std::collections::HashMap;
 
-use super::mesh::{Cells, Opposite, SimplexMesh};
+use super::mesh::{Cells, EdgePair, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Surface};
 use super::simplex::{Point, Simplex};
-use crate::fem::geometry::{distance, dot, key, minus};
+use crate::fem::geometry::{distance, dot, key, minus, shifted};
 
 /// Height over length of a triangle of a fan below which the triangle is refined before the cut, if its own is not
 /// small too.
@@ -28,12 +28,12 @@ pub(crate) const SAME_PLACE: f64 = 1e-3;
 
 /// An edge on a contact, along a line across the direction of the rows, or an edge on a seam, along itself.
 #[derive(Clone, Debug)]
-pub(super) struct Edge {
+pub(super) struct CutEdge {
     /// Its lower end, places at which it is cut, and its upper end: along the line, and the node.
     pub stops: Vec<(f64, usize)>,
 }
 
-impl Edge {
+impl CutEdge {
     pub fn ends(&self) -> [f64; 2] {
         [self.stops[0].0, self.stops[self.stops.len() - 1].0]
     }
@@ -47,7 +47,7 @@ impl Edge {
     pub fn at(&self, nodes: &[Point], place: f64) -> Point {
         let [first, last] = [self.stops[0].1, self.stops[self.stops.len() - 1].1].map(|node| nodes[node]);
         let share = (place - self.ends()[0]) / self.length();
-        [0, 1, 2].map(|axis| first[axis] + share * (last[axis] - first[axis]))
+        shifted(first, share, minus(last, first))
     }
 
     /// The node at a place along the line; one within the margin, or a new one.
@@ -117,7 +117,7 @@ impl Cut {
     ///
     /// # Errors
     /// The number of an obstacle if a body lies before another, or before two, in several layers.
-    fn at_contacts(&mut self, problem: &ContinuumProblem) -> Result<Vec<Opposite>, usize> {
+    fn at_contacts(&mut self, problem: &ContinuumProblem) -> Result<Vec<EdgePair>, usize> {
         let mut opposites = Vec::new();
         for (obstacle, facing) in problem.obstacles.iter().enumerate() {
             let Surface::Body { reach, .. } = &facing.surface else { continue };
@@ -145,13 +145,13 @@ impl Cut {
                     covered[0][first].push([from, to]);
                     covered[1][second].push([from, to]);
                     let mut ends =
-                        |edge: &mut Edge| [from, to].map(|at| edge.node_at(&mut self.cells.nodes, at, margin));
-                    opposites.push(Opposite { obstacle, own: ends(one), other: ends(two) });
+                        |edge: &mut CutEdge| [from, to].map(|at| edge.node_at(&mut self.cells.nodes, at, margin));
+                    opposites.push(EdgePair { obstacle, own: ends(one), other: ends(two) });
                 }
             }
             own.iter().chain(&other).for_each(|edge| self.fan(edge));
         }
-        let is_lost = |opposite: &&Opposite| {
+        let is_lost = |opposite: &&EdgePair| {
             opposite.edges().iter().any(|edge| !self.cells.surface.contains_key(edge.as_slice()))
         };
         if let Some(opposite) = opposites.iter().find(is_lost) {
@@ -167,7 +167,7 @@ impl Cut {
     }
 
     /// The edges of chosen conditions whose outward normals have a part along a direction, in increasing order.
-    fn edges(&self, has: impl Fn(usize) -> bool, towards: Point, along: Point) -> Vec<Edge> {
+    fn edges(&self, has: impl Fn(usize) -> bool, towards: Point, along: Point) -> Vec<CutEdge> {
         let mut chosen: Vec<[usize; 2]> =
             self.cells.surface.iter().filter(|entry| has(*entry.1)).map(|(edge, _)| [edge[0], edge[1]]).collect();
         chosen.sort_unstable();
@@ -180,7 +180,7 @@ impl Cut {
         }
         let edge = |ends: [usize; 2]| {
             let stops = ends.map(|node| (dot(along, self.cells.nodes[node]), node));
-            let mut edge = Edge { stops: stops.to_vec() };
+            let mut edge = CutEdge { stops: stops.to_vec() };
             edge.stops.sort_by(|a, b| a.0.total_cmp(&b.0));
             let tip = self.cells.nodes[*third.get(&key(ends[0], ends[1]))?];
             let is_parallel = edge.length() <= SAME_PLACE * dot(towards, minus(self.cells.nodes[ends[0]], tip)).abs();
@@ -191,7 +191,7 @@ impl Cut {
     }
 
     /// Cuts the triangle at an edge in a fan.
-    pub fn fan(&mut self, edge: &Edge) {
+    pub fn fan(&mut self, edge: &CutEdge) {
         let nodes: Vec<usize> = edge.stops.iter().map(|stop| stop.1).collect();
         let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else { return };
         let is_at = |cell: &Vec<usize>| cell.contains(&first) && cell.contains(&last);

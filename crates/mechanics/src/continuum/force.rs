@@ -15,11 +15,11 @@
 
 use std::collections::BTreeSet;
 
-use super::bound::{Bracket, Side};
+use super::bound::{Bracket, Half};
 use super::part_stress::PartStress;
 use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
-use super::system::{Block, Numbers, Unknowns};
+use super::system::{Block, CellNumbers};
 use crate::error::Error;
 use crate::fem::geometry::{midpoint, minus};
 use crate::fem::threads::{both, each};
@@ -131,12 +131,12 @@ impl Bracket<'_> {
         // The square of the rest of the pair, its product with the mean stress, and by as much the polynomial for a
         // power of a radius may change such products.
         let of_cell = |cell: usize| {
-            self.sums(cell, &self.rule(cell), |k, at| {
+            self.sums(cell, &self.rule(), |k, at| {
                 let strain = self.strain(&test.displacement, cell, k, at.weights);
                 let stress = self.stress_of(&test.stress, cell, k, at.weights);
                 let own = self.strain(&self.primal.values, cell, k, at.weights);
                 let elastic = self.elastic_stress(cell, k, at.weights);
-                let law = self.law(cell, at.place);
+                let law = self.law(cell);
                 let rest = less(strain, law.compliance(stress));
                 let mut base = at.weight * work(middle(law.stress(own), elastic), rest);
                 if at.extra != 0.0 {
@@ -239,7 +239,7 @@ impl Bracket<'_> {
             let volume: f64 = (0..self.mesh.count()).map(|cell| self.volume(cell)).sum();
             let depth = self.problem.thickness * if self.mesh.dimension == 2 { 1.0 } else { volume.cbrt() };
             let unit = self.problem.stiffest() * depth;
-            let largest = pulls.iter().fold(0.0, |largest: f64, pull| largest.max(pull.abs()));
+            let largest = qp::largest(&pulls);
             let allowed = f64::max(self.allowed_sign() * largest, ROUNDING * unit);
             let wrong: Vec<usize> = (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > allowed).collect();
             if wrong.is_empty() {
@@ -267,9 +267,9 @@ impl Bracket<'_> {
     /// not found. If the data of the bracket serve again, rows that would pull go beyond -1, as in contact.
     fn held(
         &self,
-        side: &Side,
+        side: &Half,
         rows: &[bool],
-        (numbers, blocks, places): (&Numbers, &[Block], &[Point]),
+        (numbers, blocks, places): (&CellNumbers, &[Block], &[Point]),
     ) -> Result<Option<Vec<f64>>, Error> {
         let (unknowns, found) = match &side.prepared {
             Some(prepared) => {
@@ -280,7 +280,8 @@ impl Bracket<'_> {
                 (side.unknowns.with_held(std::iter::empty(), 0.0), prepared.starting_from(closed).solve(&gaps))
             }
             None => {
-                let Some(unknowns) = with_contact_held(side, rows) else { return Ok(None) };
+                let chosen = side.rows.iter().zip(rows).filter(|row| *row.1).map(|row| row.0);
+                let Some(unknowns) = side.unknowns.with_held(chosen, -1.0) else { return Ok(None) };
                 let load = vec![0.0; unknowns.count()];
                 let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], places)?;
                 // In space a hierarchy may be the only way.
@@ -322,12 +323,6 @@ impl Bracket<'_> {
     pub fn force(&self) -> f64 {
         -self.primal.solution.multiplier.iter().sum::<f64>()
     }
-}
-
-/// The unknowns with supports at zero, held in these rows at -1 towards the obstacle; `None` if they cannot be.
-fn with_contact_held(side: &Side, rows: &[bool]) -> Option<Unknowns> {
-    let chosen = side.rows.iter().zip(rows).filter(|row| *row.1).map(|row| row.0);
-    side.unknowns.with_held(chosen, -1.0)
 }
 
 /// The largest `x length + beta (radius^2 - x^2)` over x from zero to the radius.

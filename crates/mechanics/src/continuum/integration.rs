@@ -1,28 +1,78 @@
 //! The points of integration of a problem.
+//!
+//! Energies about an axis contain `1/r`. There it is replaced by a polynomial `P(r) >= 1/r`, so that integrals by Gauss
+//! points are exact and bound the energies from above.
 
 use std::sync::OnceLock;
 
-use super::axis::{around, beyond};
-use super::mesh::SimplexMesh;
 use super::problem::ContinuumProblem;
-use super::simplex::{self, Point, Sample, Simplex, Weights, line, quadratic_rule, size_of_facet, square};
-use crate::fem::geometry::{dot, minus};
+use super::simplex::{Point, Simplex, Weights, mixed, size_of_facet};
+use crate::fem::element::gauss_legendre;
 
-/// Points on a facet along each direction: exact for degree 15. Two quadratic functions and the radius have 5, P and
-/// two linear functions 11.
+/// Gauss points in each direction: exact for degree 15. P times a product of two quadratic functions has 13; on facets
+/// two quadratic functions and the radius have 5, P and two linear functions 11.
 const POINTS: usize = 8;
 
-/// The points of integration on a simplex in an element of the first mesh.
-pub fn samples(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Vec<Sample> {
+/// Double zeros of `1 - r P(r)` between the smallest and the largest radius of a triangle.
+const ZEROS: usize = 4;
+
+/// A point of integration on a simplex or on a facet.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Its barycentric coordinates.
+    pub weights: Weights,
+    pub place: Point,
+    /// Its volume, or its area.
+    pub weight: f64,
+    /// What counts in addition for squares of a hoop strain or of a stress, because the polynomial P stands for `1/r`:
+    /// its volume times `r P(r) - 1`.
+    pub extra: f64,
+}
+
+pub fn samples(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<Sample> {
     if problem.is_axisymmetric {
         return around(problem.thickness * simplex.size(), simplex);
-    }
-    if let Some(point) = problem.medium(origin).turns_around() {
-        return samples_around(problem, simplex, point);
     }
     let weight = problem.thickness * simplex.size() / (simplex.dimension + 1) as f64;
     let sample = |weights| Sample { weights, place: simplex.at(weights), weight, extra: 0.0 };
     quadratic_rule(simplex.dimension).map(sample).collect()
+}
+
+/// The barycentric coordinates of points whose mean is that of a quadratic function over the simplex.
+fn quadratic_rule(dimension: usize) -> impl Iterator<Item = Weights> + Clone {
+    let corners = dimension + 1;
+    let others = (1.0 - 1.0 / (corners as f64 + 1.0).sqrt()) / corners as f64;
+    (0..corners).map(move |own| {
+        let weight = |corner: usize| match corner {
+            _ if corner == own => 1.0 - dimension as f64 * others,
+            _ if corner <= dimension => others,
+            _ => 0.0,
+        };
+        std::array::from_fn(weight)
+    })
+}
+
+/// The points on a triangle about the axis; towards a single corner on the axis the radius is `t rho(y)`, and rho takes
+/// its place.
+pub fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
+    let radii: Vec<f64> = triangle.corners().iter().map(|corner| corner[0]).collect();
+    let on_axis = radii.iter().filter(|radius| **radius == 0.0).count();
+    let tip = radii.iter().position(|radius| *radius == 0.0).unwrap_or(0);
+    let [from, to] = [(tip + 1) % 3, (tip + 2) % 3];
+    let of_point = |&([t, y], share): &([f64; 2], f64)| {
+        let mut weights = [0.0; 4];
+        (weights[tip], weights[from], weights[to]) = (1.0 - t, t * (1.0 - y), t * y);
+        let radius: f64 = radii.iter().zip(weights).map(|(radius, weight)| radius * weight).sum();
+        let too_much = match on_axis {
+            // There the stress and the radial displacement are r times a polynomial.
+            2.. => 0.0,
+            1 => beyond(radius / t, [radii[from], radii[to]]),
+            _ => beyond(radius, [0, 1].map(|end| radii.iter().copied().fold(radii[0], [f64::min, f64::max][end]))),
+        };
+        let weight = 2.0 * t * share * size * radius;
+        Sample { weights, place: triangle.at(weights), weight, extra: weight * too_much }
+    };
+    square().iter().map(of_point).collect()
 }
 
 /// The points of integration on a facet of the surface.
@@ -30,8 +80,7 @@ pub fn samples_on_facet(problem: &ContinuumProblem, corners: &[Point]) -> Vec<Sa
     let size = problem.thickness * size_of_facet(corners);
     let radii: Vec<f64> = corners.iter().map(|&corner| problem.radius(corner)).collect();
     let sample = |weights: Weights, share: f64| {
-        let along = |axis: usize| corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum();
-        let place = [0, 1, 2].map(along);
+        let place = mixed(corners, &weights);
         let radius = problem.radius(place);
         let too_much = match radii[..] {
             // Towards a corner on the axis the stress is r times a polynomial.
@@ -42,142 +91,96 @@ pub fn samples_on_facet(problem: &ContinuumProblem, corners: &[Point]) -> Vec<Sa
         Sample { weights, place, weight, extra: weight * too_much }
     };
     match corners.len() {
-        2 => line(POINTS).map(|(t, share)| sample([1.0 - t, t, 0.0, 0.0], share)).collect(),
+        2 => line().map(|(t, share)| sample([1.0 - t, t, 0.0, 0.0], share)).collect(),
         _ => {
-            let of_square = square(POINTS).into_iter();
-            of_square.map(|([t, y], share)| sample([1.0 - t, t * (1.0 - y), t * y, 0.0], 2.0 * t * share)).collect()
+            let of_square = square().iter();
+            of_square.map(|&([t, y], share)| sample([1.0 - t, t * (1.0 - y), t * y, 0.0], 2.0 * t * share)).collect()
         }
     }
 }
 
-// Media in the plane whose axes turn around a point: their stiffness is a polynomial of degree four over `r^4`, r
-// being the distance from the point.
-//
-// In energies a polynomial `P(s)^2 >= 1/s^2`, `s = r^2`, stands for `1/r^4`, so that integrals by Gauss points are
-// exact and bound the energies from above, as about an axis.
+/// Gauss points between 0 and 1, with their weights.
+fn line() -> impl Iterator<Item = (f64, f64)> {
+    gauss_legendre(POINTS).map(|(x, weight)| ((x + 1.0) / 2.0, weight / 2.0))
+}
 
-/// Points along a line: exact for degree 19, of the squares of two linear strains (2), the stiffness (4), `P^2` (12),
-/// and the map of the square to the triangle (1).
-const POINTS_AROUND: usize = 10;
-
-/// The place of the double zero of `1 - s P(s)`: in the middle.
-const ZERO: [f64; 1] = [0.0];
-
-/// The points of integration on a triangle of a medium whose axes turn around a point.
-pub fn samples_around(problem: &ContinuumProblem, triangle: &Simplex, point: Point) -> Vec<Sample> {
+/// Gauss points of the unit square, with their weights.
+fn square() -> &'static [([f64; 2], f64)] {
     static SQUARE: OnceLock<Vec<([f64; 2], f64)>> = OnceLock::new();
-    let (size, range) = (problem.thickness * triangle.size(), squares(triangle, point));
-    let of_square = SQUARE.get_or_init(|| simplex::square(POINTS_AROUND)).iter();
-    let sample = |&([t, y], share): &([f64; 2], f64)| {
-        let weights = [1.0 - t, t * (1.0 - y), t * y, 0.0];
-        let (place, weight) = (triangle.at(weights), 2.0 * t * share * size);
-        let too_much = simplex::beyond(square_of(minus(place, point)), range, &ZERO);
-        Sample { weights, place, weight, extra: weight * too_much * (2.0 + too_much) }
-    };
-    of_square.map(sample).collect()
+    let points = || line().flat_map(|(t, of_t)| line().map(move |(y, of_y)| ([t, y], of_t * of_y))).collect();
+    SQUARE.get_or_init(points)
 }
 
-/// Rounding of the areas of triangles.
-const ROUNDING: f64 = 1e-9;
-
-fn square_of(vector: Point) -> f64 {
-    dot(vector, vector)
-}
-
-/// The smallest and the largest square of the distance of a triangle from a point; the smallest one is zero in the
-/// triangle.
-fn squares(triangle: &Simplex, point: Point) -> [f64; 2] {
-    let corners = triangle.corners();
-    let to_edge = |k: usize| {
-        let (from, along) = (corners[k], minus(corners[(k + 1) % 3], corners[k]));
-        let share = (dot(minus(point, from), along) / square_of(along)).clamp(0.0, 1.0);
-        square_of([0, 1, 2].map(|axis| from[axis] + share * along[axis] - point[axis]))
-    };
-    let to_corner = |corner: &Point| square_of(minus(*corner, point));
-    let nearest = if contains(triangle, point) { 0.0 } else { (0..3).map(to_edge).fold(f64::INFINITY, f64::min) };
-    [nearest, corners.iter().map(to_corner).fold(0.0, f64::max)]
-}
-
-/// Returns `true` if a point lies in a triangle or, except for rounding, on its border.
-fn contains(triangle: &Simplex, point: Point) -> bool {
-    let corners = triangle.corners();
-    let with_edge = |k: usize| Simplex::new(2, [point, corners[k], corners[(k + 1) % 3]]).size();
-    (0..3).map(with_edge).sum::<f64>() <= triangle.size() * (1.0 + ROUNDING)
-}
-
-impl ContinuumProblem {
-    /// Returns `true` if axes turn around a point of their medium: there the stiffness has no value.
-    pub fn turns_inside(&self, mesh: &SimplexMesh) -> bool {
-        let is_inside = |cell: usize| {
-            let point = self.medium(mesh.origins[cell]).turns_around();
-            point.is_some_and(|point| contains(&mesh.simplex(cell), point))
-        };
-        (0..mesh.count()).any(is_inside)
-    }
+/// `r P(r) - 1 >= 0` for the polynomial `P(r) >= 1/r` between the radii a and b with
+/// `1 - r P = (r - a) (r - b) prod (r - c)^2 / a b prod c^2`.
+fn beyond(radius: f64, [one, other]: [f64; 2]) -> f64 {
+    static PLACES: OnceLock<[f64; ZEROS]> = OnceLock::new();
+    // Those of the c, -1 at the smaller radius and 1 at the larger one.
+    let place = |index: usize| (std::f64::consts::PI * (index + 1) as f64 / (ZEROS + 1) as f64).cos();
+    let places = PLACES.get_or_init(|| std::array::from_fn(place));
+    let (low, high) = (one.min(other), one.max(other));
+    let ends = (radius - low) / low * ((high - radius) / high);
+    let middle = [low + high, high - low].map(|sum| sum / 2.0);
+    let zeros = places.iter().map(|place| middle[0] + middle[1] * place);
+    zeros.fold(ends.max(0.0), |product, zero| product * (radius / zero - 1.0).powi(2))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::simplex::pairs;
     use super::*;
-    use crate::continuum::bodies::filled;
-    use crate::fem::material::Lame;
 
-    /// The integral of `1 / r^4` over a triangle is bounded from above, and only by a little; areas and linear
-    /// functions are exact.
     #[test]
-    fn integrals_over_the_fourth_power_are_bounded_from_above() {
-        let problem = filled(2, Lame { lambda: 1.0, mu: 1.0 }, [0.0; 3]);
-        for (corner, width) in [([2.0, 0.5, 0.0], 0.5), ([1.0, -0.1, 0.0], 0.2), ([0.6, 0.0, 0.0], 1.5)] {
-            let [x, y, _] = corner;
-            let triangle = Simplex::new(2, [corner, [x + width, y, 0.0], [x, y + width, 0.0]]);
-            let at = samples_around(&problem, &triangle, [0.5, 0.0, 0.0]);
-            let sum = |value: &dyn Fn(&Sample) -> f64| at.iter().map(value).sum::<f64>();
-            assert!((sum(&|at| at.weight) / triangle.size() - 1.0).abs() < 1e-13);
-            assert!((sum(&|at| at.weight * at.place[0]) / triangle.size() - x - width / 3.0).abs() < 1e-13);
-            // By many small squares of equal size.
-            const CELLS: usize = 400;
-            let mut exact = 0.0;
-            for i in 0..CELLS {
-                for j in 0..CELLS - i {
-                    let part = if j + 1 < CELLS - i { 1.0 } else { 0.5 };
-                    let middle = if part == 1.0 { 0.5 } else { 1.0 / 3.0 };
-                    let [i, j] = [i, j].map(|index| (index as f64 + middle) * width / CELLS as f64);
-                    exact += part * (width / CELLS as f64).powi(2) / square_of([x + i - 0.5, y + j, 0.0]).powi(2);
-                }
+    fn the_rule_gives_the_mean_of_products_of_linear_functions() {
+        for dimension in [2, 3] {
+            for [i, j] in pairs(dimension + 1) {
+                let mean = quadratic_rule(dimension).map(|weights| weights[i] * weights[j]).sum::<f64>();
+                let exact = if i == j { 2.0 } else { 1.0 } / ((dimension + 1) * (dimension + 2)) as f64;
+                assert!((mean / (dimension + 1) as f64 - exact).abs() < 1e-16, "{dimension}: {i} {j}");
             }
-            let bound = sum(&|at| (at.weight + at.extra) / square_of(minus(at.place, [0.5, 0.0, 0.0])).powi(2));
-            assert!(bound > exact * (1.0 - 1e-4) && at.iter().all(|at| at.extra >= 0.0), "{bound} {exact}");
-            assert!(width > 1.0 || bound < exact * 1.01, "{bound} {exact}");
         }
     }
 
-    /// `s P - 1 = (s - 1) (4 - s) (s - 5/2)^2 / (4 (5/2)^2)` at s = 2 between 1 and 4, and what counts in addition is
-    /// `(s P)^2 - 1` of the area.
+    /// The integral of `f^2 / r` of a function f that is r times a linear one near the axis is bounded from above, and
+    /// only by a little.
     #[test]
-    fn the_square_of_the_polynomial_is_counted() {
-        assert!((simplex::beyond(2.0, [1.0, 4.0], &ZERO) - 0.02).abs() < 1e-15);
-        let problem = filled(2, Lame { lambda: 1.0, mu: 1.0 }, [0.0; 3]);
-        let triangle = Simplex::new(2, [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 0.5, 0.0]]);
-        for at in samples_around(&problem, &triangle, [0.0; 3]) {
-            let s = square_of(at.place);
-            let times = 1.0 + (s - 1.0) * (4.0 - s) / 4.0 * (s / 2.5 - 1.0).powi(2);
-            assert!((1.0 + at.extra / at.weight - times * times).abs() < 1e-14, "{at:?}");
+    fn integrals_of_squares_over_the_radius_are_bounded_from_above() {
+        for (radii, is_exact) in [([0.3, 1.2, 0.7], false), ([0.0, 1.2, 0.7], false), ([0.0, 1.2, 0.0], true)] {
+            let corners = [[radii[0], 0.1, 0.0], [radii[1], -0.2, 0.0], [radii[2], 1.1, 0.0]];
+            let triangle = Simplex::new(2, corners);
+            // A corner function that vanishes at the first corner; on an axis edge r itself.
+            let value = |weights: Weights| match is_exact {
+                true => triangle.at(weights)[0],
+                false => weights[1] + 0.5 * weights[2],
+            };
+            let sum = |with_extra: bool| -> f64 {
+                let of_sample = |sample: &Sample| {
+                    let weight = sample.weight + if with_extra { sample.extra } else { 0.0 };
+                    weight * (value(sample.weights) / triangle.at(sample.weights)[0]).powi(2)
+                };
+                around(triangle.size(), &triangle).iter().map(of_sample).sum()
+            };
+            let (bound, nearly) = (sum(true), sum(false));
+            assert!(bound >= nearly * (1.0 - 1e-14) && bound <= nearly * 1.001, "{radii:?}: {bound} {nearly}");
+            let volume: f64 = around(triangle.size(), &triangle).iter().map(|sample| sample.weight).sum();
+            let exact = triangle.size() * radii.iter().sum::<f64>() / 3.0;
+            assert!((volume / exact - 1.0).abs() < 1e-13, "{volume} {exact}");
         }
     }
 
+    /// `1 - r P = (r - 2) (r - 6) prod (r - c)^2 / 12 prod c^2` at r = 3, with the places `4 + 2 cos(k pi / 5)`.
     #[test]
-    fn a_point_on_the_border_lies_in_a_triangle() {
-        let triangle = Simplex::new(2, [[1.0, -1.0, 0.0], [1.0, 3.0, 0.0], [2.0, 0.0, 0.0]]);
-        for (point, is_inside) in [([1.2, 0.5], true), ([1.0, 1.0], true), ([2.0, 0.0], true), ([0.99, 1.0], false)] {
-            assert_eq!(contains(&triangle, [point[0], point[1], 0.0]), is_inside, "{point:?}");
+    fn the_polynomial_for_one_over_the_radius_is_above_it() {
+        let cosines = [0.809_016_994_374_947_5, 0.309_016_994_374_947_45];
+        let squares: f64 = cosines
+            .iter()
+            .flat_map(|cosine| [4.0 + 2.0 * cosine, 4.0 - 2.0 * cosine])
+            .map(|place: f64| (1.0 - 3.0 / place).powi(2))
+            .product();
+        let exact = 1.0 / 2.0 * (3.0 / 6.0) * squares;
+        for ends in [[2.0, 6.0], [6.0, 2.0]] {
+            assert!((beyond(3.0, ends) / exact - 1.0).abs() < 1e-13, "{}", beyond(3.0, ends));
+            assert_eq!(ends.map(|end| beyond(end, ends)), [0.0; 2]);
         }
-    }
-
-    #[test]
-    fn the_nearest_point_may_lie_on_an_edge_and_the_farthest_is_a_corner() {
-        let triangle = Simplex::new(2, [[1.0, -1.0, 0.0], [1.0, 3.0, 0.0], [2.0, 0.0, 0.0]]);
-        assert_eq!(squares(&triangle, [0.0; 3]), [1.0, 10.0]);
-        assert_eq!(squares(&triangle, [3.0, 0.0, 0.0]), [1.0, 13.0]);
-        assert_eq!(squares(&triangle, [1.5, 0.0, 0.0])[0], 0.0);
     }
 }

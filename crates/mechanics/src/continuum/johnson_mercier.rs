@@ -13,9 +13,9 @@ use std::sync::OnceLock;
 use super::axis::stresses;
 use super::integration::samples;
 use super::normal::{Lower, add, null_space};
-use super::part_stress::{PartStress, QUADRATIC, quadratic_factors};
-use super::problem::{ContinuumProblem, Law, Medium};
-use super::simplex::{ENTRIES, Point, Sample, Simplex, corners_of_side, traction};
+use super::part_stress::{PartStress, QUADRATIC, add_traction, quadratic_factors};
+use super::problem::{ContinuumProblem, ElasticLaw, Medium};
+use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
 use crate::fem::material::engineering;
 use signorini_qp::dot;
 
@@ -33,16 +33,15 @@ impl Basis {
     }
 
     fn stresses(&self) -> Vec<PartStress> {
-        let carried = |simplex: &Simplex, stress: &PartStress| stress.map(|value| simplex.carried(value));
         match self {
             Basis::Carried(simplex) => {
-                reference(simplex.dimension).iter().map(|stress| carried(simplex, stress)).collect()
+                let carried = |stress: &PartStress| stress.map(|value| simplex.carried(value));
+                reference(simplex.dimension).iter().map(carried).collect()
             }
             Basis::About(stresses) => stresses.clone(),
         }
     }
 
-    /// Adds these amounts of the stresses.
     fn add_to(&self, stress: &mut PartStress, amounts: &[f64]) {
         match self {
             Basis::Carried(simplex) => {
@@ -63,7 +62,7 @@ const REFINED: usize = 2;
 
 /// The stresses without divergence on a simplex, with their tractions and energies.
 #[derive(Clone, Debug)]
-pub struct Element {
+pub struct StressElement {
     basis: Basis,
     /// The factor L of the complementary energies of the stresses of the basis. The stresses `L^-1` times these have
     /// the energy one, and none with the others.
@@ -80,13 +79,14 @@ pub struct Element {
     of_works: OnceLock<Option<Lower>>,
 }
 
-impl Element {
+impl StressElement {
     /// The element on a simplex of the medium of an element of the first mesh; `None` if it is flat.
     pub fn new(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Option<Self> {
         let medium = problem.medium(origin);
         let basis = Basis::of(problem, simplex);
         let carried = basis.stresses();
-        let strains = strains_of_all(problem, origin, simplex, &carried);
+        let (law, products) = (problem.law(origin), products(problem, simplex));
+        let strains: Vec<_> = carried.iter().map(|stress| strains_of(&law, &products, stress)).collect();
         let energies = |(k, strain): (usize, &Vec<f64>)| -> Vec<f64> {
             carried[..=k].iter().map(|stress| dot(strain, stress.entries())).collect()
         };
@@ -94,7 +94,8 @@ impl Element {
         let particular = balancing(problem, medium, simplex);
         let mut elastic = particular.clone();
         if medium.own_stress.is_some() {
-            elastic.add(-1.0, &own_stress(problem, medium, simplex));
+            let own = |place| medium.own_stress(place).map(|part| problem.radius(place) * part);
+            elastic.add(-1.0, &PartStress::of(problem, simplex, own));
         }
         let mut tractions = vec![Vec::new(); carried.len()];
         let of_carried: Vec<Vec<f64>> = carried.iter().map(|stress| works(problem, simplex, stress)).collect();
@@ -108,7 +109,15 @@ impl Element {
         factor.forward(&mut particular_energies);
         let particular_tractions = works(problem, simplex, &particular);
         let of_works = OnceLock::new();
-        Some(Element { basis, factor, particular, tractions, particular_tractions, particular_energies, of_works })
+        Some(StressElement {
+            basis,
+            factor,
+            particular,
+            tractions,
+            particular_tractions,
+            particular_energies,
+            of_works,
+        })
     }
 
     /// The particular stress and these amounts of the others.
@@ -152,7 +161,6 @@ impl Element {
         sum
     }
 
-    /// The stress under displacements of the sides.
     pub fn stress(&self, sides: &[f64]) -> PartStress {
         self.sum(self.amounts(sides))
     }
@@ -176,28 +184,23 @@ impl Element {
     }
 }
 
-/// The stress without strain of a medium, as a stress of an element.
-fn own_stress(problem: &ContinuumProblem, medium: &Medium, simplex: &Simplex) -> PartStress {
-    PartStress::of(problem, simplex, |place| medium.own_stress(place).map(|part| problem.radius(place) * part))
-}
-
 /// The integrals of the products of the functions of two coefficients on a part.
 type Products = [[f64; QUADRATIC]; QUADRATIC];
 
 /// These integrals on each part; about an axis over the radius, for products of r times a stress.
-fn products(problem: &ContinuumProblem, origin: usize, simplex: &Simplex) -> Vec<Products> {
+fn products(problem: &ContinuumProblem, simplex: &Simplex) -> Vec<Products> {
     let corners = simplex.dimension + 1;
     if problem.is_axisymmetric {
-        return (0..corners).map(|k| products_over_radius(problem, origin, &simplex.part(k))).collect();
+        return (0..corners).map(|k| products_over_radius(problem, &simplex.part(k))).collect();
     }
     let of_product = problem.thickness * simplex.size() / (corners * corners * (corners + 1)) as f64;
     let entry = |i: usize, j: usize| if i == j { 2.0 * of_product } else { of_product };
     vec![std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))); corners]
 }
 
-fn products_over_radius(problem: &ContinuumProblem, origin: usize, part: &Simplex) -> Products {
+fn products_over_radius(problem: &ContinuumProblem, part: &Simplex) -> Products {
     let mut products = [[0.0; QUADRATIC]; QUADRATIC];
-    for sample in samples(problem, origin, part) {
+    for sample in samples(problem, part) {
         let weight = (sample.weight + sample.extra) / sample.place[0].powi(2);
         let factors = quadratic_factors(sample.weights);
         for (line, of_line) in products.iter_mut().zip(factors) {
@@ -207,35 +210,8 @@ fn products_over_radius(problem: &ContinuumProblem, origin: usize, part: &Simple
     products
 }
 
-/// For each stress its complementary energies with each coefficient of another one.
-fn strains_of_all(
-    problem: &ContinuumProblem,
-    origin: usize,
-    simplex: &Simplex,
-    stresses: &[PartStress],
-) -> Vec<Vec<f64>> {
-    if problem.medium(origin).turns_around().is_none() {
-        let (law, products) = (problem.law(origin, simplex.centre()), products(problem, origin, simplex));
-        return stresses.iter().map(|stress| strains_of(&law, &products, stress)).collect();
-    }
-    let of_part = |k: usize| samples(problem, origin, &simplex.part(k)).into_iter().map(move |at| (k, at));
-    let points: Vec<(usize, Sample)> = (0..=simplex.dimension).flat_map(of_part).collect();
-    let strains_of = |stress: &PartStress| {
-        let mut strains = PartStress::zero(simplex.dimension + 1, stress.of_part());
-        for (k, at) in &points {
-            let strain = engineering(&problem.law(origin, at.place).compliance(stress.at(*k, at.weights)));
-            let values = strains.values_mut().iter_mut().skip(k * stress.of_part());
-            values.zip(at.weights).take(stress.of_part()).for_each(|(value, share)| {
-                add(value, share * (at.weight + at.extra), &strain);
-            });
-        }
-        strains.entries().to_vec()
-    };
-    stresses.iter().map(strains_of).collect()
-}
-
 /// The complementary energies of a stress with each coefficient of another one.
-fn strains_of(law: &Law, products: &[Products], stress: &PartStress) -> Vec<f64> {
+fn strains_of(law: &ElasticLaw, products: &[Products], stress: &PartStress) -> Vec<f64> {
     let mut strains = PartStress::zero(products.len(), stress.of_part());
     let parts =
         strains.values_mut().chunks_exact_mut(stress.of_part()).zip(stress.values().chunks_exact(stress.of_part()));
@@ -288,14 +264,8 @@ fn reference(dimension: usize) -> &'static [PartStress] {
     static STRESSES: [OnceLock<Vec<PartStress>>; 2] = [OnceLock::new(), OnceLock::new()];
     let entries = ENTRIES[dimension - 2];
     STRESSES[dimension - 2].get_or_init(|| {
-        let of_vector = |vector: Vec<f64>| {
-            let mut stress = PartStress::zero(dimension + 1, dimension + 1);
-            for (value, of_value) in stress.values_mut().iter_mut().zip(vector.chunks_exact(entries.len())) {
-                entries.iter().zip(of_value).for_each(|(&entry, &part)| value[entry] = part);
-            }
-            stress
-        };
-        null_space(conditions(dimension)).into_iter().map(of_vector).collect()
+        let of_vector = |vector: &Vec<f64>| PartStress::of_vector(dimension + 1, dimension + 1, entries, vector);
+        null_space(conditions(dimension)).iter().map(of_vector).collect()
     })
 }
 
@@ -310,14 +280,8 @@ fn conditions(dimension: usize) -> Vec<Vec<f64>> {
     let simplex = Simplex::new(dimension, (0..=dimension).map(unit));
     let entries = ENTRIES[dimension - 2];
     let count = value_at(dimension, dimension + 1, 0);
-    // The rows of the traction on a surface with this normal, at a corner of part k.
     let add_traction = |rows: &mut [Vec<f64>], k: usize, corner: usize, normal: Point| {
-        for (place, &entry) in entries.iter().enumerate() {
-            let mut one = [0.0; 6];
-            one[entry] = 1.0;
-            let pull = traction(one, normal);
-            rows.iter_mut().zip(pull).for_each(|(row, part)| row[value_at(dimension, k, corner) + place] += part);
-        }
+        add_traction(rows, value_at(dimension, k, corner), entries, 1.0, normal);
     };
     let mut conditions = Vec::new();
     for k in 0..=dimension {
@@ -342,7 +306,7 @@ fn conditions(dimension: usize) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bodies::filled;
+    use super::super::bodies::{any_simplex, filled};
     use super::super::simplex::{Tensor, less};
     use super::*;
     use crate::fem::geometry::plus;
@@ -359,18 +323,12 @@ mod tests {
         }
     }
 
-    fn simplex(dimension: usize) -> Simplex {
-        let plane = [[0.25, -0.5, 0.0], [2.0, 0.125, 0.0], [0.75, 1.5, 0.0]];
-        let space = [[0.25, -0.5, 0.1], [2.0, 0.125, -0.2], [0.75, 1.5, 0.3], [0.5, 0.4, 1.7]];
-        if dimension == 2 { Simplex::new(2, plane) } else { Simplex::new(3, space) }
-    }
-
     /// About an axis the force `0.75` along the radius is balanced by the hoop stress `0.75 r`, both times r; a force
     /// along the axis by the axial stress.
     #[test]
     fn a_body_force_about_an_axis_is_in_balance() {
         let problem = ContinuumProblem { is_axisymmetric: true, ..material(2) };
-        let (simplex, at) = (simplex(2), [0.2, 0.5, 0.3, 0.0]);
+        let (simplex, at) = (any_simplex(2), [0.2, 0.5, 0.3, 0.0]);
         let stress = balancing(&problem, &problem.media[0], &simplex);
         for k in 0..3 {
             let radius = simplex.part(k).at(at)[0];
@@ -392,8 +350,8 @@ mod tests {
     #[test]
     fn stresses_are_in_balance_and_continuous() {
         for dimension in [2, 3] {
-            let (material, simplex) = (material(dimension), simplex(dimension));
-            let element = Element::new(&material, 0, &simplex).unwrap();
+            let (material, simplex) = (material(dimension), any_simplex(dimension));
+            let element = StressElement::new(&material, 0, &simplex).unwrap();
             let unknowns = (dimension + 1) * dimension * dimension;
             for unknown in 0..unknowns {
                 let sides: Vec<f64> = (0..unknowns).map(|place| f64::from(u8::from(place == unknown))).collect();
@@ -440,8 +398,8 @@ mod tests {
     #[test]
     fn only_rigid_body_motions_cost_nothing() {
         for dimension in [2, 3] {
-            let (material, simplex) = (material(dimension).unloaded(), simplex(dimension));
-            let block = Element::new(&material, 0, &simplex).unwrap().block();
+            let (material, simplex) = (material(dimension).unloaded(), any_simplex(dimension));
+            let block = StressElement::new(&material, 0, &simplex).unwrap().block();
             let energy = |values: &[f64]| -> f64 {
                 block.chunks_exact(values.len()).zip(values).map(|(line, value)| value * dot(line, values)).sum()
             };
@@ -454,7 +412,7 @@ mod tests {
             }
             let strain =
                 if dimension == 2 { [0.5, -0.25, 0.0, 0.375, 0.0, 0.0] } else { [0.5, -0.25, 0.75, 0.375, 0.25, -0.5] };
-            let exact = material.thickness * simplex.size() * material.law(0, [0.0; 3]).square(strain);
+            let exact = material.thickness * simplex.size() * material.law(0).square(strain);
             let moved = energy(&sides(&simplex, &|at| traction(strain, at)));
             assert!((moved / exact - 1.0).abs() < ROUNDING, "{moved} {exact}");
         }

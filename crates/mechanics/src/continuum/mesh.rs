@@ -61,7 +61,7 @@ pub struct SimplexMesh {
     /// The ends of the edge that each new node halves, for the last nodes; empty in a first mesh.
     parents: Vec<[usize; 2]>,
     /// The edges of two bodies that lie opposite to each other, in the plane.
-    opposites: Vec<Opposite>,
+    opposites: Vec<EdgePair>,
     /// The same by facet and obstacle.
     partners: HashMap<(usize, usize), Partner>,
     /// How it is refined.
@@ -80,7 +80,7 @@ pub struct OuterFacet {
 
 /// Two edges that may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Opposite {
+pub struct EdgePair {
     pub obstacle: usize,
     /// The nodes of the edge of the body whose obstacle it is.
     pub own: [usize; 2],
@@ -96,19 +96,19 @@ pub struct Partner {
     pub corners: [usize; 2],
 }
 
-impl Opposite {
+impl EdgePair {
     /// Both edges by their nodes, increasing.
     pub fn edges(&self) -> [[usize; 2]; 2] {
         [self.own, self.other].map(|[a, b]| key(a, b))
     }
 
     /// The pieces if both edges are halved at the nodes that `middle` gives, else the edges as they are.
-    pub fn halved(&self, middle: impl Fn([usize; 2]) -> Option<usize>) -> Vec<Opposite> {
+    pub fn halved(&self, middle: impl Fn([usize; 2]) -> Option<usize>) -> Vec<EdgePair> {
         let [own, other] = self.edges().map(middle);
         match own.zip(other) {
             None => vec![*self],
             Some((own, other)) => [0, 1]
-                .map(|end| Opposite { own: [self.own[end], own], other: [self.other[end], other], ..*self })
+                .map(|end| EdgePair { own: [self.own[end], own], other: [self.other[end], other], ..*self })
                 .to_vec(),
         }
     }
@@ -162,10 +162,10 @@ impl SimplexMesh {
 
     /// The mesh with edges of the surface in the plane that lie opposite to each other, and stay so when they are
     /// refined.
-    pub fn with_opposites(mut self, opposites: Vec<Opposite>) -> Self {
+    pub fn with_opposites(mut self, opposites: Vec<EdgePair>) -> Self {
         let nodes = |outer: &OuterFacet| -> [usize; 2] { [0, 1].map(|corner| self.facets[outer.facet][corner]) };
         let at: HashMap<[usize; 2], OuterFacet> = self.surface.iter().map(|outer| (nodes(outer), *outer)).collect();
-        let partner = |opposite: &Opposite| {
+        let partner = |opposite: &EdgePair| {
             let [own, other] = opposite.edges().map(|edge| at.get(&edge));
             let is_reversed = (opposite.own[0] < opposite.own[1]) != (opposite.other[0] < opposite.other[1]);
             let partner = Partner { on: *other?, corners: if is_reversed { [1, 0] } else { [0, 1] } };
@@ -240,7 +240,6 @@ impl SimplexMesh {
         }
     }
 
-    /// Number of simplices.
     pub fn count(&self) -> usize {
         self.cells.len()
     }
@@ -347,7 +346,7 @@ impl SimplexMesh {
                     waiting = true;
                 }
             }
-            for [own, other] in self.opposites.iter().map(Opposite::edges) {
+            for [own, other] in self.opposites.iter().map(EdgePair::edges) {
                 if halved.contains_key(&own) != halved.contains_key(&other) {
                     halved.extend([(own, None), (other, None)]);
                     waiting = true;
@@ -407,37 +406,13 @@ fn longest_first(nodes: &[Point], mut triangle: [usize; 3]) -> [usize; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bodies::unit;
     use super::*;
-
-    /// The unit square in two triangles, its four sides with the conditions 0 to 3.
-    fn square() -> SimplexMesh {
-        let nodes = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-        let surface = HashMap::from([(vec![0, 1], 0), (vec![1, 2], 1), (vec![2, 3], 2), (vec![0, 3], 3)]);
-        let cells = Cells { nodes, cells: vec![vec![0, 1, 2], vec![0, 2, 3]], origins: vec![0, 1], surface };
-        SimplexMesh::new(2, cells).unwrap()
-    }
-
-    /// The unit cube in six tetrahedra, with one condition for each of its six sides.
-    fn cube() -> SimplexMesh {
-        let nodes: Vec<Point> = (0..8).map(|node| [0, 1, 2].map(|axis| f64::from(node >> axis & 1))).collect();
-        let orders = [[1, 2, 4], [1, 4, 2], [2, 1, 4], [2, 4, 1], [4, 1, 2], [4, 2, 1]];
-        let cells: Vec<Vec<usize>> = orders.iter().map(|[a, b, _]| vec![0, *a, a + b, 7]).collect();
-        let mut surface = HashMap::new();
-        for cell in &cells {
-            for local in 0..4 {
-                let facet: Vec<usize> = (0..4).filter(|&other| other != local).map(|other| cell[other]).collect();
-                let lies = |side: &usize| facet.iter().all(|&node| node >> (side / 2) & 1 == side % 2);
-                if let Some(side) = (0..6).find(lies) {
-                    surface.insert(facet, side);
-                }
-            }
-        }
-        SimplexMesh::new(3, Cells { nodes, cells, origins: (0..6).collect(), surface }).unwrap()
-    }
 
     #[test]
     fn bisection_keeps_the_size_the_surface_and_whole_facets() {
-        for (mut mesh, steps, least) in [(square(), 6, 40), (cube(), 9, 100)] {
+        for (dimension, steps, least) in [(2, 6, 40), (3, 9, 100)] {
+            let mut mesh = SimplexMesh::new(dimension, unit(dimension)).unwrap();
             let sides = 2 * mesh.dimension;
             for step in 0..steps {
                 let marked: Vec<bool> = (0..mesh.count()).map(|index| index % 3 == step % 3).collect();
@@ -475,7 +450,7 @@ mod tests {
     /// degrees.
     #[test]
     fn bisection_keeps_the_angles() {
-        let mut mesh = square();
+        let mut mesh = SimplexMesh::new(2, unit(2)).unwrap();
         for _ in 0..8 {
             let marked: Vec<bool> = (0..mesh.count()).map(|cell| mesh.cell(cell).contains(&0)).collect();
             mesh = mesh.refined(&marked, |_, middle| middle);

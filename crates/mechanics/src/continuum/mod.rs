@@ -21,7 +21,6 @@ mod part_stress;
 mod problem;
 mod seams;
 mod simplex;
-mod springs;
 mod stress;
 mod system;
 #[cfg(test)]

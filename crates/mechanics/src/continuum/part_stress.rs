@@ -2,7 +2,7 @@
 
 use super::normal::add;
 use super::problem::ContinuumProblem;
-use super::simplex::{Point, Simplex, Tensor, Weights, pairs};
+use super::simplex::{Point, Simplex, Tensor, Weights, number_of_pair, pairs, traction};
 
 /// Coefficients of a quadratic function on a triangle.
 pub const QUADRATIC: usize = 6;
@@ -20,6 +20,15 @@ impl PartStress {
     /// Zero stress on `parts` parts, with `of_part` coefficients on each.
     pub fn zero(parts: usize, of_part: usize) -> Self {
         PartStress { of_part, values: vec![[0.0; 6]; parts * of_part] }
+    }
+
+    /// The stress with these entries of each coefficient, one coefficient after the other.
+    pub fn of_vector(parts: usize, of_part: usize, entries: &[usize], vector: &[f64]) -> Self {
+        let mut stress = Self::zero(parts, of_part);
+        for (value, of_value) in stress.values.iter_mut().zip(vector.chunks_exact(entries.len())) {
+            entries.iter().zip(of_value).for_each(|(&entry, &part)| value[entry] = part);
+        }
+        stress
     }
 
     /// A linear or quadratic function of the place.
@@ -62,9 +71,7 @@ impl PartStress {
         if self.of_part < QUADRATIC {
             return self.corner(k, along);
         }
-        let pair = [corner.min(along), corner.max(along)];
-        let place = pairs(3).position(|other| other == pair).unwrap_or(0);
-        self.corner(k, place).map(|part| 2.0 * part)
+        self.corner(k, number_of_pair(3, corner, along)).map(|part| 2.0 * part)
     }
 
     /// The value of the function of each coefficient at a point.
@@ -90,12 +97,10 @@ impl PartStress {
         &self.values
     }
 
-    /// The same, to change.
     pub fn values_mut(&mut self) -> &mut [Tensor] {
         &mut self.values
     }
 
-    /// The entries of all coefficients.
     pub fn entries(&self) -> &[f64] {
         self.values.as_flattened()
     }
@@ -110,4 +115,14 @@ impl PartStress {
 pub fn quadratic_factors(weights: Weights) -> [f64; QUADRATIC] {
     let [a, b, c, _] = weights;
     [a * a, b * b, c * c, 2.0 * a * b, 2.0 * a * c, 2.0 * b * c]
+}
+
+/// Adds the traction on a surface with this normal of the values from `first` on, those of these entries of a tensor
+/// times a factor: a row for each of its components.
+pub fn add_traction(rows: &mut [Vec<f64>], first: usize, entries: &[usize], factor: f64, normal: Point) {
+    for (place, &entry) in entries.iter().enumerate() {
+        let mut one = [0.0; 6];
+        one[entry] = factor;
+        rows.iter_mut().zip(traction(one, normal)).for_each(|(row, part)| row[first + place] += part);
+    }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::simplex::{ENTRIES, Point, Tensor, pairs, work};
 use crate::fem::geometry::{COORDINATES, distance, dot, minus, plus};
-use crate::fem::material::{Lame, Matrix, Stiffness, back, engineering, local};
+use crate::fem::material::{Lame, Matrix, Stiffness, engineering};
 
 /// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
 #[derive(Clone, Debug)]
@@ -35,8 +35,7 @@ pub struct ContinuumProblem {
 /// What fills a part of the body.
 #[derive(Clone, Debug)]
 pub struct Medium {
-    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates, or turn around
-    /// a point of the plane.
+    /// The stiffness in the plane or in space, in force per area; its axes are those of the coordinates.
     pub stiffness: Stiffness,
     /// The stress `[xx, yy, zz, xy, yz, zx]` without strain, if there is one, in force per area.
     pub own_stress: Option<[Linear; 6]>,
@@ -56,7 +55,6 @@ pub struct Linear {
 pub struct Condition {
     /// The prescribed components of the displacement.
     pub held: Vec<Held>,
-    /// The number of the rigid face that the facet belongs to.
     pub rigid_face: Option<usize>,
     /// The traction along each axis, in force per area.
     pub traction: [Linear; 3],
@@ -144,7 +142,6 @@ impl Linear {
         Linear { at_origin: factor * self.at_origin, slope: self.slope.map(|part| factor * part) }
     }
 
-    /// The sum of two functions.
     pub fn plus(&self, other: Linear) -> Self {
         let slope = plus(self.slope, other.slope);
         Linear { at_origin: self.at_origin + other.at_origin, slope }
@@ -167,7 +164,6 @@ impl Condition {
 pub struct Facing {
     /// The unit vector from the body towards the obstacle.
     pub normal: Point,
-    /// What the body meets.
     pub surface: Surface,
     /// What presses it, if it moves.
     pub pressed: Option<Pressed>,
@@ -337,11 +333,13 @@ impl ContinuumProblem {
         if self.obstacles.is_empty() { None } else { self.obstacles.iter().map(along_normal).sum() }
     }
 
-    /// The number among these of the travel of an obstacle; `None` if it stands still.
-    pub fn travel(&self, obstacle: usize) -> Option<usize> {
-        self.obstacles[obstacle].pressed?;
+    /// The unknown travel of a pressed obstacle, behind the displacements of this number of places and the motions of
+    /// rigid faces, with the cosine of its angle to the normal; `None` without a force.
+    pub fn travel(&self, obstacle: usize, places: usize) -> Option<(usize, f64)> {
+        let cosine = self.obstacles[obstacle].pressed?.cosine;
         let before = self.obstacles[..obstacle].iter().filter(|facing| facing.pressed.is_some()).count();
-        Some(self.rigid_faces.iter().map(|face| face.free.len()).sum::<usize>() + before)
+        let of_faces: usize = self.rigid_faces.iter().map(|face| face.free.len()).sum();
+        Some((self.dimension * places + of_faces + before, cosine))
     }
 
     /// The factor between a stress and what the elements of the stress hold: the radius about an axis, else 1.
@@ -363,15 +361,10 @@ impl ContinuumProblem {
         &self.media[self.medium_of[origin]]
     }
 
-    /// The law of the medium of an element of the first mesh at a place.
-    pub fn law(&self, origin: usize, place: Point) -> Law<'_> {
+    /// The law of the medium of an element of the first mesh.
+    pub fn law(&self, origin: usize) -> ElasticLaw<'_> {
         let normals = if self.is_axisymmetric { 3 } else { self.dimension };
-        let stiffness = &self.medium(origin).stiffness;
-        let axes = match stiffness {
-            Stiffness::Isotropic(_) => None,
-            Stiffness::General(matrices) => matrices.axes(|| place),
-        };
-        Law { normals, stiffness, axes }
+        ElasticLaw { normals, stiffness: &self.medium(origin).stiffness }
     }
 
     /// The largest stiffness against a strain of one component, in force per area.
@@ -385,14 +378,6 @@ impl ContinuumProblem {
 }
 
 impl Medium {
-    /// The point of the plane around which its axes turn, if they do.
-    pub fn turns_around(&self) -> Option<Point> {
-        match &self.stiffness {
-            Stiffness::Isotropic(_) => None,
-            Stiffness::General(matrices) => matrices.around.map(|line| line.point()),
-        }
-    }
-
     /// The stress without strain at a place.
     pub fn own_stress(&self, place: Point) -> Tensor {
         self.own_stress.map_or([0.0; 6], |own| own.map(|component| component.at(place)))
@@ -401,34 +386,27 @@ impl Medium {
 
 /// The law of stress and strain of a medium in the plane or in space. In the plane the components with z are zero.
 #[derive(Clone, Copy, Debug)]
-pub struct Law<'a> {
+pub struct ElasticLaw<'a> {
     /// Components on the diagonal of a tensor, 2 in the plane.
     normals: usize,
     stiffness: &'a Stiffness,
-    /// The axes of the stiffness, if they are not those of the coordinates.
-    axes: Option<[Point; 3]>,
 }
 
-impl Law<'_> {
-    /// Returns `true` for an entry of a tensor on the diagonal, if it exists in the plane or in space.
-    fn is_on_diagonal(&self, entry: usize) -> bool {
-        entry < self.normals
-    }
-
+impl ElasticLaw<'_> {
     /// The strain of a stress.
     pub fn compliance(&self, stress: Tensor) -> Tensor {
         let &Lame { lambda, mu } = match self.stiffness {
             Stiffness::Isotropic(lame) => lame,
             Stiffness::General(matrices) => {
-                let [xx, yy, zz, xy, yz, zx] = self.product(&matrices.compliance, local(&stress, &self.axes));
-                return back([xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0], &self.axes);
+                let [xx, yy, zz, xy, yz, zx] = self.product(&matrices.compliance, stress);
+                return [xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0];
             }
         };
         let count = self.normals as f64;
         let mean = stress.iter().take(self.normals).sum::<f64>() / count;
         // The parts are kept separate: near incompressibility their sum would lose digits.
         let volume = mean / (count * lambda + 2.0 * mu);
-        let of_entry = |entry: usize| match self.is_on_diagonal(entry) {
+        let of_entry = |entry: usize| match entry < self.normals {
             true => volume + (stress[entry] - mean) / (2.0 * mu),
             false => stress[entry] / (2.0 * mu),
         };
@@ -438,31 +416,24 @@ impl Law<'_> {
     pub fn stress(&self, strain: Tensor) -> Tensor {
         let &Lame { lambda, mu } = match self.stiffness {
             Stiffness::Isotropic(lame) => lame,
-            Stiffness::General(matrices) => {
-                let strain = engineering(&local(&strain, &self.axes));
-                return back(self.product(&matrices.stiffness, strain), &self.axes);
-            }
+            Stiffness::General(matrices) => return self.product(&matrices.stiffness, engineering(&strain)),
         };
         let count = self.normals as f64;
         let volume = strain.iter().take(self.normals).sum::<f64>() / count;
         let mean = (count * lambda + 2.0 * mu) * volume;
-        let of_entry = |entry: usize| match self.is_on_diagonal(entry) {
+        let of_entry = |entry: usize| match entry < self.normals {
             true => mean + 2.0 * mu * (strain[entry] - volume),
             false => 2.0 * mu * strain[entry],
         };
         std::array::from_fn(of_entry)
     }
 
-    /// The stress of that part of a strain whose energy contains a power of a radius: of the strain around an axis, or
-    /// of all where the axes turn.
+    /// The stress of the strain around an axis, whose energy contains a power of a radius.
     pub fn stress_over_radius(&self, strain: Tensor) -> Tensor {
-        match self.axes {
-            Some(_) => self.stress(strain),
-            None => [0.0, 0.0, self.stress([0.0, 0.0, strain[2], 0.0, 0.0, 0.0])[2], 0.0, 0.0, 0.0],
-        }
+        [0.0, 0.0, self.stress([0.0, 0.0, strain[2], 0.0, 0.0, 0.0])[2], 0.0, 0.0, 0.0]
     }
 
-    /// The product of two strains, per volume, of these parts.
+    /// The product of two such strains, per volume.
     pub fn over_radius(&self, strain: Tensor, other: Tensor) -> f64 {
         work(self.stress_over_radius(strain), other)
     }
@@ -538,7 +509,7 @@ mod tests {
         for (dimension, strain) in [(2, [0.25, -0.5, 0.0, 0.125, 0.0, 0.0]), (3, [0.25, -0.5, 0.75, 0.125, 0.5, -0.25])]
         {
             let material = filled(dimension, Lame { lambda: 3.0, mu: 0.5 }, [0.0; 3]);
-            let material = material.law(0, [0.0; 3]);
+            let material = material.law(0);
             let back = material.compliance(material.stress(strain));
             (0..6).for_each(|entry| assert!((back[entry] - strain[entry]).abs() < 1e-15, "{back:?}"));
             // sigma = lambda tr(eps) I + 2 mu eps.

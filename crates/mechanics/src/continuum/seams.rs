@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::fans::{Cut, Edge};
+use super::fans::{Cut, CutEdge};
 use super::problem::{Condition, ContinuumProblem};
 use super::simplex::{Point, size_of_facet};
 use crate::fem::geometry::{distance, dot, minus, shifted, sorted, unit};
@@ -79,7 +79,7 @@ impl Cut {
     fn cut_at_each_other(&mut self, one: &Facets, other: &Facets) -> Vec<Pair> {
         let edge = |facet: &Vec<usize>, nodes: &[Point]| {
             let [from, to] = [facet[0], facet[1]];
-            Edge { stops: vec![(0.0, from), (distance(nodes[from], nodes[to]), to)] }
+            CutEdge { stops: vec![(0.0, from), (distance(nodes[from], nodes[to]), to)] }
         };
         let [mut one, mut other] =
             [one, other].map(|side| side.iter().map(|facet| edge(facet, &self.cells.nodes)).collect::<Vec<_>>());

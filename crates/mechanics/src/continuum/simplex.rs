@@ -1,8 +1,7 @@
-//! A triangle in the plane or a tetrahedron in space, by its corners, and points of integration on it. The order of the
-//! corners does not matter: sizes are positive.
+//! A triangle in the plane or a tetrahedron in space, by its corners. The order of the corners does
+//! not matter: sizes are positive.
 
-use crate::fem::element::gauss_legendre;
-use crate::fem::geometry::{Symmetric, cross, distance, dot, length, minus};
+use crate::fem::geometry::{Symmetric, cross, distance, dot, key, length, minus};
 
 /// Coordinates or components `[x, y, z]`; in the plane z is zero.
 pub type Point = [f64; 3];
@@ -37,18 +36,14 @@ pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = us
     (0..=dimension).filter(move |&corner| corner != side)
 }
 
-/// The barycentric coordinates of points whose mean is that of a quadratic function over the simplex.
-pub fn quadratic_rule(dimension: usize) -> impl Iterator<Item = Weights> + Clone {
-    let corners = dimension + 1;
-    let others = (1.0 - 1.0 / (corners as f64 + 1.0).sqrt()) / corners as f64;
-    (0..corners).map(move |own| {
-        let weight = |corner: usize| match corner {
-            _ if corner == own => 1.0 - dimension as f64 * others,
-            _ if corner <= dimension => others,
-            _ => 0.0,
-        };
-        std::array::from_fn(weight)
-    })
+/// The number among these of the pair of two numbers.
+pub fn number_of_pair(count: usize, one: usize, other: usize) -> usize {
+    pairs(count).position(|pair| pair == key(one, other)).unwrap_or(0)
+}
+
+/// The barycentric coordinates of the centre.
+pub fn weights_of_centre(dimension: usize) -> Weights {
+    std::array::from_fn(|corner| if corner <= dimension { 1.0 / (dimension + 1) as f64 } else { 0.0 })
 }
 
 /// The length of an edge, or the area of a triangle in space.
@@ -137,7 +132,7 @@ impl Simplex {
 
     /// The point with these barycentric coordinates.
     pub fn at(&self, weights: Weights) -> Point {
-        [0, 1, 2].map(|axis| self.corners.iter().zip(weights).map(|(corner, weight)| weight * corner[axis]).sum())
+        mixed(&self.corners, &weights)
     }
 
     /// A stress on the simplex of the origin and the unit vectors, carried to this one: the map of Piola, which
@@ -149,6 +144,11 @@ impl Simplex {
         let entry = |i: usize, j: usize| dot(along(i), rows.map(|row| dot(row, along(j)))) / size;
         [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(2, 0)]
     }
+}
+
+/// The sum of points times their weights.
+pub fn mixed(points: &[Point], weights: &[f64]) -> Point {
+    [0, 1, 2].map(|axis| points.iter().zip(weights).map(|(point, weight)| weight * point[axis]).sum())
 }
 
 /// The traction of a stress on a surface with this normal.
@@ -171,67 +171,15 @@ pub fn middle(a: Tensor, b: Tensor) -> Tensor {
     std::array::from_fn(|entry| (a[entry] + b[entry]) / 2.0)
 }
 
-/// A point of integration on a simplex or on a facet.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample {
-    /// Its barycentric coordinates.
-    pub weights: Weights,
-    pub place: Point,
-    /// Its volume, or its area.
-    pub weight: f64,
-    /// What counts in addition, because a polynomial P stands for a power of a radius r: about an axis, for squares of
-    /// a hoop strain or of a stress, its volume times `r P(r) - 1`; where axes turn, for squares of any strain or
-    /// stress, its volume times `r^4 P(r^2)^2 - 1`.
-    pub extra: f64,
-}
-
-/// `x P(x) - 1 >= 0` for the polynomial `P(x) >= 1/x` between a and b with
-/// `1 - x P = (x - a) (x - b) prod (x - c)^2 / a b prod c^2`. `places` are those of the c, -1 at the smaller end and 1
-/// at the larger one.
-pub fn beyond(x: f64, [one, other]: [f64; 2], places: &[f64]) -> f64 {
-    let (low, high) = (one.min(other), one.max(other));
-    let ends = (x - low) / low * ((high - x) / high);
-    let middle = [low + high, high - low].map(|sum| sum / 2.0);
-    let zeros = places.iter().map(|place| middle[0] + middle[1] * place);
-    zeros.fold(ends.max(0.0), |product, zero| product * (x / zero - 1.0).powi(2))
-}
-
-/// The given number of Gauss points between 0 and 1, with their weights.
-pub fn line(points: usize) -> impl Iterator<Item = (f64, f64)> {
-    gauss_legendre(points).map(|(x, weight)| ((x + 1.0) / 2.0, weight / 2.0))
-}
-
-/// The given number of Gauss points along each side of the unit square, with their weights.
-pub fn square(points: usize) -> Vec<([f64; 2], f64)> {
-    line(points).flat_map(|(t, of_t)| line(points).map(move |(y, of_y)| ([t, y], of_t * of_y))).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::bodies::any_simplex;
     use super::*;
     use crate::fem::geometry::shifted;
 
-    /// A triangle and a tetrahedron.
-    fn simplices() -> [Simplex; 2] {
-        let plane = [[0.25, -0.5, 0.0], [2.0, 0.125, 0.0], [0.75, 1.5, 0.0]];
-        let space = [[0.25, -0.5, 0.1], [2.0, 0.125, -0.2], [0.75, 1.5, 0.3], [0.5, 0.4, 1.7]];
-        [Simplex::new(2, plane), Simplex::new(3, space)]
-    }
-
-    #[test]
-    fn the_rule_gives_the_mean_of_products_of_linear_functions() {
-        for dimension in [2, 3] {
-            for [i, j] in pairs(dimension + 1) {
-                let mean = quadratic_rule(dimension).map(|weights| weights[i] * weights[j]).sum::<f64>();
-                let exact = if i == j { 2.0 } else { 1.0 } / ((dimension + 1) * (dimension + 2)) as f64;
-                assert!((mean / (dimension + 1) as f64 - exact).abs() < 1e-16, "{dimension}: {i} {j}");
-            }
-        }
-    }
-
     #[test]
     fn normals_point_outwards_and_close_the_surface_and_parts_fill_the_simplex() {
-        for simplex in simplices() {
+        for simplex in [2, 3].map(any_simplex) {
             let count = simplex.dimension + 1;
             let mut sum = [0.0; 3];
             for corner in 0..count {

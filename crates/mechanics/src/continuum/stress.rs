@@ -8,12 +8,12 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::integration::samples_on_facet;
-use super::johnson_mercier::Element;
+use super::johnson_mercier::StressElement;
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
-use super::system::{Block, Numbers, Row, Unknowns, add_springs};
+use super::system::{Block, CellNumbers, FreeUnknowns, Row, add_springs};
 use crate::error::Error;
 use crate::fem::geometry::COORDINATES;
 use crate::fem::threads::each;
@@ -24,9 +24,9 @@ pub struct Stresses<'a> {
     pub problem: &'a ContinuumProblem,
     pub mesh: &'a SimplexMesh,
     /// The unknowns of each simplex: of its sides, of their corners, along the axes.
-    pub numbers: Numbers,
+    pub numbers: CellNumbers,
     /// The element of each simplex; congruent simplices have one together.
-    elements: Vec<Arc<Element>>,
+    elements: Vec<Arc<StressElement>>,
 }
 
 /// The place at which a contact row of the stress acts.
@@ -49,19 +49,19 @@ impl<'a> Stresses<'a> {
         // The corners of a side have the order of the nodes of the facet: both increase.
         let of_side = |&facet: &usize| of_facet * facet..of_facet * (facet + 1);
         let numbers = (0..mesh.count()).flat_map(|cell| mesh.sides(cell).iter().flat_map(of_side)).collect();
-        let numbers = Numbers::new((dimension + 1) * of_facet, numbers);
-        let mut known: HashMap<Congruence, Arc<Element>> = HashMap::new();
+        let numbers = CellNumbers::new((dimension + 1) * of_facet, numbers);
+        let mut known: HashMap<Congruence, Arc<StressElement>> = HashMap::new();
         let element = |cell: usize| {
             let simplex = mesh.simplex(cell);
             let (origin, bits) = (mesh.origins[cell], |point: Point| point.map(f64::to_bits));
             let medium = problem.medium(origin);
-            let depends = problem.is_axisymmetric || medium.own_stress.is_some() || medium.turns_around().is_some();
+            let depends = problem.is_axisymmetric || medium.own_stress.is_some();
             let place = depends.then(|| bits(simplex.corners()[0]));
             let congruence = (simplex.edges().map(bits), problem.medium_of[origin], place);
             if let Some(element) = known.get(&congruence) {
                 return Some(element.clone());
             }
-            let element = Arc::new(Element::new(problem, origin, &simplex)?);
+            let element = Arc::new(StressElement::new(problem, origin, &simplex)?);
             known.insert(congruence, element.clone());
             Some(element)
         };
@@ -89,12 +89,12 @@ impl<'a> Stresses<'a> {
     }
 
     /// The places at the corners of a facet.
-    fn on_facet(&self, outer: &OuterFacet) -> Vec<usize> {
+    pub fn on_facet(&self, outer: &OuterFacet) -> Vec<usize> {
         (0..self.mesh.dimension).map(|corner| self.place(outer.facet, corner)).collect()
     }
 
     /// The unknown displacements of facets: those on the axis of revolution are held.
-    pub fn unknowns(&self) -> Unknowns {
+    pub fn unknowns(&self) -> FreeUnknowns {
         // On the axis a stress times its radius does no work.
         let corners = (0..self.mesh.facet_count()).flat_map(|facet| {
             let corners = self.mesh.corners_of_facet(facet).into_iter().enumerate();
@@ -102,21 +102,18 @@ impl<'a> Stresses<'a> {
         });
         let on_axis = corners.filter(|&(_, at)| self.problem.is_on_axis(at));
         let held = on_axis.flat_map(|(place, _)| [0, 1].map(|axis| (place, COORDINATES[axis])));
-        Unknowns::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
+        FreeUnknowns::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
     }
 
-    /// The unknown travel of a pressed obstacle, behind the displacements of facets, with the cosine of its angle to
-    /// the normal; `None` without a force.
-    pub fn travel(&self, obstacle: usize) -> Option<(usize, f64)> {
-        let places = self.place(self.mesh.facet_count(), 0);
-        let share = self.problem.obstacles[obstacle].pressed?.cosine;
-        Some((self.mesh.dimension * places + self.problem.travel(obstacle)?, share))
+    /// Number of places on all facets.
+    pub fn place_count(&self) -> usize {
+        self.place(self.mesh.facet_count(), 0)
     }
 
     /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on
     /// the weighted means of the distance. A row that `may_touch` does not hold for, given its place and gap, is left
     /// out: there the stress has no pressure, which keeps it in balance.
-    pub fn rows(&self, unknowns: &Unknowns, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
+    pub fn rows(&self, unknowns: &FreeUnknowns, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
         for (on, obstacle) in self.problem.facing(self.mesh) {
             let facing = &self.problem.obstacles[obstacle];
@@ -129,11 +126,9 @@ impl<'a> Stresses<'a> {
                 let at = self.place(on.facet, corner);
                 let place = Place { on, corner, obstacle };
                 let other = self.opposite(&place).map(|(on, corner)| self.place(on.facet, corner));
-                let dimension = self.mesh.dimension;
-                let row = Row::of(at, dimension, facing.normal, gap)
-                    .with_other(other, dimension, facing.normal)
-                    .with_travel(self.travel(obstacle));
-                if !unknowns.of_row(&row).0.is_empty() && may_touch(&place, gap) {
+                let travel = self.problem.travel(obstacle, self.place_count());
+                let row = Row::new((at, other), self.mesh.dimension, facing.normal, travel, gap);
+                if !unknowns.of_terms(&row.terms).0.is_empty() && may_touch(&place, gap) {
                     rows.push(row);
                     places.push(place);
                 }
@@ -149,7 +144,7 @@ impl<'a> Stresses<'a> {
     }
 
     /// The unknowns of each simplex, with its element.
-    pub fn with_elements(&self) -> impl Iterator<Item = (&[usize], &Element)> + '_ {
+    pub fn with_elements(&self) -> impl Iterator<Item = (&[usize], &StressElement)> + '_ {
         self.numbers.iter().zip(&self.elements).map(|(numbers, element)| (numbers, &**element))
     }
 
@@ -170,7 +165,7 @@ impl<'a> Stresses<'a> {
 
     /// The work of loads and of the stress without strain with the unknowns.
     pub fn load(&self) -> Vec<f64> {
-        let mut load = vec![0.0; self.mesh.dimension * self.place(self.mesh.facet_count(), 0)];
+        let mut load = vec![0.0; self.mesh.dimension * self.place_count()];
         let has_load = |medium: &Medium| medium.own_stress.is_some() || medium.body_force != [0.0; 3];
         if self.problem.media.iter().any(has_load) {
             for (numbers, element) in self.with_elements() {
@@ -280,7 +275,7 @@ impl<'a> Stresses<'a> {
 
     /// The stress of each simplex under displacements of the facets.
     pub fn stresses(&self, displacement: &[f64]) -> Vec<PartStress> {
-        let stress = |(numbers, element): (&[usize], &Element)| {
+        let stress = |(numbers, element): (&[usize], &StressElement)| {
             element.stress(&numbers.iter().map(|&number| displacement[number]).collect::<Vec<_>>())
         };
         self.with_elements().map(stress).collect()

@@ -44,15 +44,15 @@ pub fn add_springs(
 
 /// The unknowns of the simplices, the same number for each.
 #[derive(Clone, Debug)]
-pub struct Numbers {
+pub struct CellNumbers {
     of_cell: usize,
     numbers: Vec<usize>,
 }
 
-impl Numbers {
+impl CellNumbers {
     /// The unknowns of all simplices one after another, `of_cell` of each.
     pub fn new(of_cell: usize, numbers: Vec<usize>) -> Self {
-        Numbers { of_cell, numbers }
+        CellNumbers { of_cell, numbers }
     }
 
     /// The unknowns of a simplex.
@@ -78,23 +78,20 @@ pub struct Row {
 }
 
 impl Row {
-    /// The bound on the displacement of a place along a normal.
-    pub fn of(place: usize, dimension: usize, normal: Point, gap: f64) -> Self {
-        let terms: Vec<_> = along(place, dimension, normal).collect();
-        Row { own: terms.len(), terms, gap }
-    }
-
-    /// The row less the displacement of a place of another body along the normal.
-    pub fn with_other(mut self, place: Option<usize>, dimension: usize, normal: Point) -> Self {
-        let other = place.into_iter().flat_map(|place| along(place, dimension, normal));
-        self.terms.extend(other.map(|(unknown, part)| (unknown, -part)));
-        self
-    }
-
-    /// The row with the travel of the obstacle towards the body, and the share of it that counts.
-    pub fn with_travel(mut self, travel: Option<(usize, f64)>) -> Self {
-        self.terms.extend(travel);
-        self
+    /// The bound on the displacement of a place along a normal, less that of a place of another body, with the travel
+    /// of the obstacle towards the body and the share of it that counts.
+    pub fn new(
+        (place, other): (usize, Option<usize>),
+        dimension: usize,
+        normal: Point,
+        travel: Option<(usize, f64)>,
+        gap: f64,
+    ) -> Self {
+        let mut terms: Vec<_> = along(place, dimension, normal).collect();
+        let own = terms.len();
+        let other = other.into_iter().flat_map(|place| along(place, dimension, normal));
+        terms.extend(other.map(|(unknown, part)| (unknown, -part)).chain(travel));
+        Row { terms, own, gap }
     }
 
     /// The place whose displacement it bounds.
@@ -116,7 +113,7 @@ fn along(place: usize, dimension: usize, vector: Point) -> impl Iterator<Item = 
 
 /// All unknowns as linear functions of the free ones.
 #[derive(Clone, Debug)]
-pub struct Unknowns {
+pub struct FreeUnknowns {
     /// How many are free.
     pub free: usize,
     /// How many of these, the first ones, belong to one place each.
@@ -169,7 +166,7 @@ impl Supported {
     }
 }
 
-impl Unknowns {
+impl FreeUnknowns {
     /// The unknowns of a mesh at these places; `fixed` are those of them that do not move along an axis, `on` gives the
     /// places on a facet.
     pub fn new(
@@ -212,7 +209,7 @@ impl Unknowns {
         }));
         let free = own + problem.loads_of_motions().len();
         let count = dimension * places.len() + free - own;
-        let mut unknowns = Unknowns {
+        let mut unknowns = FreeUnknowns {
             free,
             own,
             moves_rigidly: !problem.is_axisymmetric && own == free,
@@ -267,12 +264,8 @@ impl Unknowns {
         self.offset.len()
     }
 
-    /// The free unknowns of a row with their coefficients, and its prescribed part.
-    pub fn of_row(&self, row: &Row) -> (Vec<(usize, f64)>, f64) {
-        self.of_terms(&row.terms)
-    }
-
-    fn of_terms(&self, of_all: &[(usize, f64)]) -> (Vec<(usize, f64)>, f64) {
+    /// The free unknowns of terms with their coefficients, and their prescribed part.
+    pub fn of_terms(&self, of_all: &[(usize, f64)]) -> (Vec<(usize, f64)>, f64) {
         let (mut terms, mut prescribed) = (BTreeMap::new(), 0.0);
         for &(unknown, coefficient) in of_all {
             prescribed += coefficient * self.offset[unknown];
@@ -318,12 +311,8 @@ impl Unknowns {
         self.gathered_by(of_all, |part| part)
     }
 
-    /// The same sums with the absolute values of the coefficients.
-    pub fn gathered_sizes(&self, of_all: &[f64]) -> Vec<f64> {
-        self.gathered_by(of_all, f64::abs)
-    }
-
-    fn gathered_by(&self, of_all: &[f64], factor: impl Fn(f64) -> f64) -> Vec<f64> {
+    /// The same sums with a function of the coefficients.
+    pub fn gathered_by(&self, of_all: &[f64], factor: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut sums = vec![0.0; self.free];
         for (unknown, amount) in of_all.iter().enumerate() {
             self.terms(unknown).iter().for_each(|&(free, part)| sums[free as usize] += factor(part) * amount);
@@ -338,7 +327,7 @@ impl Unknowns {
         let mut held: BTreeMap<usize, (f64, Vec<(usize, f64)>)> = BTreeMap::new();
         for row in rows {
             let (own, coefficient) = self.own_term(row)?;
-            let others = self.of_row(row).0.into_iter().filter(|term| term.0 != own);
+            let others = self.of_terms(&row.terms).0.into_iter().filter(|term| term.0 != own);
             let given = (to / coefficient, others.map(|(free, part)| (free, -part / coefficient)).collect());
             let known = held.entry(own).or_insert_with(|| given.clone());
             if *known != given {
@@ -349,7 +338,7 @@ impl Unknowns {
         if others().any(|other| held.contains_key(&other.0)) {
             return None;
         }
-        let mut unknowns = Unknowns {
+        let mut unknowns = FreeUnknowns {
             free: self.free - held.len(),
             own: self.own - held.len(),
             moves_rigidly: self.moves_rigidly && others().next().is_none(),
@@ -393,7 +382,7 @@ impl Unknowns {
     pub fn problem(
         &self,
         dimension: usize,
-        numbers: &Numbers,
+        numbers: &CellNumbers,
         blocks: &[Block],
         load: &[f64],
         rows: &[Row],
@@ -428,7 +417,7 @@ impl Unknowns {
         let left: Vec<f64> = load.iter().zip(&lifted).map(|(load, lifted)| load - lifted).collect();
         let (mut contact, mut gap) = (Vec::new(), Vec::with_capacity(rows.len()));
         for (index, row) in rows.iter().enumerate() {
-            let (terms, prescribed) = self.of_row(row);
+            let (terms, prescribed) = self.of_terms(&row.terms);
             contact.extend(terms.into_iter().map(|(free, coefficient)| (index, free, coefficient)));
             gap.push(row.gap - prescribed);
         }
@@ -441,7 +430,7 @@ impl Unknowns {
     }
 
     /// Column starts and rows of the lower triangle in the free unknowns.
-    fn pattern(&self, numbers: &Numbers) -> (Vec<usize>, Vec<u32>) {
+    fn pattern(&self, numbers: &CellNumbers) -> (Vec<usize>, Vec<u32>) {
         let free = |cell: &[usize]| {
             let mut free: Vec<usize> = Vec::with_capacity(cell.len());
             cell.iter().for_each(|&unknown| free.extend(self.terms(unknown).iter().map(|term| term.0 as usize)));
@@ -496,7 +485,7 @@ mod tests {
         let displacements = Displacements::new(&problem, &mesh);
         let unknowns = displacements.unknowns();
         let outer = mesh.surface().find(|outer| outer.condition == 2).unwrap();
-        let row = Row::of(displacements.on_facet(&outer)[2], 2, normal, 0.0);
+        let row = Row::new((displacements.on_facet(&outer)[2], None), 2, normal, None, 0.0);
         assert_eq!(row.place(2), displacements.on_facet(&outer)[2]);
         let (own, coefficient) = unknowns.own_term(&row).unwrap();
         assert!((coefficient - 0.8).abs() < 1e-14, "{coefficient}");

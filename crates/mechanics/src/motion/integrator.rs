@@ -35,12 +35,6 @@ pub struct Integrator {
 impl Integrator {
     /// Prepares the motion of `problem` in steps of `step`; `settings` choose the method for the contact problem of a
     /// step.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting
-    /// out of its range, an initial penetration, a form of the mass that the scheme cannot use;
-    /// [`qp::LinearError::Numerical`] for a step beyond the stable one of an explicit scheme; the errors of
-    /// [`Prepared::new`](signorini_qp::Prepared::new).
     pub fn new(problem: DynamicProblem, scheme: Scheme, step: f64, settings: &Settings) -> Result<Self, Error> {
         if !(step.is_finite() && step > 0.0) {
             return Err(qp::LinearError::Setting { name: "step", value: step, allowed: "positive and finite" }.into());
@@ -54,7 +48,7 @@ impl Integrator {
             return Err(qp::LinearError::Setting { name: "initial penetration", value: penetration, allowed }.into());
         }
         let shift = problem.largest_shift();
-        if shift > 0.0 && !scheme.follows_obstacles() {
+        if shift > 0.0 && !scheme.about().follows_obstacles {
             let allowed = "zero: the scheme has obstacles at rest only";
             return Err(qp::LinearError::Setting { name: "shift of a contact row", value: shift, allowed }.into());
         }

@@ -32,7 +32,7 @@ mod step;
 pub use integrator::Integrator;
 pub(crate) use problem::between;
 pub use problem::{DynamicProblem, TimeFunction};
-pub(crate) use scheme::{MOST_IN_CONTACT, frequency_bound, stable_step};
+pub(crate) use scheme::{MOST_IN_CONTACT, frequency_bound};
 pub use scheme::{Scheme, SchemeSpec};
 pub(crate) use step::Balance;
 pub use step::{Observation, Parameter, State};

@@ -30,15 +30,11 @@ pub struct DynamicProblem {
     /// Forces on the free dofs from prescribed displacements, and the strain energy of these displacements.
     held: (Vec<f64>, f64),
     /// An upper bound on the largest angular frequency without damping.
-    frequency: Option<f64>,
+    pub(super) frequency: Option<f64>,
 }
 
 impl DynamicProblem {
     /// The motion from rest of the body of `statics`, under its constant load, with the mass M (n x n).
-    ///
-    /// # Errors
-    /// [`qp::LinearError::Shape`] for a mass of another size, [`qp::LinearError::Setting`] for a negative diagonal
-    /// entry.
     pub fn new(statics: ContactProblem, mass: SymmetricMatrix) -> Result<Self, Error> {
         let dofs = statics.dofs();
         if mass.dim() != dofs {
@@ -46,12 +42,8 @@ impl DynamicProblem {
             return Err(qp::LinearError::Shape { name: "mass", found, expected }.into());
         }
         if let Some(&value) = mass.diagonal().iter().find(|&&entry| entry < 0.0) {
-            return Err(qp::LinearError::Setting {
-                name: "diagonal entry of the mass",
-                value,
-                allowed: "zero or positive",
-            }
-            .into());
+            let (name, allowed) = ("diagonal entry of the mass", "zero or positive");
+            return Err(qp::LinearError::Setting { name, value, allowed }.into());
         }
         let zeros = vec![0.0; dofs];
         Ok(DynamicProblem {
@@ -117,10 +109,6 @@ impl DynamicProblem {
     /// `fox-goodwin` finds one itself if M is diagonal; without a bound it is of second order.
     pub fn bounded_by(self, frequency: f64) -> Self {
         DynamicProblem { frequency: Some(frequency), ..self }
-    }
-
-    pub(super) fn given_frequency(&self) -> Option<f64> {
-        self.frequency
     }
 
     /// The problem without inertia: stiffness, constant load, contact rows and gaps.
@@ -313,39 +301,30 @@ pub enum TimeFunction {
 impl TimeFunction {
     /// Checks that the numbers are finite and the times in order.
     pub fn check(&self) -> Result<(), Error> {
-        let fail = |name, value, allowed| Err(qp::LinearError::Setting { name, value, allowed }.into());
-        match self {
+        // Each number with its name, whether it is allowed, and what is.
+        let numbers: Vec<(&'static str, f64, bool, &'static str)> = match self {
+            TimeFunction::Table(points) if points.is_empty() => vec![("number of times", 0.0, false, "at least 1")],
             TimeFunction::Table(points) => {
-                if points.is_empty() {
-                    return fail("number of times", 0.0, "at least 1");
-                }
-                for (index, &(time, factor)) in points.iter().enumerate() {
-                    if !time.is_finite() || index > 0 && time <= points[index - 1].0 {
-                        return fail("time of a table", time, "finite and later than the one before it");
-                    }
-                    if !factor.is_finite() {
-                        return fail("factor of a table", factor, "finite");
-                    }
-                }
+                let of_point = |(index, &(time, factor)): (usize, &(f64, f64))| {
+                    let is_later = time.is_finite() && (index == 0 || time > points[index - 1].0);
+                    let time = ("time of a table", time, is_later, "finite and later than the one before it");
+                    [time, ("factor of a table", factor, factor.is_finite(), "finite")]
+                };
+                points.iter().enumerate().flat_map(of_point).collect()
             }
-            &TimeFunction::Sine { frequency, phase } => {
-                if !(frequency.is_finite() && frequency > 0.0) {
-                    return fail("frequency", frequency, "positive and finite");
-                }
-                if !phase.is_finite() {
-                    return fail("phase", phase, "finite");
-                }
-            }
-            &TimeFunction::Ramp { start, end } | &TimeFunction::Pulse { start, end } => {
-                if !start.is_finite() {
-                    return fail("start", start, "finite");
-                }
-                if !(end.is_finite() && end > start) {
-                    return fail("end", end, "finite and later than the start");
-                }
-            }
+            &TimeFunction::Sine { frequency, phase } => vec![
+                ("frequency", frequency, frequency.is_finite() && frequency > 0.0, "positive and finite"),
+                ("phase", phase, phase.is_finite(), "finite"),
+            ],
+            &TimeFunction::Ramp { start, end } | &TimeFunction::Pulse { start, end } => vec![
+                ("start", start, start.is_finite(), "finite"),
+                ("end", end, end.is_finite() && end > start, "finite and later than the start"),
+            ],
+        };
+        match numbers.into_iter().find(|number| !number.2) {
+            Some((name, value, _, allowed)) => Err(qp::LinearError::Setting { name, value, allowed }.into()),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The factor at time `t`.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SymmetricMatrix, dot};
 
 /// The description of a scheme.
-pub struct About {
+pub struct AboutScheme {
     /// Its name in scenes and reports.
     pub name: &'static str,
     /// Its parameter, if it has one.
@@ -34,8 +34,7 @@ pub struct About {
     pub is_exact_in_bars: bool,
     /// The forms of the mass with which its energy grows whenever bodies touch.
     pub unstable_in_contact: &'static [MassForm],
-    /// Prepares a motion in steps of one length, with the value of the parameter.
-    pub prepare: Prepare,
+    pub(super) prepare: Prepare,
 }
 
 /// Prepares the steps of a scheme: the motion, the step, the parameter, the settings of the contact problem of a step.
@@ -120,11 +119,6 @@ impl Stepping {
         let statics = problem.statics();
         let (contact, gap) = (statics.contact().clone(), statics.gap().to_vec());
         Self::new(&ContactProblem::new(matrix, vec![0.0; statics.dofs()], contact, gap)?, settings)
-    }
-
-    /// Factorises the mass of a motion, for initial accelerations, projected predictions and impulses.
-    pub fn of_mass(problem: &DynamicProblem, settings: &Settings) -> Result<Self, Error> {
-        Self::of(problem, problem.mass().clone(), settings)
     }
 
     /// Factorises the matrix of `problem`; its load and gaps only determine which rows exist.

@@ -4,8 +4,9 @@ use serde::Serialize;
 use signorini_qp as qp;
 
 use super::summary::Status;
+use super::tradeoff::{energy_norm, relative};
 use crate::error::Error;
-use signorini_qp::{ContactProblem, Method, Settings, Solution, dot, largest, solve};
+use signorini_qp::{ContactProblem, Method, Settings, Solution, largest, solve};
 
 /// Two exact methods must agree in the displacement to this share of its largest entry: both end with a linear solve,
 /// and the condition number of the stiffness may amplify its rounding a millionfold.
@@ -111,8 +112,6 @@ pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparis
 
 fn difference(problem: &ContactProblem, answer: &Solution, reference: &Solution) -> Difference {
     let minus = |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a - b).collect() };
-    let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
-    let energy_norm = |u: &[f64]| dot(u, &problem.stiffness().mul(u)).max(0.0).sqrt();
     let (u, lambda) = (&reference.displacement, &reference.multiplier);
     let moved = minus(&answer.displacement, u);
     let violation = problem.violation(u);
@@ -124,6 +123,6 @@ fn difference(problem: &ContactProblem, answer: &Solution, reference: &Solution)
         displacement: relative(largest(&moved), largest(u)),
         multiplier: relative(largest(&minus(&answer.multiplier, lambda)), strongest),
         rows: (0..problem.rows()).filter(|&row| differs(row) && !is_weak(row)).count(),
-        energy: relative(energy_norm(&moved), energy_norm(&answer.displacement)),
+        energy: relative(energy_norm(problem, &moved), energy_norm(problem, &answer.displacement)),
     }
 }

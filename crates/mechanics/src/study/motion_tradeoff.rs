@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use super::motion::MotionSummary;
+use super::tradeoff::{Tradeoff, relative};
 use crate::error::Error;
 use crate::motion::{Integrator, SchemeSpec};
 use crate::scene::input::schema::AnalysisSpec;
@@ -72,8 +73,8 @@ impl MotionTradeoff {
         let quarter = own.steps.div_ceil(4 * SAMPLES).max(1);
         let of = |scheme, steps: usize| with(scene, &model, scheme, Some(steps));
         let reference = run(of(SchemeSpec::default(), SAMPLES * quarter * REFERENCE)?, settings)?;
-        let mut runs = Vec::new();
-        let follows = |scheme: &SchemeSpec| !own.has_moving_obstacles() || scheme.with(None).follows_obstacles();
+        let (mut runs, impulse) = (Vec::new(), reference.summary.contact.impulse);
+        let follows = |scheme: &SchemeSpec| !own.has_moving_obstacles() || scheme.with(None).about().follows_obstacles;
         for scheme in SchemeSpec::ALL.into_iter().filter(follows) {
             let counts: Vec<usize> = if scheme.is_explicit() {
                 let fewest = with(scene, &model, scheme, None)?.steps.div_ceil(SAMPLES);
@@ -98,9 +99,9 @@ impl MotionTradeoff {
                 steps,
                 seconds: found.seconds,
                 displacement_error: found.error(&reference),
-                impulse_error: relative(found.impulse - reference.impulse, reference.impulse),
-                energy_change: found.energy_change,
-                penetration: found.penetration,
+                impulse_error: relative(found.summary.contact.impulse - impulse, impulse),
+                energy_change: found.summary.energy_change(),
+                penetration: found.summary.penetration_max,
                 best: false,
             });
         }
@@ -108,7 +109,7 @@ impl MotionTradeoff {
             return Err(qp::Error::Interrupted.into());
         }
         let costs: Vec<[f64; 2]> = points.iter().map(|point| [point.seconds, point.displacement_error]).collect();
-        points.iter_mut().zip(on_front(&costs)).for_each(|(point, best)| point.best = best);
+        points.iter_mut().zip(Tradeoff::on_front(&costs)).for_each(|(point, best)| point.best = best);
         let steps = SAMPLES * quarter * REFERENCE;
         let duration = own.step * own.steps as f64;
         Ok(MotionTradeoff { dofs: model.problem().dofs(), reference_step: duration / steps as f64, points })
@@ -116,17 +117,15 @@ impl MotionTradeoff {
 }
 
 #[derive(Default)]
-struct Run {
+struct SampledMotion {
     seconds: f64,
     samples: Vec<Vec<f64>>,
     first: Vec<f64>,
-    impulse: f64,
-    energy_change: f64,
-    penetration: f64,
+    summary: MotionSummary,
 }
 
-impl Run {
-    fn error(&self, reference: &Run) -> f64 {
+impl SampledMotion {
+    fn error(&self, reference: &SampledMotion) -> f64 {
         if self.samples.len() != reference.samples.len() {
             return f64::INFINITY;
         }
@@ -137,16 +136,12 @@ impl Run {
     }
 }
 
-fn relative(value: f64, scale: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { (value / scale).abs() }
-}
-
-fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
+fn run(dynamics: Dynamics, settings: &Settings) -> Result<SampledMotion, Error> {
     let clock = Instant::now();
     let Dynamics { problem, scheme, step, steps, windows, .. } = dynamics;
     let first = problem.displacement().to_vec();
     let mut integrator = Integrator::new(problem, scheme, step, settings)?;
-    let mut summary = super::MotionSummary::starting(&integrator.observe(), 0, windows, step);
+    let mut summary = MotionSummary::starting(&integrator.observe(), 0, windows, step);
     let mut samples = Vec::with_capacity(SAMPLES);
     for number in 1..=steps {
         integrator.advance()?;
@@ -155,14 +150,7 @@ fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
             samples.push(integrator.state().displacement.clone());
         }
     }
-    Ok(Run {
-        seconds: clock.elapsed().as_secs_f64(),
-        samples,
-        first,
-        impulse: summary.contact.impulse,
-        energy_change: summary.energy_change(),
-        penetration: summary.penetration_max,
-    })
+    Ok(SampledMotion { seconds: clock.elapsed().as_secs_f64(), samples, first, summary })
 }
 
 /// The motion of the scene by a scheme with its own form of the mass, in this number of steps or in the default number.
@@ -182,13 +170,6 @@ fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: Option<usize>) 
 
 fn still() -> Error {
     Error::Scene { path: "analysis".into(), message: "the scene does not move".into() }
-}
-
-/// Returns for each point whether it is on the front: no other point is as small in both of its costs, and smaller in
-/// one.
-pub(super) fn on_front(points: &[[f64; 2]]) -> Vec<bool> {
-    let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
-    points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
 }
 
 /// A peak that changes by more than this share on the finer mesh is not resolved.
@@ -244,7 +225,6 @@ fn summary_of(scene: &Scene, step: f64, known: f64, settings: &Settings) -> Resu
         (spec.step, spec.courant) = (Some(step), None);
     }
     let model = scene.build()?;
-    let still = || Error::Scene { path: "analysis".into(), message: "the scene does not move".into() };
     let dynamics = scene.dynamics(&model)?.ok_or_else(still)?;
     if dynamics.step == known {
         return Ok(None);
@@ -261,15 +241,4 @@ fn summary_of(scene: &Scene, step: f64, known: f64, settings: &Settings) -> Resu
         summary.add(&model.of_whole(integrator.observe()), &[]);
     }
     Ok(Some(summary))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::on_front;
-
-    #[test]
-    fn a_point_is_on_the_front_unless_another_is_as_small_in_both_costs_and_smaller_in_one() {
-        let points = [[1.0, 4.0], [2.0, 4.0], [2.0, 3.0], [2.0, 3.0], [3.0, 3.5], [4.0, 1.0]];
-        assert_eq!(on_front(&points), [true, false, true, true, false, true]);
-    }
 }

@@ -1,17 +1,19 @@
-//! Answers to a scene: its summary, and sweeps over gaps and forces; a problem that moves to another end.
+//! Answers to a scene: its summary, and sweeps over gaps and forces with the exact path between gaps; a problem that
+//! moves to another end.
 
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::kept_answers::{ExactPath, KeptAnswers, points};
 use super::summary::{LargestDisplacement, OF_MESHED_PART, Status, contact_on_obstacles};
 use super::warnings::{BEYOND, check_approach, check_deformation, initial_overlap, of_scene, point_support};
 use super::{ModelSize, Summary};
+use crate::bytes;
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::scene::{Answer, ContactExtent, Model, Warning};
 use serde::Serialize;
-use signorini_qp::{ContactProblem, ContactSet, Goal, Prepared, Settings, Solution, Start, solve};
+use signorini_qp as qp;
+use signorini_qp::{ContactProblem, ContactSet, Goal, Path, Prepared, Settings, Solution, Start, solve};
 
 /// Gaps at the middle that differ by more than this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT_LINE: f64 = 1e-12;
@@ -23,7 +25,7 @@ const SAME: f64 = 1e-9;
 impl Summary {
     /// The numbers of `solution` to a problem without a scene.
     pub fn of_problem(
-        problem: &signorini_qp::ContactProblem,
+        problem: &ContactProblem,
         solution: Solution,
         goal: impl Into<Goal>,
         assemble_seconds: f64,
@@ -34,9 +36,7 @@ impl Summary {
         summary.warnings.extend(of_rows.chain(warning));
         summary
     }
-}
 
-impl Summary {
     /// The numbers of `solution`, the solution behind `answer`: with pressures, the width of the contact, and the
     /// balance of all forces.
     ///
@@ -96,7 +96,7 @@ impl Summary {
 /// The component of the displacement with the largest magnitude; of several that agree up to rounding, the first.
 fn largest_displacement(answer: &Answer) -> Option<LargestDisplacement> {
     let (mesh, values) = (answer.model().mesh(), answer.displacement());
-    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let largest = signorini_qp::largest(values);
     let number = values.iter().position(|value| value.abs() >= (1.0 - SAME) * largest)?;
     let (node, axis) = (number / mesh.dimension(), number % mesh.dimension());
     let place = mesh.nodes().get(node)?[..mesh.dimension()].to_vec();
@@ -226,7 +226,7 @@ impl Sweep {
     /// An interrupted sweep holds the gaps that were solved before, and nothing in between.
     ///
     /// # Errors
-    /// As [`Model::with_gap`] and [`solve`]; [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no gap was
+    /// As [`Model::with_gap`] and [`solve`]; [`qp::Error::Interrupted`] if no gap was
     /// solved.
     pub fn over_gaps(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Self, Error> {
         let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else { return Ok(Sweep::default()) };
@@ -264,7 +264,7 @@ impl Sweep {
     ///
     /// # Errors
     /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite; as
-    /// [`solve`]; [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no force was solved.
+    /// [`solve`]; [`qp::Error::Interrupted`] if no force was solved.
     pub fn over_forces(model: &Model, forces: &[f64], settings: &Settings) -> Result<Self, Error> {
         if forces.is_empty() {
             return Ok(Sweep::default());
@@ -377,7 +377,7 @@ impl ProblemSweep {
     /// interrupted sweep holds the points that were solved before.
     ///
     /// # Errors
-    /// As [`solve`](signorini_qp::solve()); [`qp::Error::Interrupted`](signorini_qp::Error::Interrupted) if no point
+    /// As [`solve`](signorini_qp::solve()); [`qp::Error::Interrupted`] if no point
     /// was solved.
     pub fn of(first: &ContactProblem, last: &ContactProblem, count: usize, settings: &Settings) -> Result<Self, Error> {
         let kept = KeptAnswers::of(count, first.dofs(), settings);
@@ -404,5 +404,152 @@ impl ProblemSweep {
             events.map(|event| ProblemEvent { t: event.at, row: event.row, touches: event.touches }).collect()
         });
         Ok(ProblemSweep { points, events })
+    }
+}
+
+/// The points of a sweep at all `values` of the quantity `name`: `solved_at` a value gives the solution, started from
+/// the last one, with what else `point` needs. An answer that is not certified counts as an answer. An interrupted
+/// sweep holds the points before.
+fn points<T, P>(
+    name: &'static str,
+    values: &[f64],
+    settings: &Settings,
+    solved_at: impl Fn(f64, Start) -> Result<(T, Result<Solution, Error>), Error>,
+    point: impl Fn(f64, T, Solution) -> Result<P, Error>,
+) -> Result<Vec<P>, Error> {
+    let (mut points, mut known) = (Vec::with_capacity(values.len()), Start::default());
+    for (index, &value) in values.iter().enumerate() {
+        settings.watch.part(name, index + 1, values.len());
+        let (of_value, solved) = solved_at(value, known)?;
+        let solution = match solved {
+            Ok(solution) => solution,
+            // An interrupted solve is no answer to this value.
+            Err(_) if settings.watch.acknowledge() => break,
+            Err(Error::Qp(qp::Error::NotCertified { solution, .. })) => *solution,
+            Err(error) => return Err(error),
+        };
+        known = Start::from(&solution);
+        points.push(point(value, of_value, solution)?);
+        if settings.watch.acknowledge() {
+            break;
+        }
+    }
+    if points.is_empty() { Err(qp::Error::Interrupted.into()) } else { Ok(points) }
+}
+
+/// The answers that a sweep keeps until its report: they leave less of the allowed memory to each solve.
+struct KeptAnswers {
+    count: usize,
+    dofs: usize,
+    /// The allowed memory, in bytes; `None` if there is no limit.
+    allowed: Option<f64>,
+}
+
+impl KeptAnswers {
+    /// `count` answers with `dofs` unknowns each.
+    fn of(count: usize, dofs: usize, settings: &Settings) -> Self {
+        KeptAnswers { count, dofs, allowed: settings.memory }
+    }
+
+    fn bytes(&self) -> f64 {
+        bytes::of_answers(self.count as f64, self.dofs as f64)
+    }
+
+    fn settings(&self, settings: &Settings) -> Settings {
+        match self.allowed {
+            Some(allowed) => settings.clone().with_memory((allowed - self.bytes()).max(1.0)),
+            None => settings.clone(),
+        }
+    }
+
+    /// The error of a solve under these settings, with the limit that was set: the answers are the reason if the solve
+    /// alone fits.
+    fn explain(&self, error: Error) -> Error {
+        let Some(allowed) = self.allowed else { return error };
+        let of_answers = |solve: f64| {
+            let (count, dofs, kept) = (self.count, self.dofs, self.bytes());
+            Error::TooManyAnswers { count, dofs, kept, solve, allowed }
+        };
+        match error {
+            Error::Qp(qp::Error::TooLarge { bytes, .. }) if bytes <= allowed => of_answers(bytes),
+            Error::Qp(qp::Error::NoRoom { factor, multigrid, .. }) if factor.min(multigrid) <= allowed => {
+                of_answers(factor.min(multigrid))
+            }
+            Error::Qp(qp::Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, .. }) => {
+                qp::Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }.into()
+            }
+            Error::Qp(qp::Error::NoRoom { factor, multigrid, ended, .. }) => {
+                qp::Error::NoRoom { factor, multigrid, allowed, ended }.into()
+            }
+            error => error,
+        }
+    }
+}
+
+/// Two corners closer than this are one, as shares of the path.
+const SAME_PLACE: f64 = 1e-13;
+
+/// The exact changes of a scene from one gap to another: between two corners everything is linear in the gap.
+#[derive(Clone, Debug)]
+pub struct ExactPath {
+    /// The path between the first gap and the last.
+    pub path: Path,
+    /// The scene at the first gap.
+    model: Model,
+    first: f64,
+    last: f64,
+}
+
+impl ExactPath {
+    /// The `path` of the rows of `model`, which has the gap `first`, to the gap `last`.
+    pub fn new(path: Path, model: Model, last: f64) -> Self {
+        let first = model.gap();
+        ExactPath { path, model, first, last }
+    }
+
+    /// The scene-wide gap at a share of the path.
+    pub fn gap(&self, share: f64) -> f64 {
+        (1.0 - share) * self.first + share * self.last
+    }
+
+    /// Number of stretches on which the contact set does not change.
+    pub fn pieces(&self) -> usize {
+        self.path.pieces().len()
+    }
+
+    /// The two ends of a stretch, its start before its end, as shares of the path: dimensionless, in `[0, 1]`.
+    pub fn ends(&self, piece: usize) -> [f64; 2] {
+        [self.path.pieces()[piece].from, self.path.pieces()[piece].to]
+    }
+
+    /// The closed rows on a stretch.
+    pub fn contact_set(&self, piece: usize) -> ContactSet {
+        self.path.contact_set_on(&self.path.pieces()[piece])
+    }
+
+    /// The multipliers at both ends of a stretch, one per row, in force, `<= 0`.
+    pub fn multipliers(&self, piece: usize) -> [Vec<f64>; 2] {
+        self.ends(piece).map(|share| self.path.multiplier_on(&self.path.pieces()[piece], share))
+    }
+
+    /// The pressures of all rows at both ends of a stretch, in force per area.
+    pub fn pressures(&self, piece: usize) -> Result<[Vec<f64>; 2], Error> {
+        let [from, to] = self.multipliers(piece);
+        Ok([self.model.pressure(&from)?, self.model.pressure(&to)?])
+    }
+
+    /// The start, every event and the end in this order, as shares of the path, dimensionless.
+    pub fn corners(&self) -> Vec<f64> {
+        let mut corners = self.path.corners();
+        corners.dedup_by(|next, last| (*next - *last).abs() <= SAME_PLACE);
+        corners
+    }
+
+    /// The answer at a share of the path, without its own certificate.
+    pub fn answer(&self, share: f64) -> Result<Answer, Error> {
+        let model = Arc::new(self.model.with_gap(self.gap(share))?);
+        let (displacement, multiplier) = (self.path.displacement(share)?, self.path.multiplier(share));
+        let multiplier = [multiplier, self.path.equality_multiplier(share)].concat();
+        Answer::new(model, &displacement, &multiplier, &self.path.contact_set(share))
     }
 }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::motion_tradeoff::on_front;
 use super::warnings::check_approach;
 use crate::error::Error;
 use crate::scene::{Answer, Scene};
@@ -188,26 +187,15 @@ impl Tradeoff {
         }
         result.advised()
     }
-}
 
-impl TradeoffMesh {
-    fn of(problem: &ContactProblem, divided_by: usize) -> Self {
-        let (dofs, contact_rows) = (problem.dofs(), problem.inequalities());
-        TradeoffMesh { divided_by, dofs, contact_rows, discretisation_error: None }
-    }
-}
-
-impl Tradeoff {
     /// Returns for each point, given by its two costs `[time, error]` in any unit, whether it is on the front: no other
     /// point is as small in both of its costs, and smaller in one. In the order of the points.
     pub fn on_front(costs: &[[f64; 2]]) -> Vec<bool> {
-        on_front(costs)
+        let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
+        costs.iter().map(|cost| !costs.iter().any(|other| beats(other, cost))).collect()
     }
 
     /// Solves a problem given as matrices by all methods: algebraic errors only.
-    ///
-    /// # Errors
-    /// As [`solve`]; [`qp::Error::Interrupted`] if no point was measured.
     pub fn of_problem(problem: &ContactProblem, grid: &TradeoffGrid, watch: &Watch) -> Result<Self, Error> {
         let mut result = Tradeoff::new(grid);
         Measured { problem, peak: &|_| Ok(None), mesh: 0 }.all(grid, watch, &mut result.points)?;
@@ -237,7 +225,13 @@ impl Tradeoff {
     }
 }
 
-/// The problem of one mesh.
+impl TradeoffMesh {
+    fn of(problem: &ContactProblem, divided_by: usize) -> Self {
+        let (dofs, contact_rows) = (problem.dofs(), problem.inequalities());
+        TradeoffMesh { divided_by, dofs, contact_rows, discretisation_error: None }
+    }
+}
+
 struct Measured<'a> {
     problem: &'a ContactProblem,
     /// The largest pressure of an answer, if there are areas.
@@ -273,10 +267,9 @@ impl Measured<'_> {
     }
 
     /// The time of an answer, and its errors against the exact one.
-    fn point(&self, way: &Way, timed: &Timed, exact: &Solution) -> Result<TradeoffPoint, Error> {
+    fn point(&self, way: &Trial, timed: &Timed, exact: &Solution) -> Result<TradeoffPoint, Error> {
         let Timed { solution, seconds, second } = timed;
-        let norm = |u: &[f64]| dot(u, &self.problem.stiffness().mul(u)).max(0.0).sqrt();
-        let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { (value / scale).abs() };
+        let norm = |u: &[f64]| energy_norm(self.problem, u);
         let away: Vec<f64> = solution.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
         let force = exact.contact_force();
         let pressure_error =
@@ -302,15 +295,24 @@ impl Measured<'_> {
     }
 }
 
+/// The size of a number beside a scale; zero beside any is zero.
+pub(super) fn relative(value: f64, scale: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { (value / scale).abs() }
+}
+
+pub(super) fn energy_norm(problem: &ContactProblem, u: &[f64]) -> f64 {
+    dot(u, &problem.stiffness().mul(u)).max(0.0).sqrt()
+}
+
 /// One way to an answer: a method with its settings.
-struct Way {
+struct Trial {
     method: &'static str,
     knob: Option<f64>,
     settings: Settings,
 }
 
 /// Every way to an answer with this condensation.
-fn ways(condense: Condense) -> Vec<Way> {
+fn ways(condense: Condense) -> Vec<Trial> {
     let base = |method| Settings::with_method(method).with_condensation(condense);
     let mut ways = Vec::new();
     for (method, polish) in [("qp", false), (POLISHED, true)] {
@@ -319,21 +321,21 @@ fn ways(condense: Condense) -> Vec<Way> {
             // A loose answer is judged only by its own tolerance: otherwise it would be refined again, and the time
             // would count.
             let settings = if polish { settings } else { settings.without_tolerance() };
-            ways.push(Way { method, knob: Some(tolerance), settings });
+            ways.push(Trial { method, knob: Some(tolerance), settings });
         }
     }
-    ways.push(Way { method: "active-set", knob: None, settings: base(Method::ActiveSet) });
+    ways.push(Trial { method: "active-set", knob: None, settings: base(Method::ActiveSet) });
     for last in PENALTIES {
         let ladder = Penalty { last, penetration_threshold: 0.0, ..Penalty::default() };
         let settings = base(Method::Penalty(ladder)).without_tolerance();
-        ways.push(Way { method: "penalty", knob: Some(last), settings });
+        ways.push(Trial { method: "penalty", knob: Some(last), settings });
     }
     ways
 }
 
 /// Multigrid to each of its accuracies, on all dofs.
-fn multigrid_ways() -> Vec<Way> {
-    let way = |accuracy| Way {
+fn multigrid_ways() -> Vec<Trial> {
+    let way = |accuracy| Trial {
         method: Method::Mprgp.name(),
         knob: Some(accuracy),
         settings: Settings::with_method(Method::Mprgp).with_accuracy(accuracy).with_condensation(Condense::Never),
@@ -352,8 +354,8 @@ struct Timed {
 /// again, so that other work on the machine affects them equally.
 ///
 /// The answer is `None` if multigrid cannot solve the problem, or if `watch` was asked to stop before the way was run.
-fn timed(problem: &ContactProblem, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<Timed>>, Error> {
-    let run = |number: usize, way: &Way| {
+fn timed(problem: &ContactProblem, ways: &[Trial], runs: usize, watch: &Watch) -> Result<Vec<Option<Timed>>, Error> {
+    let run = |number: usize, way: &Trial| {
         if watch.acknowledge() {
             return Ok(None);
         }
@@ -403,7 +405,7 @@ impl TradeoffPoint {
 fn mark_best(points: &mut [TradeoffPoint]) {
     for of_mesh in points.chunk_by_mut(|a, b| a.mesh == b.mesh) {
         let costs: Vec<[f64; 2]> = of_mesh.iter().map(|point| [point.seconds, point.error_above_rounding()]).collect();
-        of_mesh.iter_mut().zip(on_front(&costs)).for_each(|(point, best)| point.best = best);
+        of_mesh.iter_mut().zip(Tradeoff::on_front(&costs)).for_each(|(point, best)| point.best = best);
     }
 }
 
@@ -461,4 +463,15 @@ fn advice_of_meshes(points: &[TradeoffPoint]) -> Vec<Advice> {
         ..Advice::default()
     });
     of_errors.chain(of_budgets).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Tradeoff;
+
+    #[test]
+    fn a_point_is_on_the_front_unless_another_is_as_small_in_both_costs_and_smaller_in_one() {
+        let points = [[1.0, 4.0], [2.0, 4.0], [2.0, 3.0], [2.0, 3.0], [3.0, 3.5], [4.0, 1.0]];
+        assert_eq!(Tradeoff::on_front(&points), [true, false, true, true, false, true]);
+    }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::Error;
-use crate::fem::geometry::{along_axis, dot};
+use crate::fem::geometry::{along_axis, dot, plus};
 use crate::scene::answers::deformation;
 use crate::scene::input::warning::NONLINEAR;
 use crate::scene::models::overlap::Overlap;
@@ -140,7 +140,7 @@ fn softly_held(answer: &Answer) -> Vec<Warning> {
         .iter()
         .filter_map(|row| Some((model.rows().get(row)?, *answer.multiplier().get(row)?)))
         .collect();
-    let largest = displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let largest = largest(displacement);
     let visible = model
         .soft_motions(displacement, &closed)
         .unwrap_or_default()
@@ -239,17 +239,21 @@ fn loaded_rows<'a>(model: &'a Model, multiplier: &[f64]) -> Vec<&'a ContactRow> 
     rows().filter(|(row, lambda)| -**lambda > least(row)).map(|(row, _)| row).collect()
 }
 
+/// The row with a force whose direction deviates most from the outward normal, and the cosine of their angle.
+fn most_aside<'a>(model: &'a Model, multiplier: &[f64]) -> Option<(&'a ContactRow, f64)> {
+    let rows = loaded_rows(model, multiplier).into_iter().map(|row| (row, dot(row.normal, row.outward)));
+    rows.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
 /// Warns that rows with force deviate from the boundary's normals.
 fn across_approach(answer: &Answer) -> Option<Warning> {
-    let loaded = loaded_rows(answer.model(), answer.multiplier());
-    let lean = |row: &ContactRow| dot(row.normal, row.outward);
-    let row = loaded.into_iter().min_by(|a, b| lean(a).total_cmp(&lean(b))).filter(|row| lean(row) < ASIDE)?;
+    let (row, cosine) = most_aside(answer.model(), answer.multiplier()).filter(|row| row.1 < ASIDE)?;
     let message = format!(
         "at {} the direction into obstacles[{}] and the outward normal of the body make an angle of {:.0} degrees, and the node carries \
          force: the obstacle drags the boundary along itself; name the boundary that faces the obstacle, or turn `approach`",
         answer.model().node_in_words(row.node),
         row.obstacle,
-        lean(row).clamp(-1.0, 1.0).acos().to_degrees()
+        cosine.clamp(-1.0, 1.0).acos().to_degrees()
     );
     Some(Warning { code: "across-approach", message })
 }
@@ -268,7 +272,7 @@ fn between_nodes(answer: &Answer) -> Option<Warning> {
         };
         for cell in boundary.facets().flat_map(|facet| boundary.kind.straight_cells(facet)) {
             let mean = |of: &dyn Fn(usize) -> [f64; 3]| {
-                let sum = cell.iter().fold([0.0; 3], |sum, &node| [0, 1, 2].map(|axis| sum[axis] + of(node)[axis]));
+                let sum = cell.iter().fold([0.0; 3], |sum, &node| plus(sum, of(node)));
                 sum.map(|part| part / cell.len() as f64)
             };
             let at = mean(&|node| nodes[node]);
@@ -342,7 +346,7 @@ fn leaning_normals(answer: &Answer) -> Option<Warning> {
             (0..).zip(obstacle.candidates()).map(|(at, &(node, _))| (node, at)).collect();
         for row in loaded.iter().filter(|row| row.obstacle == index) {
             // At a corner of the surface every normal between those of both sides is allowed.
-            let beside = shifts.iter().map(|shift| [0, 1, 2].map(|axis| nodes[row.node][axis] + shift[axis]));
+            let beside = shifts.iter().map(|&shift| plus(nodes[row.node], shift));
             let normals = beside.filter_map(|at| obstacle.surface_normal(place[&row.node], at, answer.shift(index)));
             let Some(lean) = normals.map(|surface| dot(surface, row.normal)).reduce(f64::max) else { continue };
             let angle = lean.clamp(-1.0, 1.0).acos().to_degrees();
@@ -514,15 +518,14 @@ pub(super) fn check_deformation(answer: &Answer) -> Result<(), Error> {
 /// Refuses an answer with obstacles that pull: at a row that carries force the direction into the obstacle points into
 /// the body.
 pub(super) fn check_approach(model: &Model, multiplier: &[f64]) -> Result<(), Error> {
-    let lean = |row: &ContactRow| dot(row.normal, row.outward);
-    let worst = loaded_rows(model, multiplier).into_iter().min_by(|a, b| lean(a).total_cmp(&lean(b)));
-    let Some(row) = worst.filter(|row| lean(row) < -SIDEWAYS) else { return Ok(()) };
+    let worst = most_aside(model, multiplier).filter(|row| row.1 < -SIDEWAYS);
+    let Some((row, cosine)) = worst else { return Ok(()) };
     let message = format!(
         "the obstacle pulls the body: at {} the direction into the obstacle and the outward normal of `{}` make an angle of {:.0} \
          degrees, and the node carries force; turn `approach` around, or name the boundary that faces the obstacle",
         model.node_in_words(row.node),
         model.obstacles()[row.obstacle].boundary(),
-        lean(row).clamp(-1.0, 1.0).acos().to_degrees()
+        cosine.clamp(-1.0, 1.0).acos().to_degrees()
     );
     Err(refused("approach-away", format!("obstacles[{}].approach", row.obstacle), message))
 }

@@ -16,14 +16,15 @@
 //! J. J. Moreau, *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999) 329-349: the
 //! impact law.
 
+use super::newmark::TRAPEZOIDAL;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, HalfStep, Parameter, Stepping, halfway, next, plus};
+use crate::motion::step::{AboutScheme, Advance, HalfStep, Parameter, Stepping, halfway, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, SymmetricMatrix, largest};
 
-pub(super) static ABOUT: About = About {
+pub(super) static ABOUT: AboutScheme = AboutScheme {
     name: "central-difference",
     parameter: Some(Parameter {
         name: "restitution",
@@ -34,18 +35,14 @@ pub(super) static ABOUT: About = About {
     // The scheme divides by the mass.
     masses: &[MassForm::Lumped],
     gains_energy: false,
-    penetrates: false,
     is_explicit: true,
-    uses_frequency: false,
-    follows_obstacles: false,
-    is_exact_in_bars: false,
     load_times: &[0.0],
-    unstable_in_contact: &[],
     prepare: |problem, step, restitution, settings| {
         check_step(problem, step)?;
-        let mass = Stepping::of_mass(problem, settings)?;
+        let mass = Stepping::of(problem, problem.mass().clone(), settings)?;
         Ok(Box::new(CentralDifference { restitution, mass, diagonal: problem.mass().diagonal() }))
     },
+    ..TRAPEZOIDAL
 };
 
 #[derive(Debug)]
@@ -99,10 +96,8 @@ impl Advance for CentralDifference {
         let back = if state.steps == 0 { 0.0 } else { step };
         let velocity = plus(&state.velocity, -back / 2.0, &state.acceleration);
         let momentum = problem.mass().mul(&velocity);
-        let rate = match state.rate.is_empty() {
-            true => problem.statics().stiffness().mul(&velocity),
-            false => state.rate.clone(),
-        };
+        let elastic = || problem.statics().stiffness().mul(&velocity);
+        let rate = if state.rate.is_empty() { elastic() } else { state.rate.clone() };
         Some(halfway(back, 0.0, state, (&velocity, &momentum), &rate))
     }
 
@@ -130,28 +125,6 @@ const LIMIT_ROUNDING: f64 = 1e-12;
 /// 100 % at 1.
 pub(crate) const MOST_IN_CONTACT: f64 = 0.99;
 
-/// As [`DynamicProblem::stable_step`].
-pub(crate) fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
-    let mass = problem.mass();
-    let diagonal = mass.diagonal();
-    if let Some(&value) = diagonal.iter().find(|&&entry| entry <= 0.0) {
-        return Err(qp::LinearError::Setting {
-            name: "mass of a dof",
-            value,
-            allowed: "positive in an explicit scheme",
-        }
-        .into());
-    }
-    if let Some((_, _, value)) = mass.lower().triplets().find(|&(row, column, value)| row != column && value != 0.0) {
-        let allowed = "zero in an explicit scheme: take a lumped mass";
-        return Err(qp::LinearError::Setting { name: "entry of the mass beside its diagonal", value, allowed }.into());
-    }
-    let omega = frequency_bound(problem.statics().stiffness(), &diagonal);
-    let [of_mass, of_stiffness] = problem.damping();
-    let ratio = if omega > 0.0 { of_mass / (2.0 * omega) + of_stiffness * omega / 2.0 } else { 0.0 };
-    Ok(2.0 / omega * (ratio.hypot(1.0) - ratio))
-}
-
 /// An upper bound on the largest angular frequency, per time, of a stiffness with a positive diagonal mass, without
 /// damping.
 pub(crate) fn frequency_bound(stiffness: &SymmetricMatrix, mass: &[f64]) -> f64 {
@@ -173,7 +146,7 @@ pub(crate) fn frequency_bound(stiffness: &SymmetricMatrix, mass: &[f64]) -> f64 
 
 /// Checks that `step` is stable.
 pub(super) fn check_step(problem: &DynamicProblem, step: f64) -> Result<(), Error> {
-    let most = stable_step(problem)?;
+    let most = problem.stable_step()?;
     if step <= most * (1.0 + LIMIT_ROUNDING) {
         return Ok(());
     }
@@ -191,10 +164,10 @@ impl DynamicProblem {
             !beside && diagonal.iter().all(|&mass| mass > 0.0)
         };
         let bound = || is_diagonal().then(|| frequency_bound(self.statics().stiffness(), &diagonal));
-        self.given_frequency().or_else(bound)
+        self.frequency.or_else(bound)
     }
 
-    /// A step, in time, up to which central differences with the diagonal mass of `problem` are stable:
+    /// A step, in time, up to which central differences with a diagonal mass are stable:
     /// `2/omega (sqrt(1 + xi^2) - xi)` with an upper bound of the largest frequency omega and its damping ratio xi.
     ///
     /// The bound is that of Collatz for the matrix of magnitudes `|M^-1 K|`: `omega^2 <= max_i (|M^-1 K| x)_i / x_i`
@@ -205,6 +178,22 @@ impl DynamicProblem {
     /// section 6.2: the stable step with damping. L. Collatz, *Einschließungssatz für die charakteristischen Zahlen von
     /// Matrizen*, Math. Z. 48 (1942) 221-226.
     pub fn stable_step(&self) -> Result<f64, Error> {
-        stable_step(self)
+        let mass = self.mass();
+        let diagonal = mass.diagonal();
+        if let Some(&value) = diagonal.iter().find(|&&entry| entry <= 0.0) {
+            let allowed = "positive in an explicit scheme";
+            return Err(qp::LinearError::Setting { name: "mass of a dof", value, allowed }.into());
+        }
+        if let Some((_, _, value)) = mass.lower().triplets().find(|&(row, column, value)| row != column && value != 0.0)
+        {
+            let allowed = "zero in an explicit scheme: take a lumped mass";
+            return Err(
+                qp::LinearError::Setting { name: "entry of the mass beside its diagonal", value, allowed }.into()
+            );
+        }
+        let omega = frequency_bound(self.statics().stiffness(), &diagonal);
+        let [of_mass, of_stiffness] = self.damping();
+        let ratio = if omega > 0.0 { of_mass / (2.0 * omega) + of_stiffness * omega / 2.0 } else { 0.0 };
+        Ok(2.0 / omega * (ratio.hypot(1.0) - ratio))
     }
 }

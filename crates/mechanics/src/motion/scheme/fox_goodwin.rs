@@ -29,9 +29,10 @@
 //! Goodwin's rule. T. A. Laursen, G. R. Love, *Improved implicit integrators for transient impact problems*, Int. J.
 //! Numer. Methods Eng. 53 (2002) 245-274: velocities that change at release so that energy is restored.
 
+use super::newmark::TRAPEZOIDAL;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Found, HalfStep, Stepping, halfway, next, plus};
+use crate::motion::step::{AboutScheme, Advance, Found, HalfStep, Stepping, halfway, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp::SparseMatrix;
 
@@ -49,18 +50,14 @@ const CLOSE: f64 = 1e-6;
 /// was kept, are rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
-pub(super) static ABOUT: About = About {
+pub(super) static ABOUT: AboutScheme = AboutScheme {
     name: "fox-goodwin",
-    parameter: None,
     masses: &[MassForm::Averaged, MassForm::Lumped, MassForm::Consistent],
     gains_energy: false,
-    penetrates: false,
-    is_explicit: false,
     uses_frequency: true,
     follows_obstacles: true,
     is_exact_in_bars: true,
     load_times: &[0.0],
-    unstable_in_contact: &[],
     prepare: |problem, step, _, settings| {
         let angle = problem.largest_frequency().map_or(f64::INFINITY, |omega| omega * step);
         let scaling = FOURTH_ORDER.max(0.25 - 1.0 / (angle * angle)) * step * step;
@@ -78,6 +75,7 @@ pub(super) static ABOUT: About = About {
         let stepping = Stepping::of(problem, matrix, settings)?;
         Ok(Box::new(FoxGoodwin { scaling, masses, following, stepping }))
     },
+    ..TRAPEZOIDAL
 };
 
 #[derive(Debug)]
@@ -236,10 +234,7 @@ fn along_rows_of_step(problem: &DynamicProblem, step: f64, state: &State, veloci
 
 /// K v, one entry per dof, in force over time.
 fn elastic_rate(problem: &DynamicProblem, state: &State) -> Vec<f64> {
-    match state.rate.is_empty() {
-        true => problem.statics().stiffness().mul(&state.velocity),
-        false => state.rate.clone(),
-    }
+    if state.rate.is_empty() { problem.statics().stiffness().mul(&state.velocity) } else { state.rate.clone() }
 }
 
 /// The mass that a force along each row moves if the dofs have the masses S: `1/(b'S^-1 b)`, or its share in the mass

@@ -17,9 +17,10 @@
 //! O. Gonzalez, *Exact energy and momentum conserving algorithms for general models in nonlinear elasticity*, Comput.
 //! Methods Appl. Mech. Eng. 190 (2000) 1763-1783: midpoint forces corrected so that their work is the change of energy.
 
+use super::newmark::TRAPEZOIDAL;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Found, Stepping, next, plus};
+use crate::motion::step::{AboutScheme, Advance, Found, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp::{ContactProblem, ContactSet, Settings, SparseMatrix, SymmetricMatrix, dot, largest};
 
@@ -35,16 +36,10 @@ const NEGLIGIBLE_FORCE: f64 = 1e-9;
 /// Largest number of trial shares of the correction.
 const TRIALS: usize = 8;
 
-pub(super) static ABOUT: About = About {
+pub(super) static ABOUT: AboutScheme = AboutScheme {
     name: "midpoint",
-    parameter: None,
     masses: &[MassForm::Redistributed, MassForm::Consistent, MassForm::Lumped],
     gains_energy: false,
-    penetrates: false,
-    is_explicit: false,
-    uses_frequency: false,
-    follows_obstacles: false,
-    is_exact_in_bars: false,
     load_times: &[0.5],
     // A node with mass that is held at the wall at the middle of a step is as far inside the wall at one end as it was
     // outside at the other. A step that starts inside by d gains the energy 2 |lambda| d, one that starts outside loses
@@ -59,6 +54,7 @@ pub(super) static ABOUT: About = About {
         let massless = if dofs.is_empty() { None } else { Some(Massless::new(problem, dofs, step, settings)?) };
         Ok(Box::new(Midpoint { stepping, massless }))
     },
+    ..TRAPEZOIDAL
 };
 
 #[derive(Debug)]

@@ -5,13 +5,13 @@ mod fox_goodwin;
 mod midpoint;
 mod newmark;
 
-pub(crate) use central_difference::{MOST_IN_CONTACT, frequency_bound, stable_step};
+pub(crate) use central_difference::{MOST_IN_CONTACT, frequency_bound};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_qp as qp;
 
-use super::step::{About, Parameter};
+use super::step::{AboutScheme, Parameter};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 
@@ -82,7 +82,7 @@ impl SchemeSpec {
         self.about().is_explicit
     }
 
-    fn about(self) -> &'static About {
+    fn about(self) -> &'static AboutScheme {
         match self {
             SchemeSpec::FoxGoodwin => &fox_goodwin::ABOUT,
             SchemeSpec::Midpoint => &midpoint::ABOUT,
@@ -222,27 +222,11 @@ impl Scheme {
         self.spec().is_explicit()
     }
 
-    /// Returns `true` if it uses a bound on the largest frequency of the mesh.
-    pub(crate) fn uses_frequency(self) -> bool {
-        self.about().uses_frequency
-    }
-
-    /// Returns `true` if it follows obstacles that move.
-    pub(crate) fn follows_obstacles(self) -> bool {
-        self.about().follows_obstacles
-    }
-
-    /// Returns `true` if it moves a bar exactly in steps of the time of a wave through a cell.
-    pub(crate) fn is_exact_in_bars(self) -> bool {
-        self.about().is_exact_in_bars
-    }
-
     /// Returns `true` if, with a mass of this form, the energy grows whenever bodies touch.
     pub fn is_unstable_in_contact(self, form: MassForm) -> bool {
         self.about().unstable_in_contact.contains(&form)
     }
 
-    /// The times in a step at which the scheme evaluates the loads, from 0 to 1.
     /// Checks the range of the parameter.
     pub fn check(self) -> Result<(), Error> {
         let value = self.value();
@@ -254,8 +238,8 @@ impl Scheme {
         }
     }
 
-    /// The function that prepares the steps.
-    pub(super) fn about(self) -> &'static About {
+    /// What else is known of the scheme, and the function that prepares its steps.
+    pub(crate) fn about(self) -> &'static AboutScheme {
         self.spec().about()
     }
 }

@@ -12,7 +12,7 @@
 
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Found, Parameter, Stepping, next, plus};
+use crate::motion::step::{AboutScheme, Advance, Found, Parameter, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp as qp;
 use signorini_qp::{Method, Penalty, Settings, largest};
@@ -50,7 +50,7 @@ impl Newmark {
         let weight = 1.0 + alpha;
         let matrix = problem.combination(inertia, weight * gamma / (beta * step), weight)?;
         let stepping = Stepping::of(problem, matrix, settings)?;
-        Ok(Newmark { alpha, beta, gamma, stepping, mass: Stepping::of_mass(problem, rigid)? })
+        Ok(Newmark { alpha, beta, gamma, stepping, mass: Stepping::of(problem, problem.mass().clone(), rigid)? })
     }
 
     /// The contact problem of the step from `state`.
@@ -118,7 +118,7 @@ impl Advance for Newmark {
 
 // HHT-alpha: Newmark's rule with beta = (1 - alpha)^2/4 and gamma = 1/2 - alpha, which damps short waves.
 
-pub(super) static HHT: About = About {
+pub(super) static HHT: AboutScheme = AboutScheme {
     name: "hht",
     parameter: Some(Parameter {
         name: "alpha",
@@ -130,8 +130,8 @@ pub(super) static HHT: About = About {
     ..TRAPEZOIDAL
 };
 
-/// The other rules of its kind name only what differs.
-pub(super) const TRAPEZOIDAL: About = About {
+/// The other rules name only what differs.
+pub(super) const TRAPEZOIDAL: AboutScheme = AboutScheme {
     name: "trapezoidal",
     parameter: None,
     masses: &[MassForm::Consistent, MassForm::Lumped],
@@ -157,7 +157,7 @@ pub(super) const TRAPEZOIDAL: About = About {
 // P. Deuflhard, R. Krause, S. Ertel, *A contact-stabilized Newmark method for dynamical contact problems*, Int. J.
 // Numer. Methods Eng. 73 (2008) 1274-1290.
 
-pub(super) static CONTACT_STABILISED: About = About {
+pub(super) static CONTACT_STABILISED: AboutScheme = AboutScheme {
     name: "contact-stabilised",
     gains_energy: false,
     load_times: &[0.5],
@@ -165,7 +165,7 @@ pub(super) static CONTACT_STABILISED: About = About {
         // The equation above, multiplied by two.
         let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
         let stepping = Stepping::of(problem, matrix, settings)?;
-        Ok(Box::new(ContactStabilised { stepping, mass: Stepping::of_mass(problem, settings)? }))
+        Ok(Box::new(ContactStabilised { stepping, mass: Stepping::of(problem, problem.mass().clone(), settings)? }))
     },
     ..TRAPEZOIDAL
 };
@@ -219,7 +219,7 @@ impl Advance for ContactStabilised {
 /// of double precision and the remaining penetration are equally large; larger penalties would only add noise.
 const PENALTIES: i32 = 9;
 
-pub(super) static PENALTY_LOOP: About = About {
+pub(super) static PENALTY_LOOP: AboutScheme = AboutScheme {
     name: "penalty-loop",
     parameter: Some(Parameter {
         name: "threshold",
@@ -283,7 +283,7 @@ impl Advance for PenaltyLoop {
 
 // The trapezoidal rule with springs of `penalty` times the local stiffness instead of closed rows.
 
-pub(super) static PENALTY: About = About {
+pub(super) static PENALTY: AboutScheme = AboutScheme {
     name: "penalty",
     parameter: Some(Parameter {
         name: "penalty",

@@ -153,7 +153,7 @@ impl Answer {
     /// thick; with the place, the likely cause, and what to do. `None` for an answer that they describe.
     pub fn beyond_small_displacements(&self) -> Option<String> {
         let find = || {
-            let moved = self.displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            let moved = qp::largest(&self.displacement);
             deformation::beyond_small_displacements(self.deformation()?, &self.model, moved)
         };
         self.beyond.get_or_init(find).clone()
@@ -217,7 +217,6 @@ impl Answer {
         &self.multiplier
     }
 
-    /// The values of all unknowns of the problem.
     pub(crate) fn unknowns(&self) -> &[f64] {
         &self.unknowns
     }
@@ -333,7 +332,6 @@ impl Answer {
         Ok((estimated.relative(), estimated.strain_energy()))
     }
 
-    /// The error, element by element.
     pub(crate) fn estimated_error(&self) -> Result<recovery::patches::EstimatedError, Error> {
         Ok(recovery::patches::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)?)
     }

@@ -1,7 +1,7 @@
 //! The size of the deformation of an answer, and whether the equations of small displacements still describe it.
 
 use crate::fem::body::Region;
-use crate::fem::geometry::unit;
+use crate::fem::geometry::{shifted, unit};
 use crate::fem::mesh::extent;
 use crate::fem::recovery::state::Deformation;
 use crate::scene::Model;
@@ -18,8 +18,8 @@ const ROUNDING: f64 = 1e-9;
 /// moves by at most `moved`.
 pub(super) fn beyond_small_displacements(deformation: Deformation, model: &Model, moved: f64) -> Option<String> {
     let ((strain, element), (rotation, turned)) = (deformation.strain, deformation.rotation);
-    let fact_and_cause = if let Some(deep) = TooDeep::of(model) {
-        deep.in_words(model)
+    let fact_and_cause = if let Some(deep) = too_deep(model) {
+        deep
     } else if deformation.widespread <= BEYOND {
         return None;
     } else {
@@ -50,53 +50,37 @@ fn likely_cause(deformation: Deformation, model: &Model, moved: f64) -> String {
     "Loads or prescribed displacements do not fit the stiffness: check the units of loads, lengths and `young`".into()
 }
 
-/// A contact row that starts deeper inside an obstacle than its body is thick behind it.
-struct TooDeep {
-    node: usize,
-    obstacle: usize,
-    depth: f64,
-    thickness: f64,
-}
-
-impl TooDeep {
-    /// The row that starts deepest, in thicknesses of its body, if that is more than one.
-    fn of(model: &Model) -> Option<Self> {
-        let (body, rounding) = (model.body(), ROUNDING * model.mesh().size());
-        let of_body = |region: &Region| {
-            let own = |row: &&ContactRow| region.nodes().contains(&row.node) && depth_at_start(model, row) > rounding;
-            let deep: Vec<&ContactRow> = model.rows().iter().filter(own).collect();
-            let start = |row: &ContactRow| model.mesh().nodes()[row.node];
-            let inward = |row: &ContactRow| unit(row.outward.map(|part| -part));
-            let end = |row: &ContactRow| {
-                let (start, way) = (start(row), inward(row));
-                [0, 1, 2].map(|axis| start[axis] + depth_at_start(model, row) * way[axis])
-            };
-            let ends: Vec<[f64; 3]> = deep.iter().flat_map(|row| [start(row), end(row)]).collect();
-            let skin = (!deep.is_empty()).then(|| body.skin_within(region, extent(&ends).into()));
-            let of_row = move |row: &ContactRow| {
-                let depth = depth_at_start(model, row);
-                let thickness = skin.as_ref()?.thickness(start(row), inward(row))?;
-                (depth > thickness).then_some(TooDeep { node: row.node, obstacle: row.obstacle, depth, thickness })
-            };
-            deep.into_iter().filter_map(of_row)
+/// In words, the contact row that starts deepest inside an obstacle, in thicknesses of its body behind it, if that is
+/// more than one.
+fn too_deep(model: &Model) -> Option<String> {
+    let (body, rounding) = (model.body(), ROUNDING * model.mesh().size());
+    let of_body = |region: &Region| {
+        let own = |row: &&ContactRow| region.nodes().contains(&row.node) && depth_at_start(model, row) > rounding;
+        let deep: Vec<&ContactRow> = model.rows().iter().filter(own).collect();
+        let start = |row: &ContactRow| model.mesh().nodes()[row.node];
+        let inward = |row: &ContactRow| unit(row.outward.map(|part| -part));
+        let end = |row: &ContactRow| shifted(start(row), depth_at_start(model, row), inward(row));
+        let ends: Vec<[f64; 3]> = deep.iter().flat_map(|row| [start(row), end(row)]).collect();
+        let skin = (!deep.is_empty()).then(|| body.skin_within(region, extent(&ends).into()));
+        let of_row = move |row: &ContactRow| {
+            let depth = depth_at_start(model, row);
+            let thickness = skin.as_ref()?.thickness(start(row), inward(row))?;
+            (depth > thickness).then_some((row.node, row.obstacle, depth, thickness))
         };
-        let regions = body.regions().iter().filter(|_| body.dimension() > 1);
-        let deep = regions.flat_map(of_body);
-        deep.max_by(|one, other| (one.depth / one.thickness).total_cmp(&(other.depth / other.thickness)))
-    }
-
-    fn in_words(&self, model: &Model) -> String {
-        let [depth, thickness] =
-            [self.depth, self.thickness].map(|value| format!("{value:.3e} {}", model.units().length));
-        format!(
-            "before contact {} lies {} inside obstacles[{}], and its body is {} thick there. Name the boundary that faces the \
-             obstacle, or correct `gap` and `approach`",
-            model.node_in_words(self.node),
-            depth.trim_end(),
-            self.obstacle,
-            thickness.trim_end()
-        )
-    }
+        deep.into_iter().filter_map(of_row)
+    };
+    let regions = body.regions().iter().filter(|_| body.dimension() > 1);
+    let deep = regions.flat_map(of_body);
+    let (node, obstacle, depth, thickness) =
+        deep.max_by(|one, other| (one.2 / one.3).total_cmp(&(other.2 / other.3)))?;
+    let [depth, thickness] = [depth, thickness].map(|value| format!("{value:.3e} {}", model.units().length));
+    Some(format!(
+        "before contact {} lies {} inside obstacles[{obstacle}], and its body is {} thick there. Name the boundary that faces the \
+         obstacle, or correct `gap` and `approach`",
+        model.node_in_words(node),
+        depth.trim_end(),
+        thickness.trim_end()
+    ))
 }
 
 /// How deep a contact row starts inside an obstacle that stands still, in length.

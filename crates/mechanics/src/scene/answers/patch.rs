@@ -42,7 +42,7 @@ pub(crate) struct StraightCell {
 }
 
 /// The boundary of an obstacle with its closed nodes.
-pub(crate) struct Patch<'a> {
+pub(crate) struct ContactPatch<'a> {
     answer: &'a Answer,
     /// The row of each closed node.
     row_of: BTreeMap<usize, usize>,
@@ -57,7 +57,7 @@ pub(crate) struct Patch<'a> {
     moved: Cell<Option<(usize, [f64; 3])>>,
 }
 
-impl<'a> Patch<'a> {
+impl<'a> ContactPatch<'a> {
     /// `None` if no node is closed.
     pub fn new(answer: &'a Answer, obstacle: usize) -> Option<Self> {
         let model = answer.model();
@@ -74,7 +74,7 @@ impl<'a> Patch<'a> {
         let shares = model.obstacles()[obstacle].between().and_then(|between| between.facets.as_ref());
         let carrying = shares.map(|_| rows().map(|(_, row)| row.node).collect());
         let (cells, cells_of, moved) = (Vec::new(), BTreeMap::new(), Cell::default());
-        let mut patch = Patch { answer, row_of, carrying, cells, cells_of, closed, moved };
+        let mut patch = ContactPatch { answer, row_of, carrying, cells, cells_of, closed, moved };
         let sizes = facet_sizes(model.body(), boundary);
         for (facet, (nodes, (extent, area))) in boundary.facets().zip(sizes).enumerate() {
             let straight = boundary.kind.straight_cells(nodes);

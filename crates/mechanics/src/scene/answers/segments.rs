@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::patch::Patch;
+use super::patch::ContactPatch;
 use crate::fem::geometry::dot;
 use crate::fem::recovery::{Stress, stress_at};
 use crate::scene::Answer;
@@ -105,13 +105,13 @@ impl ContactExtent {
 
 /// A size with its uncertainty.
 #[derive(Clone, Copy, Debug, Default)]
-struct Size {
+struct UncertainSize {
     inner: f64,
     estimate: f64,
     outer: f64,
 }
 
-impl Size {
+impl UncertainSize {
     /// Adds a cell with only closed nodes, from which the surface may differ by a share `bend`.
     fn add_closed(&mut self, whole: f64, bend: f64) {
         self.inner += (1.0 - bend) * whole;
@@ -133,7 +133,7 @@ impl Answer {
     /// The estimated length of the contact with an obstacle along its boundary in the meshed part, in length, as in
     /// [`ContactExtent::width`].
     pub(crate) fn width_on(&self, obstacle: usize) -> f64 {
-        let Some(patch) = Patch::new(self, obstacle) else { return 0.0 };
+        let Some(patch) = ContactPatch::new(self, obstacle) else { return 0.0 };
         patch.pieces().iter().map(|nodes| extent_of(&patch, nodes).0.estimate).sum()
     }
 
@@ -143,7 +143,7 @@ impl Answer {
     }
 
     fn segments_of(&self, obstacle: usize) -> Vec<Segment> {
-        let Some(patch) = Patch::new(self, obstacle) else { return Vec::new() };
+        let Some(patch) = ContactPatch::new(self, obstacle) else { return Vec::new() };
         let pieces = patch.pieces();
         let pieces: Vec<_> = pieces.iter().filter_map(|nodes| Some((nodes, Peak::of(&patch, nodes)?))).collect();
         let recovered = self.recovered(&patch, pieces.iter().flat_map(|(_, peak)| peak.near.iter().copied()));
@@ -152,7 +152,7 @@ impl Answer {
 
     /// The pressure at closed nodes by the stress of the body: the traction along the row over the area that faces the
     /// obstacle, without the part of the loads at the node.
-    fn recovered(&self, patch: &Patch, nodes: impl Iterator<Item = usize>) -> Recovered {
+    fn recovered(&self, patch: &ContactPatch, nodes: impl Iterator<Item = usize>) -> Recovered {
         let model = self.model();
         let stresses = stress_at(model.body(), self.displacement(), &nodes.collect());
         let pressure = |(node, stress): (usize, Stress)| {
@@ -166,7 +166,14 @@ impl Answer {
         stresses.into_iter().filter_map(pressure).collect()
     }
 
-    fn segment(&self, patch: &Patch, obstacle: usize, nodes: &[usize], peak: &Peak, recovered: &Recovered) -> Segment {
+    fn segment(
+        &self,
+        patch: &ContactPatch,
+        obstacle: usize,
+        nodes: &[usize],
+        peak: &Peak,
+        recovered: &Recovered,
+    ) -> Segment {
         let (formulation, dimension) = (self.model().body().formulation(), self.model().body().dimension());
         let (width, area) = extent_of(patch, nodes);
         let is_line = dimension == 2;
@@ -198,8 +205,8 @@ impl Answer {
 }
 
 /// The length or area of closed nodes, and the area with thickness, cross-section or circumference.
-fn extent_of(patch: &Patch, nodes: &[usize]) -> (Size, Size) {
-    let (mut width, mut area) = (Size::default(), Size::default());
+fn extent_of(patch: &ContactPatch, nodes: &[usize]) -> (UncertainSize, UncertainSize) {
+    let (mut width, mut area) = (UncertainSize::default(), UncertainSize::default());
     for cell in patch.cells_with(nodes) {
         let whole = patch.sizes(cell, &patch.places(&cell.nodes));
         if patch.is_whole(cell) {
@@ -216,7 +223,7 @@ fn extent_of(patch: &Patch, nodes: &[usize]) -> (Size, Size) {
 }
 
 /// The ends of closed nodes on a line: between a closed and an open node, or where the boundary ends.
-fn ends_of(patch: &Patch, nodes: &[usize]) -> Vec<[f64; 3]> {
+fn ends_of(patch: &ContactPatch, nodes: &[usize]) -> Vec<[f64; 3]> {
     let edge = |cell: &[usize]| match *cell {
         [a, b] if patch.is_closed(a) && !patch.is_closed(b) => Some(patch.edge(a, b)),
         [a, b] if patch.is_closed(b) && !patch.is_closed(a) => Some(patch.edge(b, a)),
@@ -244,7 +251,7 @@ type Recovered = BTreeMap<usize, f64>;
 
 impl Peak {
     /// `None` without nodes.
-    fn of(patch: &Patch, nodes: &[usize]) -> Option<Self> {
+    fn of(patch: &ContactPatch, nodes: &[usize]) -> Option<Self> {
         let node = nodes.iter().copied().max_by(|&a, &b| patch.pressure(a).total_cmp(&patch.pressure(b)))?;
         let around = patch.closed_around(node);
         let mean = patch.mean_around(node, &around);
@@ -256,7 +263,7 @@ impl Peak {
     }
 
     /// As [`ContactExtent::pressure_uncertainty`].
-    fn uncertainty(&self, patch: &Patch, recovered: &Recovered) -> Option<f64> {
+    fn uncertainty(&self, patch: &ContactPatch, recovered: &Recovered) -> Option<f64> {
         if self.is_at_edge || !self.is_resolved {
             return None;
         }

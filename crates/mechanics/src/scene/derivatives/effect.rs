@@ -12,7 +12,7 @@ use crate::scene::answers::answer::Answer;
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::input::schema::Scene;
 use crate::scene::models::rows::{self, Found};
-use signorini_qp::{Change, SparseMatrix};
+use signorini_qp::{Change, SparseMatrix, largest};
 
 /// What a parameter changes, per unit.
 #[derive(Clone, Debug)]
@@ -258,7 +258,6 @@ pub(super) fn derivative<E>(at: impl Fn(f64) -> Result<Vec<f64>, E>, scale: f64)
         let own = 10.0 * step;
         let mut found = Vec::with_capacity(middle.len());
         let (mut size, mut off) = (0.0_f64, 0.0_f64);
-        let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         let rounding = ROUNDING * largest(&middle).max(largest(&before)).max(largest(&after)) / own;
         for (entry, &middle) in middle.iter().enumerate() {
             let narrow = (near[entry] - near_before[entry]) / (2.0 * own);

@@ -52,7 +52,7 @@ enum Kind {
 
 /// A smooth branch of an output: the output itself, or one of several values that tie for the largest.
 #[derive(Clone, Debug)]
-pub(super) struct Branch {
+pub(super) struct Smooth {
     pub value: f64,
     /// The derivative with respect to the unknowns of the problem.
     pub by_displacement: Vec<f64>,
@@ -189,14 +189,11 @@ impl Output {
     }
 
     /// The branches of the output at an answer; several if values tie for the largest.
-    ///
-    /// # Errors
-    /// A sentence if the output has no derivative here.
-    pub(super) fn branches(&self, answer: &Answer) -> Result<Vec<Branch>, Why> {
+    pub(super) fn branches(&self, answer: &Answer) -> Result<Vec<Smooth>, Why> {
         let model = answer.model();
         let problem = model.problem();
         let lambda = answer.multiplier();
-        let blank = || Branch {
+        let blank = || Smooth {
             value: 0.0,
             by_displacement: vec![0.0; problem.dofs()],
             by_multiplier: vec![0.0; problem.inequalities() + problem.equality_rows()],
@@ -204,7 +201,7 @@ impl Output {
             direct: Direct::None,
         };
         let of_rows = |coefficient: &dyn Fn(&ContactRow) -> f64, direct: Direct| {
-            let mut branch = Branch { direct, ..blank() };
+            let mut branch = Smooth { direct, ..blank() };
             for (row, own) in model.rows().iter().enumerate() {
                 branch.by_multiplier[row] = coefficient(own);
                 branch.value += branch.by_multiplier[row] * lambda[row];
@@ -224,7 +221,7 @@ impl Output {
             }
             Kind::Travel(obstacle) => {
                 let travel = model.parts.unknowns.travel(obstacle).ok_or("no force presses the obstacle")?;
-                let mut branch = Branch { value: answer.unknowns()[travel], ..blank() };
+                let mut branch = Smooth { value: answer.unknowns()[travel], ..blank() };
                 branch.by_displacement[travel] = 1.0;
                 vec![branch]
             }
@@ -249,7 +246,7 @@ impl Output {
             Kind::Width(obstacle) => vec![width(answer, obstacle, blank())?],
             Kind::LargestDisplacement => {
                 let values = answer.displacement();
-                let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+                let largest = signorini_qp::largest(values);
                 if largest == 0.0 {
                     return Err("nothing moves".to_string());
                 }
@@ -258,7 +255,7 @@ impl Output {
                     let mut nodal = vec![0.0; values.len()];
                     nodal[dof] = values[dof].signum();
                     let of = format!("node {}", dof / model.body().dimension());
-                    Ok(Branch { value: values[dof].abs(), by_displacement: of_nodal(model, &nodal)?, of, ..blank() })
+                    Ok(Smooth { value: values[dof].abs(), by_displacement: of_nodal(model, &nodal)?, of, ..blank() })
                 };
                 tied.map(of_dof).collect::<Result<_, Why>>()?
             }
@@ -267,7 +264,7 @@ impl Output {
                 let forces = internal_force(model.body(), answer.displacement()).map_err(in_words)?;
                 let value = parts * (work_to(answer, model.body())? + own_energy(model.body()));
                 let by_displacement = of_nodal(model, &forces)?.iter().map(|force| parts * force).collect();
-                vec![Branch { value, by_displacement, direct: Direct::Energy, ..blank() }]
+                vec![Smooth { value, by_displacement, direct: Direct::Energy, ..blank() }]
             }
             Kind::StressAt(place, component) => vec![stress(answer, place, component, blank())?],
         })
@@ -297,11 +294,11 @@ fn has_own_pressure(answer: &Answer, row: usize) -> bool {
     own.is_finite() && (own - answer.pressure()[row]).abs() <= TIE * own.abs()
 }
 
-fn of_pressure(answer: &Answer, row: usize, blank: Branch) -> Branch {
+fn of_pressure(answer: &Answer, row: usize, blank: Smooth) -> Smooth {
     let own = &answer.model().rows()[row];
-    let mut branch = Branch { value: answer.pressure()[row], direct: Direct::Pressure(row), ..blank };
+    let mut branch = Smooth { value: answer.pressure()[row], direct: Direct::Pressure(row), ..blank };
     branch.by_multiplier[row] = -1.0 / own.projected_area();
-    Branch { of: format!("node {}", own.node), ..branch }
+    Smooth { of: format!("node {}", own.node), ..branch }
 }
 
 /// The obstacles that an output of one or of all of them is of.
@@ -310,13 +307,13 @@ pub(super) fn obstacles_of(model: &Model, one: Option<usize>) -> std::ops::Range
 }
 
 /// The estimated width of the contact: it depends on the forces of the rows next to its edges.
-fn width(answer: &Answer, obstacle: Option<usize>, blank: Branch) -> Result<Branch, Why> {
+fn width(answer: &Answer, obstacle: Option<usize>, blank: Smooth) -> Result<Smooth, Why> {
     let model = answer.model();
     let parts = model.parts_of_whole();
     let of = |answer: &Answer| parts * obstacles_of(model, obstacle).map(|index| answer.width_on(index)).sum::<f64>();
     let lambda = answer.multiplier();
-    let step = STEP_OF_FORCE * lambda.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
-    let mut branch = Branch { value: of(answer), direct: Direct::Width(obstacle), ..blank };
+    let step = STEP_OF_FORCE * signorini_qp::largest(lambda);
+    let mut branch = Smooth { value: of(answer), direct: Direct::Width(obstacle), ..blank };
     if step == 0.0 {
         return Err("nothing presses".to_string());
     }
@@ -333,8 +330,7 @@ fn width(answer: &Answer, obstacle: Option<usize>, blank: Branch) -> Result<Bran
     Ok(branch)
 }
 
-/// The stress of the element at a place.
-fn stress(answer: &Answer, place: [f64; 3], component: usize, blank: Branch) -> Result<Branch, Why> {
+fn stress(answer: &Answer, place: [f64; 3], component: usize, blank: Smooth) -> Result<Smooth, Why> {
     let (model, body) = (answer.model(), answer.model().body());
     let found = body.elements().enumerate().find_map(|(index, element)| {
         let at = element.cell.weights_at(place, ON_ELEMENT).map(|_| element.cell.reference_coordinates(place));
@@ -356,10 +352,9 @@ fn stress(answer: &Answer, place: [f64; 3], component: usize, blank: Branch) -> 
         }
     }
     let direct = Direct::Stress { element, at, component };
-    Ok(Branch { value: of_component(&own, component), by_displacement: of_nodal(model, &nodal)?, direct, ..blank })
+    Ok(Smooth { value: of_component(&own, component), by_displacement: of_nodal(model, &nodal)?, direct, ..blank })
 }
 
-/// The stress of an element at reference coordinates.
 fn stress_in(body: &ElasticBody, displacement: &[f64], element: usize, at: [f64; 3]) -> Option<Symmetric> {
     Some(stress_of(body, displacement, &body.element(element)?, at))
 }
@@ -401,7 +396,7 @@ fn of_nodal(model: &Model, nodal: &[f64]) -> Result<Vec<f64>, Why> {
     Ok(parts.unknowns.force(parts.dofs.restrict(nodal).map_err(in_words)?))
 }
 
-impl Branch {
+impl Smooth {
     /// The derivative at fixed displacement and multipliers.
     pub(super) fn direct(&self, answer: &Answer, effect: &Effect) -> Result<f64, Why> {
         let (model, lambda) = (answer.model(), answer.multiplier());

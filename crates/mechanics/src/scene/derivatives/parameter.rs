@@ -27,11 +27,8 @@ pub(crate) struct Parameter {
 /// The part of a scene that a parameter is a number of.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Kind {
-    /// The gap of the scene.
     Gap,
-    /// The gap of an obstacle.
     GapOf(usize),
-    /// The force on an obstacle.
     Force(usize),
     /// A factor of a load, which is one.
     Load(usize),
@@ -45,7 +42,6 @@ pub(crate) enum Kind {
     Poisson(String),
     /// The temperature at the origin of an entry, by the place of the entry.
     Temperature(String),
-    /// The coordinates of all nodes.
     Places,
 }
 

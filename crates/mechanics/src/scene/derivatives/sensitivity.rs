@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::effect::{Effect, Why, effect};
-use super::output::{Branch, Output};
+use super::output::{Output, Smooth};
 use super::parameter::{Kind, Parameter};
 use super::places::{Pairing, by_places};
 use crate::error::Error;
@@ -161,7 +161,6 @@ pub(crate) fn proven(model: &Arc<Model>, settings: &Settings) -> Result<(Answer,
     Ok((answer, solution, derivatives))
 }
 
-/// An answer of a scene with its derivatives.
 struct At<'a> {
     scene: &'a Scene,
     answer: &'a Answer,
@@ -251,7 +250,7 @@ impl At<'_> {
     }
 
     /// The derivative of a branch with respect to the places of all nodes.
-    fn by_places(&self, branch: &Branch, adjoint: &Derivative<Adjoint>) -> Derivative<Vec<f64>> {
+    fn by_places(&self, branch: &Smooth, adjoint: &Derivative<Adjoint>) -> Derivative<Vec<f64>> {
         let rows = self.answer.model().rows().len();
         let of_piece = |adjoint: &Adjoint| -> Result<Vec<f64>, Why> {
             let pairing =
@@ -265,7 +264,7 @@ impl At<'_> {
 
     /// The derivative of a branch along the effect of a parameter: at a kink of the answer by tangents, which tell its
     /// sides apart.
-    fn along(&self, branch: &Branch, adjoint: &Derivative<Adjoint>, effect: &Effect) -> Result<Derivative<f64>, Error> {
+    fn along(&self, branch: &Smooth, adjoint: &Derivative<Adjoint>, effect: &Effect) -> Result<Derivative<f64>, Error> {
         let direct = match branch.direct(self.answer, effect) {
             Ok(direct) => direct,
             Err(why) => return Ok(Derivative::Unknown { why }),
@@ -307,7 +306,6 @@ fn joined(mut branches: Vec<Derivative<f64>>, scale: f64) -> Derivative<f64> {
     }
 }
 
-/// All values of a derivative.
 fn values_of<T: Clone>(derivative: &Derivative<T>) -> Vec<T> {
     match derivative {
         Derivative::Proven(value) => vec![value.clone()],

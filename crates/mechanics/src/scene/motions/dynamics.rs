@@ -7,9 +7,7 @@ use crate::error::{Error, nearly};
 use crate::fem::Formulation;
 use crate::fem::assembly::{MassForm, free_mass, internal_force, least_over_lumped, stiffness};
 use crate::fem::body::{ElasticBody, Phase};
-use crate::motion::{
-    DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, TimeFunction, frequency_bound, stable_step,
-};
+use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, TimeFunction, frequency_bound};
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, located, number, point, refused, vector, wrong};
 use crate::scene::input::schema::analysis::PATH;
 use crate::scene::input::schema::{AnalysisSpec, DynamicSpec, FieldSpec, PenetrationSpec, Scene};
@@ -60,7 +58,6 @@ pub struct Dynamics {
     pub windows: [f64; 2],
     /// Points with output at every step.
     pub watched: Vec<WatchedPoint>,
-    /// The data for the reactions of the supports.
     supports: MovingSupports,
     obstacles: Vec<MovingObstacle>,
     /// Warnings about the scene and the scheme of the motion.
@@ -142,7 +139,7 @@ impl Scene {
         let moving = Self::moving(model, spec, mass, &loads)?;
         let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
         let mut problem = Self::starting(model, spec, moving)?;
-        if scheme.uses_frequency() {
+        if scheme.about().uses_frequency {
             problem = problem.bounded_by(largest_frequency(model, form)?);
         }
         let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
@@ -283,7 +280,6 @@ impl Dynamics {
         Ok(all)
     }
 
-    /// Returns `true` if obstacles move in time.
     pub(crate) fn has_moving_obstacles(&self) -> bool {
         !self.obstacles.is_empty()
     }
@@ -333,7 +329,6 @@ impl DynamicSpec {
         self
     }
 
-    /// The given parameters of all schemes.
     fn parameters(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("alpha", self.alpha),
@@ -385,7 +380,7 @@ impl DynamicSpec {
             if let Some(message) = own {
                 return Err(wrong(format!("{path}.obstacle"), message));
             }
-            if !scheme.follows_obstacles() {
+            if !scheme.about().follows_obstacles {
                 let message = format!("the scheme `{}` has obstacles at rest only; take `fox-goodwin`", scheme.name());
                 return Err(wrong(path, message));
             }
@@ -397,13 +392,12 @@ impl DynamicSpec {
         Ok((problem, found))
     }
 
-    /// The step and the number of steps.
     fn steps(&self, body: &ElasticBody, problem: &DynamicProblem, scheme: Scheme) -> Result<(f64, usize), Error> {
-        let stable = if scheme.is_explicit() { Some(stable_step(problem)?) } else { None };
+        let stable = if scheme.is_explicit() { Some(problem.stable_step()?) } else { None };
         let share = if problem.statics().rows() > 0 { MOST_IN_CONTACT } else { 1.0 };
         // The step at which the scheme moves a bar exactly, whatever the scene asks for.
         let is_bar = matches!(body.formulation(), Formulation::Bar { .. });
-        let exact = (scheme.is_exact_in_bars() && is_bar).then(|| wave_time(body));
+        let exact = (scheme.about().is_exact_in_bars && is_bar).then(|| wave_time(body));
         let step = match (self.step, self.courant) {
             (Some(_), Some(_)) => return Err(wrong(format!("{PATH}.courant"), "give `step` or `courant`, not both")),
             (Some(step), None) => {
@@ -454,7 +448,6 @@ impl DynamicSpec {
         Ok((step, (count(step) as usize).max(1)))
     }
 
-    /// The initial displacement and velocity of all nodes.
     fn initial(&self, body: &ElasticBody) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let dimension = body.dimension();
         let (mut displacement, mut velocity) = (vec![0.0; body.nodal_dofs()], vec![0.0; body.nodal_dofs()]);

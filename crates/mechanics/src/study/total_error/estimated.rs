@@ -3,8 +3,7 @@
 
 use std::sync::Arc;
 
-use super::found::{Bound, Level, LevelKind, Search as Given, TotalError};
-use super::goal::{Answering, Ended, PER_UNKNOWN, marked, shortage};
+use super::found::{Answering, Asked, Ended, Level, LevelKind, PER_UNKNOWN, TotalError, marked, shortage};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::bisection::Tetrahedra;
@@ -12,7 +11,7 @@ use crate::scene::answers::beside_nodes::Depths;
 use crate::scene::{Answer, Model, Scene};
 use crate::study::{ModelSize, Status};
 use signorini_qp as qp;
-use signorini_qp::{Settings, solve};
+use signorini_qp::solve;
 
 /// The share of the total error allowed for the algebraic error: the errors are nearly orthogonal, so that it adds half
 /// a hundredth.
@@ -34,24 +33,12 @@ impl TotalError {
 
 /// Refines the meshes of a scene until the estimate is small enough, or time, memory or meshes end: tetrahedra where
 /// the estimate is large, other elements everywhere.
-pub(super) fn total_error(given: &Given, reason: String) -> Result<TotalError, Error> {
+pub(super) fn total_error(given: &Asked, reason: String) -> Result<TotalError, Error> {
     let settings = given.settings.clone().with_accuracy(OF_ALGEBRA * given.goal.total_error);
-    let search = Search { given, settings };
+    let given = &Asked { settings: &settings, ..*given };
     let mut refinement = Refinement::of(given.scene)?;
-    let mut now = TotalError {
-        status: Status::NotCertified,
-        goal: given.goal,
-        ended: Ended::Time,
-        total_error: Bound { bound: f64::INFINITY, guaranteed: false },
-        reason: Some(reason),
-        guarantee: None,
-        levels: Vec::new(),
-        model: ModelSize::of(given.model.problem()),
-        seconds: 0.0,
-        meshes: Vec::new(),
-        last: Err("it is not computed yet".into()),
-    };
-    let mut shares = search.solve_on(given.model.clone(), &mut now)?;
+    let mut now = given.begun(Some(reason));
+    let mut shares = given.solve_on(given.model.clone(), &mut now)?;
     let ended = loop {
         if now.levels.last().is_some_and(|level| level.meets(given.goal)) {
             break Ended::Goal;
@@ -60,8 +47,8 @@ pub(super) fn total_error(given: &Given, reason: String) -> Result<TotalError, E
             break Ended::Mesh;
         }
         (given.keep)(&now);
-        let next = match search.next(&mut refinement, &shares, &now) {
-            Ok(Some(finer)) => search.solve_on(Arc::new(finer), &mut now),
+        let next = match given.next(&mut refinement, &shares, &now) {
+            Ok(Some(finer)) => given.solve_on(Arc::new(finer), &mut now),
             Ok(None) => break Ended::Time,
             Err(error) => Err(error),
         };
@@ -157,17 +144,11 @@ struct Shares {
     depths: Depths,
 }
 
-/// The scene and the settings of an estimate, the same on every mesh.
-struct Search<'a> {
-    given: &'a Given<'a>,
-    settings: Settings,
-}
-
-impl Search<'_> {
+impl Asked<'_> {
     /// Solves a model, which becomes the last mesh of `now`.
     fn solve_on(&self, model: Arc<Model>, now: &mut TotalError) -> Result<Shares, Error> {
         self.settings.watch.step("mesh", now.levels.len());
-        let solution = match solve(model.problem(), &self.settings) {
+        let solution = match solve(model.problem(), self.settings) {
             // The answer of the previous mesh is better than an interrupted one.
             Err(qp::Error::NotCertified { .. }) if !now.levels.is_empty() && self.settings.watch.is_over() => {
                 return Err(qp::Error::Interrupted.into());
@@ -190,7 +171,7 @@ impl Search<'_> {
                 energy_error_bound: of_algebra,
                 depth_between_nodes: depths.relative(),
             },
-            seconds: self.given.seconds(),
+            seconds: self.seconds(),
         };
         (now.total_error.bound, now.seconds) = (level.total_error, level.seconds);
         now.model = ModelSize::of(model.problem());
@@ -202,7 +183,7 @@ impl Search<'_> {
 
     /// The model on the next mesh; `None` if there is no time for one.
     fn next(&self, refinement: &mut Refinement, shares: &Shares, now: &TotalError) -> Result<Option<Model>, Error> {
-        let (scene, goal, levels) = (self.given.scene, self.given.goal, now.levels.as_slice());
+        let (scene, goal, levels) = (self.scene, self.goal, now.levels.as_slice());
         match refinement {
             Refinement::Fixed => Ok(None),
             Refinement::Bisected(bodies, answering) => {
@@ -262,7 +243,7 @@ fn finer(levels: &[Level], times: usize, goal: f64, dimension: i32) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use signorini_qp::dot;
+    use signorini_qp::{Settings, dot};
 
     fn level(dofs: usize, total_error: f64) -> Level {
         let kind = LevelKind::Estimated {
@@ -298,7 +279,7 @@ mod tests {
         let scene: Scene = serde_json::from_str(text).unwrap();
         let (model, settings) = (Arc::new(scene.build().unwrap()), Settings::default());
         let (scene, model, settings, goal) = (&scene, &model, &settings, 0.05.into());
-        let search = Given { scene, model, goal, settings, keep: &|_| {}, clock: std::time::Instant::now() };
+        let search = Asked { scene, model, goal, settings, keep: &|_| {}, clock: std::time::Instant::now() };
         let found = total_error(&search, "for comparison".into()).unwrap();
         assert!(!found.total_error.guaranteed && found.reason.is_some());
         let (answer, solution) = *found.last.unwrap();

@@ -3,8 +3,10 @@
 
 use std::sync::Arc;
 
-use super::found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, Search as Given, TotalError};
-use super::goal::{Ended, LEAST, MARKED, PER_UNKNOWN, marked, shortage};
+use super::found::{
+    Asked, Bound, Domain, Ended, Guarantee, JudgedMesh, LEAST, Level, LevelKind, MARKED, PER_UNKNOWN, TotalError,
+    marked, shortage,
+};
 use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use crate::error::Error;
 use crate::fem::ElementKind;
@@ -24,7 +26,7 @@ const COARSE: usize = 6;
 const OF_SOLVER: f64 = 1e-4;
 
 /// Refines the mesh of a problem until its total error is small enough, or time or memory end.
-pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
+pub(super) fn total_error(given: &Asked, problem: &ContinuumProblem, mesh: SimplexMesh) -> Result<TotalError, Error> {
     if given.goal.force_error.is_some() && !problem.has_one_direction() {
         let message = "the contact force has a guaranteed interval only if all obstacles stand still, in one direction from the body";
         return Err(Error::Scene { path: "obstacles".into(), message: message.into() });
@@ -52,7 +54,7 @@ pub(super) fn total_error(given: &Given, problem: &ContinuumProblem, mesh: Simpl
 /// The answer to the scene on the last mesh, and its distance from the continuum: that of the displacement of the
 /// bound, which is at most `distance`, plus the one from that displacement.
 fn on_last_mesh(
-    given: &Given,
+    given: &Asked,
     of_bound: &ContinuumAnswer,
     distance: f64,
 ) -> Result<((Answer, Solution), JudgedMesh), Error> {
@@ -81,21 +83,21 @@ pub(super) fn compared(answer: &Answer, of_bound: &ContinuumAnswer) -> Result<[f
 
 /// The continuum problem and the settings of a guaranteed bound, the same on every mesh.
 struct Search<'a> {
-    given: &'a Given<'a>,
+    given: &'a Asked<'a>,
     problem: &'a ContinuumProblem,
     settings: Settings,
 }
 
 impl Search<'_> {
     fn run(&self, first: SimplexMesh) -> Result<TotalError, Error> {
-        let mut found: Option<TotalError> = None;
+        let mut now = self.given.begun(None);
         let (mut next, mut own, mut touching) = (first, None, None);
         let (mut before, mut last_seconds) = (0.0, 0.0);
         let (mut foresight, mut coarse) = (Foresight::default(), 0);
         let goal = self.given.goal;
         loop {
             let mesh = next;
-            self.settings.watch.step("mesh", found.as_ref().map_or(0, |found| found.levels.len()));
+            self.settings.watch.step("mesh", now.levels.len());
             // The answer on the last mesh takes as long as its displacement.
             let settings = self.settings.clone().watched(&self.settings.watch.keeping(last_seconds));
             let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &settings) {
@@ -107,14 +109,14 @@ impl Search<'_> {
                     (next, touching) = (self.problem.refined(&mesh, &at_obstacles), None);
                     continue;
                 }
-                Err(error) => {
-                    let (Some(found), Some(ended)) = (found, shortage(&error)) else { return Err(error) };
+                Err(error) => match shortage(&error).filter(|_| !now.levels.is_empty()) {
                     // Its mesh is the one that was not made.
-                    return Ok(TotalError { ended, ..found });
-                }
+                    Some(ended) => return Ok(TotalError { ended, ..now }),
+                    None => return Err(error),
+                },
             };
             let level = self.level(&bracket)?;
-            let (is_first, is_met) = (found.is_none(), level.meets(goal));
+            let (is_first, is_met) = (now.levels.is_empty(), level.meets(goal));
             // The force converges at its own rate.
             let wanted = if goal.force_error.is_some() { 0.0 } else { goal.total_error };
             let finer = (!is_met).then(|| foresight.finer(&bracket, wanted));
@@ -123,9 +125,7 @@ impl Search<'_> {
             last_seconds = growth * bracket.primal.seconds;
             let is_late = !self.settings.watch.allows(growth * (level.seconds - before) + last_seconds);
             before = level.seconds;
-            let (earlier, mut levels, mut meshes) =
-                found.map_or_else(Default::default, |found| (found.guarantee, found.levels, found.meshes));
-            let mut guarantee = self.guarantee(&bracket, &level, earlier);
+            let mut guarantee = self.guarantee(&bracket, &level, now.guarantee.take());
             // An obstacle that just touches presses less from mesh to mesh.
             let components = guarantee.answer.displacement.iter().flatten();
             check_motion(self.given.model, components.fold(0.0, |largest: f64, part| largest.max(part.abs())))?;
@@ -141,26 +141,16 @@ impl Search<'_> {
                 guarantee.own_mesh = own.as_ref().map(judged_by).transpose()?;
             }
             guarantee.next_elements = elements;
-            meshes.push(self.seen(&mesh));
-            let total_error = Bound { bound: level.total_error, guaranteed: true };
-            levels.push(level);
-            let now = TotalError {
-                status: if is_met { Status::Certified } else { Status::NotCertified },
-                goal,
-                ended: if is_met { Ended::Goal } else { Ended::Time },
-                total_error,
-                reason: None,
-                guarantee: Some(guarantee),
-                levels,
-                model: ModelSize::of(self.given.model.problem()),
-                seconds: self.given.seconds(),
-                meshes,
-                last: Err("it is not computed yet".into()),
-            };
+            now.meshes.push(self.seen(&mesh));
+            now.total_error.bound = level.total_error;
+            now.levels.push(level);
+            (now.guarantee, now.seconds) = (Some(guarantee), self.given.seconds());
+            if is_met {
+                (now.status, now.ended) = (Status::Certified, Ended::Goal);
+            }
             let Some(finer) = finer.filter(|_| !is_late) else { return Ok(now) };
             (next, touching) = (finer.0, Some(finer.1));
             (self.given.keep)(&now);
-            found = Some(now);
         }
     }
 
@@ -371,9 +361,6 @@ pub struct Examined {
 
 impl Examined {
     /// Brackets on the mesh of a scene and on `levels` finer ones, from the first to the last.
-    ///
-    /// # Errors
-    /// Those of the total error; [`Error::Scene`] for a scene without a guaranteed bound.
     pub fn of(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
         let model = Arc::new(scene.build()?);
         let (problem, mut mesh) = scene.continuum_problem(&model)?;

@@ -3,12 +3,10 @@
 
 mod estimated;
 mod found;
-mod goal;
 mod guaranteed;
 
 pub use crate::continuum::ContinuumAnswer;
-pub use found::{Bound, Domain, Guarantee, JudgedMesh, Level, LevelKind, TotalError};
-pub use goal::{Ended, TotalErrorGoal};
+pub use found::{Bound, Domain, Ended, Guarantee, JudgedMesh, Level, LevelKind, TotalError, TotalErrorGoal};
 pub use guaranteed::Examined;
 
 use std::sync::Arc;
@@ -20,7 +18,7 @@ use crate::error::Error;
 use crate::scene::models::continuum::{NoGuarantee, WhyNot};
 use crate::scene::{Answer, Model, Scene};
 use crate::study::Status;
-use found::Search;
+use found::Asked;
 
 /// Refines the mesh of a scene until its total error is at most `goal`, as with the default settings.
 ///
@@ -52,12 +50,7 @@ pub fn total_error(scene: &Scene, goal: impl Into<TotalErrorGoal>) -> Result<Tot
 
 impl TotalError {
     /// Refines the mesh of a scene, given with its model, until its total error is small enough, or time or memory end.
-    /// `keep` is called with what was found after each mesh but the last.
-    ///
-    /// # Errors
-    /// [`signorini_qp::LinearError::Setting`] for a goal out of its range, [`Error::Scene`] for a scene without an
-    /// answer in the continuum and for an error of the force without a guarantee; those of [`signorini_qp::solve`] on
-    /// the first mesh.
+    /// `keep` is called with what was found after each mesh but the last; errors are those of [`total_error`].
     pub fn search(
         scene: &Scene,
         model: &Arc<Model>,
@@ -67,7 +60,7 @@ impl TotalError {
     ) -> Result<Self, Error> {
         goal.check()?;
         scene.check_continuum()?;
-        let search = Search { scene, model, goal, settings, keep, clock: Instant::now() };
+        let search = Asked { scene, model, goal, settings, keep, clock: Instant::now() };
         let found = match scene.continuum_problem(model) {
             Ok((problem, mesh)) => guaranteed::total_error(&search, &problem, mesh),
             Err(WhyNot::NoGuarantee(NoGuarantee { path, message })) if goal.force_error.is_some() => {

@@ -20,10 +20,11 @@ mod slopes;
 mod tests;
 
 pub(super) use slopes::Slopes;
+use slopes::add_at;
 pub(crate) use slopes::{Pairing, add_width, areas_by_places};
 
 use super::effect::{Why, derivative};
-use super::output::{Branch, Direct, by_component, moment_of, obstacles_of, stress_of};
+use super::output::{Direct, Smooth, by_component, moment_of, obstacles_of, stress_of};
 use crate::error::Error;
 use crate::fem::assembly::{
     Density, FacetPoint, Kinks, Points, area_and_integral, body_force_by_places, centrifugal_by_places,
@@ -229,7 +230,6 @@ pub(crate) fn add_springs(
     Ok(())
 }
 
-/// A nodal field at a point of a facet.
 fn at_point(body: &ElasticBody, nodal: &[f64], point: &FacetPoint) -> [f64; 3] {
     interpolated(&body.gather(nodal, point.nodes), &point.shape, point.nodes.len())
 }
@@ -243,7 +243,7 @@ fn points(profile: Option<&Profile>) -> Points<'_> {
     profile.map_or(Points::Own, |profile| Points::Fine(profile.kinks()))
 }
 
-impl Branch {
+impl Smooth {
     /// The change with the place of each node, length `dim * n_nodes`, per length.
     pub(super) fn direct_by_places(&self, answer: &Answer) -> Result<Vec<f64>, Why> {
         let (model, body) = (answer.model(), answer.model().body());
@@ -294,10 +294,7 @@ fn add_moment(answer: &Answer, obstacle: usize, axis: usize, gradient: &mut [f64
     let slopes = Slopes::of(model, obstacle);
     let rows = model.rows().iter().zip(answer.multiplier());
     for (row, &lambda) in rows.filter(|(row, lambda)| row.obstacle == obstacle && **lambda != 0.0) {
-        let mut add = |node: usize, change: [f64; 3]| {
-            let own = &mut gradient[dimension * node..dimension * (node + 1)];
-            own.iter_mut().zip(change).for_each(|(sum, part)| *sum += lambda * part);
-        };
+        let mut add = |node: usize, change: [f64; 3]| add_at(gradient, dimension, node, lambda, change);
         let moment = |at: [f64; 3], force: [f64; 3]| moment_of(model, obstacle, at, force, axis);
         let at_origin = moment([0.0; 3], row.normal);
         let of_place = COORDINATES.map(|direction| moment(direction, row.normal) - at_origin);

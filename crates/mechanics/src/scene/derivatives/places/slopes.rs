@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use crate::fem::assembly::{Density, FacetPoint, Points, integral_by_places, normal_sums};
 use crate::fem::body::ON_THE_AXIS;
 use crate::fem::geometry::{dot, length};
-use crate::scene::answers::patch::{Patch, StraightCell};
+use crate::scene::answers::patch::{ContactPatch, StraightCell};
 use crate::scene::derivatives::effect::derivative;
 use crate::scene::input::entry::point;
 use crate::scene::input::obstacle::{ObstacleRow, PlacedObstacle, shortest_edges};
@@ -58,16 +58,12 @@ impl<'a> Slopes<'a> {
         self.row(node, self.model.mesh().nodes()[node]).is_some()
     }
 
-    /// The row of a node at another place.
     fn row(&self, node: usize, at: [f64; 3]) -> Option<ObstacleRow> {
         let candidate = *self.candidate_of.get(&node)?;
         self.obstacle.row(candidate, at, self.obstacle.shift(self.model.gap())).ok()?
     }
 
     /// The change of the row of a node.
-    ///
-    /// # Errors
-    /// Why there is none.
     pub fn at(&self, node: usize) -> Result<Slope, String> {
         match self.candidate_of.get(&node).and_then(|&candidate| self.obstacle.facing(candidate)) {
             Some(facing) if facing.area.is_some() => Err(format!(
@@ -201,8 +197,7 @@ fn add_obstacle(
         of_sum[row.node] = [0, 1, 2].map(|axis| factor * (normal[axis] - facing * row.outward[axis]));
         if !slopes.has_fixed_normals() {
             let turning = slopes.at(row.node)?.of_normal(row.outward);
-            let own = &mut gradient[dimension * row.node..dimension * (row.node + 1)];
-            own.iter_mut().zip(turning).for_each(|(sum, part)| *sum += weight * row.tributary_area * part);
+            add_at(gradient, dimension, row.node, weight * row.tributary_area, turning);
         }
     }
     // The area of a coefficient is a sum of those of nodes.
@@ -231,7 +226,7 @@ fn add_obstacle(
 pub(crate) fn add_width(answer: &Answer, obstacle: usize, factor: f64, gradient: &mut [f64]) -> Result<(), String> {
     let (model, body) = (answer.model(), answer.model().body());
     let Some(boundary) = model.mesh().boundary(model.obstacles()[obstacle].boundary()) else { return Ok(()) };
-    let Some(patch) = Patch::new(answer, obstacle) else { return Ok(()) };
+    let Some(patch) = ContactPatch::new(answer, obstacle) else { return Ok(()) };
     let mut cells_of: BTreeMap<usize, Vec<&StraightCell>> = BTreeMap::new();
     patch.cells().iter().for_each(|cell| cells_of.entry(cell.facet).or_default().push(cell));
     let mut share_of: HashMap<&[usize], f64> = HashMap::new();
@@ -261,7 +256,7 @@ pub(crate) fn add_width(answer: &Answer, obstacle: usize, factor: f64, gradient:
 }
 
 /// The covered and the whole length of straight cells, stretched.
-fn lengths(patch: &Patch, cells: &[&StraightCell]) -> [f64; 2] {
+fn lengths(patch: &ContactPatch, cells: &[&StraightCell]) -> [f64; 2] {
     let has_contact = cells.iter().any(|cell| cell.nodes.iter().any(|&node| patch.is_closed(node)));
     cells.iter().fold([0.0; 2], |[covered, whole], cell| {
         let all = patch.sizes(cell, &patch.places(&cell.nodes)).0;
@@ -272,7 +267,7 @@ fn lengths(patch: &Patch, cells: &[&StraightCell]) -> [f64; 2] {
 }
 
 /// Adds `factor` L dc for a facet at an end of the contact.
-fn add_end(patch: &Patch, cells: &[&StraightCell], factor: f64, gradient: &mut [f64]) -> Result<(), String> {
+fn add_end(patch: &ContactPatch, cells: &[&StraightCell], factor: f64, gradient: &mut [f64]) -> Result<(), String> {
     let model = patch.answer().model();
     let dimension = model.body().dimension();
     let [covered, whole] = lengths(patch, cells);
@@ -312,9 +307,6 @@ pub(crate) struct Pairing<'a> {
 /// Adds the change of `lambda_i b_i . w + nu_i (b_i . u - g_i)` over all rows; `adjoint` is w at the nodes.
 ///
 /// Rows with zero lambda and zero nu take no part, wherever they meet their obstacle.
-///
-/// # Errors
-/// Why a row has no derivative.
 pub(super) fn add(pairing: &Pairing, adjoint: &[f64], gradient: &mut [f64]) -> Result<(), String> {
     let (answer, model) = (pairing.answer, pairing.answer.model());
     let multipliers = answer.multiplier().iter().zip(pairing.forces);
@@ -342,10 +334,6 @@ fn add_row(
 ) -> Result<(), String> {
     let (answer, model) = (pairing.answer, pairing.answer.model());
     let dimension = model.body().dimension();
-    let mut add_at = |node: usize, factor: f64, vector: [f64; 3]| {
-        let own = &mut gradient[dimension * node..dimension * (node + 1)];
-        own.iter_mut().zip(vector).for_each(|(sum, part)| *sum += factor * part);
-    };
     if !slopes.has_fixed_normals() || row.is_mean {
         // The displacement of the node against its obstacle, whose travel is against the approach direction.
         let approach = model.obstacles()[row.obstacle].approach();
@@ -358,14 +346,24 @@ fn add_row(
         let u = relative(answer.displacement(), answer.travel(row.obstacle));
         let w = relative(adjoint, unknown.map(|unknown| pairing.adjoint[unknown]));
         let vector = [0, 1, 2].map(|axis| lambda * w[axis] + nu * u[axis]);
-        add_at(row.node, 1.0, slopes.at(row.node)?.of_normal(vector));
+        add_at(gradient, dimension, row.node, 1.0, slopes.at(row.node)?.of_normal(vector));
     }
     if nu != 0.0 {
         for (node, share) in shares_of_gap(pairing, row, slopes) {
-            slopes.at(node)?.gap.into_iter().for_each(|(node, slope)| add_at(node, -nu * share, slope));
+            slopes
+                .at(node)?
+                .gap
+                .into_iter()
+                .for_each(|(node, slope)| add_at(gradient, dimension, node, -nu * share, slope));
         }
     }
     Ok(())
+}
+
+/// Adds `factor` times a vector at a node.
+pub(super) fn add_at(gradient: &mut [f64], dimension: usize, node: usize, factor: f64, vector: [f64; 3]) {
+    let own = &mut gradient[dimension * node..dimension * (node + 1)];
+    own.iter_mut().zip(vector).for_each(|(sum, part)| *sum += factor * part);
 }
 
 /// The nodes whose gaps make up the gap of a row of the problem, with their shares: the node alone, or those of its

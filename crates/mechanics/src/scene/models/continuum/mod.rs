@@ -111,11 +111,6 @@ impl Scene {
                 none(format!("ties[{tie}]"), message)
             }
         })?;
-        if problem.turns_inside(&mesh) {
-            let message =
-                "axes around a line through the body have no guaranteed bound: on the line the stiffness has no value";
-            return Err(none("material.orthotropic.around", message));
-        }
         for (tie, covered) in model.parts.ties.covered.iter().enumerate() {
             let is_joined = |&(side, share): &(usize, f64)| {
                 joined.get(tie).is_some_and(|shares| (shares[side] - share).abs() <= ALL_OF_IT)
@@ -147,8 +142,8 @@ impl Scene {
 
     /// What fills the elements of a phase, under the body forces of the scene.
     fn medium(&self, phase: &Phase, formulation: &Formulation) -> Result<Medium, WhyNot> {
-        if phase.law.turns() && (formulation.dimension() == 3 || phase.own.is_some()) {
-            let message = "a stiffness with axes around a line has no guaranteed bound in space, nor with a temperature or an initial stress";
+        if phase.law.turns() {
+            let message = "a stiffness with axes around a line has no guaranteed bound";
             return Err(none("material.orthotropic.around", message));
         }
         let mut body_force = [0.0; 3];
@@ -191,7 +186,7 @@ fn within_reach(problem: ContinuumProblem, mut mesh: SimplexMesh) -> Result<(Con
             has_facet[obstacle] |= gap.above.is_finite();
             partly.push((outer.cell, obstacle));
         }
-        let is_missed = |obstacle: &usize| !has_facet[*obstacle] && problem.travel(*obstacle).is_some();
+        let is_missed = |obstacle: &usize| !has_facet[*obstacle] && problem.obstacles[*obstacle].pressed.is_some();
         let Some(obstacle) = (0..has_facet.len()).find(is_missed) else { break };
         let mut marked = vec![false; mesh.count()];
         partly.iter().filter(|of| of.1 == obstacle).for_each(|of| marked[of.0] = true);
