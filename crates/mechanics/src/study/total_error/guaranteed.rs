@@ -7,13 +7,13 @@ use super::found::{
     Asked, Bound, Domain, Ended, Guarantee, JudgedMesh, LEAST, Level, LevelKind, MARKED, PER_UNKNOWN, TotalError,
     marked, shortage,
 };
-use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use crate::error::Error;
 use crate::fem::ElementKind;
 use crate::fem::assembly::internal_force;
 use crate::scene::{Answer, Scene, Warning};
 use crate::study::warnings::{check_motion, of_refined};
 use crate::study::{ModelSize, Status};
+use signorini_guarantee::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use signorini_qp as qp;
 use signorini_qp::{Method, Settings, Solution, dot, solve};
 
@@ -100,7 +100,8 @@ impl Search<'_> {
             self.settings.watch.step("mesh", now.levels.len());
             // The answer on the last mesh takes as long as its displacement.
             let settings = self.settings.clone().watched(&self.settings.watch.keeping(last_seconds));
-            let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &settings) {
+            let found = Bracket::new(self.problem, &mesh, touching.as_deref(), &settings);
+            let bracket = match found.map_err(Error::from) {
                 Ok(bracket) => bracket,
                 Err(Error::Qp(qp::Error::UnderHeld { .. })) if coarse < COARSE && !self.problem.has_circles() => {
                     coarse += 1;

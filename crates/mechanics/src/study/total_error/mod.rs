@@ -5,9 +5,9 @@ mod estimated;
 mod found;
 mod guaranteed;
 
-pub use crate::continuum::ContinuumAnswer;
 pub use found::{Bound, Domain, Ended, Guarantee, JudgedMesh, Level, LevelKind, TotalError, TotalErrorGoal};
 pub use guaranteed::Examined;
+pub use signorini_guarantee::ContinuumAnswer;
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -6,10 +6,6 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::rigid_face::{Motion, RigidFace};
-use crate::continuum::{
-    Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
-    RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
-};
 use crate::error::Error;
 use crate::fem::body::{ON_THE_AXIS, Phase};
 use crate::fem::geometry::{COORDINATES, dot};
@@ -20,6 +16,10 @@ use crate::scene::input::entry::wrong;
 use crate::scene::input::obstacle::{Between, PlacedObstacle};
 use crate::scene::input::schema::condition::LoadSpec;
 use crate::scene::input::schema::{Rule, Scene};
+use signorini_guarantee::{
+    Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
+    RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
+};
 
 /// Times that facets partly within the reach of a pressed obstacle are refined.
 const MOST_ROUNDS: usize = 12;

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::{WhyNot, none};
-use crate::continuum::{Circle, Condition, Held, Linear, Point};
 use crate::error::Error;
 use crate::fem::Mesh;
 use crate::fem::assembly::turning_traction;
@@ -15,6 +14,7 @@ use crate::scene::input::schema::condition::{LoadSpec, PressureSpec, ProfileSpec
 use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
 use crate::scene::input::sum::Profile;
 use crate::scene::models::load::spread;
+use signorini_guarantee::{Circle, Condition, Held, Linear, Point};
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
 const AT_A_CORNER: f64 = 1e-9;
