@@ -10,6 +10,7 @@ use super::found::{
 use crate::error::Error;
 use crate::fem::ElementKind;
 use crate::fem::assembly::internal_force;
+use crate::scene::models::continuum;
 use crate::scene::{Answer, Scene, Warning};
 use crate::study::warnings::{check_motion, of_refined};
 use crate::study::{ModelSize, Status};
@@ -58,7 +59,7 @@ fn on_last_mesh(
     of_bound: &ContinuumAnswer,
     distance: f64,
 ) -> Result<((Answer, Solution), JudgedMesh), Error> {
-    let model = Arc::new(given.scene.on_last_mesh(given.model, of_bound)?);
+    let model = Arc::new(continuum::on_last_mesh(given.scene, given.model, of_bound)?);
     let solution = solve(model.problem(), given.settings)?;
     let answer = Answer::of_any_size(model, &solution)?;
     let [away, size] = compared(&answer, of_bound)?;
@@ -364,7 +365,7 @@ impl Examined {
     /// Brackets on the mesh of a scene and on `levels` finer ones, from the first to the last.
     pub fn of(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
         let model = Arc::new(scene.build()?);
-        let (problem, mut mesh) = scene.continuum_problem(&model)?;
+        let (problem, mut mesh) = continuum::problem(scene, &model)?;
         let settings = Settings::with_method(Method::ActiveSet);
         let own = Answer::of_any_size(model.clone(), &solve(model.problem(), &settings)?)?;
         let mut found = Vec::with_capacity(levels + 1);
@@ -373,7 +374,7 @@ impl Examined {
             let judged = judged(&own, &bracket);
             let from_elements = || -> Result<f64, Error> {
                 let of_bound = bracket.answer();
-                let last = Arc::new(scene.on_last_mesh(&model, &of_bound)?);
+                let last = Arc::new(continuum::on_last_mesh(scene, &model, &of_bound)?);
                 let solution = solve(last.problem(), &settings)?;
                 Ok(compared(&Answer::of_any_size(last, &solution)?, &of_bound)?[0])
             };
