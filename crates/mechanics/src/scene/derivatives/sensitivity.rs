@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::effect::{Effect, Why, effect};
-use super::output::{Branch, Output};
+use super::output::{Output, Smooth};
 use super::parameter::{self, Kind, Parameter};
 use super::places::{Pairing, by_places};
 use crate::error::Error;

@@ -68,8 +68,8 @@ type Matrices = (SymmetricMatrix, Vec<f64>, Option<Arc<NearNullSpace>>);
 
 pub(crate) fn matrices(parts: &Parts) -> Result<Matrices, Error> {
     let dofs = &parts.conditions.dofs;
-    let stiffness = stiffness(&parts.body, dofs).and_then(|of_body| parts.on_springs(of_body));
-    let of_free = stiffness.map_err(|error| match error {
+    let of_body = stiffness(&parts.body, dofs).map_err(Error::from);
+    let of_free = of_body.and_then(|of_body| parts.on_springs(of_body)).map_err(|error| match error {
         Error::Linear(qp::LinearError::NotFinite { .. }) => {
             let message = "the stiffness that it makes with body and thickness overflows; choose other units";
             wrong("material", message)
@@ -320,12 +320,12 @@ impl Model {
     /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs; supports have their
     /// prescribed values.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
-        self.parts.conditions.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
+        Ok(self.parts.conditions.dofs.expand(&self.parts.unknowns.displacement(displacement)?)?)
     }
 
     /// Nodal velocities, length `dim * n_nodes`, in length over time, from those of the unknowns; supports stand still.
     pub fn nodal_velocity(&self, velocity: &[f64]) -> Result<Vec<f64>, Error> {
-        self.parts.conditions.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)
+        Ok(self.parts.conditions.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)?)
     }
 
     /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these

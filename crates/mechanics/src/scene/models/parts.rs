@@ -70,11 +70,10 @@ impl Parts {
 
     /// The stiffness of the free dofs of the bodies, with all springs of the scene added to it.
     pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        match self.conditions.springs.is_empty() {
+        let Conditions { springs, dofs, .. } = &self.conditions;
+        match springs.is_empty() {
             true => Ok(of_body),
-            false => {
-                Springs::added_to(&self.conditions.springs, &of_body, &self.conditions.dofs, self.body.dimension())
-            }
+            false => Ok(Springs::added_to(springs, &of_body, dofs, self.body.dimension())?),
         }
     }
 

@@ -26,7 +26,7 @@ pub(crate) fn first_scene(file: &Path, named: &str) -> Result<String, Error> {
         }
     }
     let message = format!("no first scene holds one boundary of this mesh and presses another: {reason}");
-    Err(Error::Mesh { message })
+    fail(message)
 }
 
 /// The approximate strain under the force: far from large, far above rounding.

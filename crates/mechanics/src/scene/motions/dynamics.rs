@@ -126,7 +126,7 @@ pub(crate) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<Dynamics>,
     let moving = moving(model, spec, mass, &loads)?;
     let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
     let mut problem = starting(model, spec, moving)?;
-    if scheme.uses_frequency() {
+    if scheme.about().uses_frequency {
         problem = problem.bounded_by(largest_frequency(model, form)?);
     }
     let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;

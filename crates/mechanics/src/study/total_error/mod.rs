@@ -60,7 +60,7 @@ impl TotalError {
     ) -> Result<Self, Error> {
         goal.check()?;
         continuum::check(scene)?;
-        let search = Search { scene, model, goal, settings, keep, clock: Instant::now() };
+        let search = Asked { scene, model, goal, settings, keep, clock: Instant::now() };
         let found = match continuum::problem(scene, model) {
             Ok((problem, mesh)) => guaranteed::total_error(&search, &problem, mesh),
             Err(WhyNot::NoGuarantee(NoGuarantee { path, message })) if goal.force_error.is_some() => {

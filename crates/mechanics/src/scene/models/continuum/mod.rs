@@ -17,6 +17,10 @@ use crate::scene::input::entry::wrong;
 use crate::scene::input::obstacle::{Between, PlacedObstacle};
 use crate::scene::input::schema::condition::LoadSpec;
 use crate::scene::input::schema::{Rule, Scene};
+use signorini_guarantee::{
+    Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
+    RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
+};
 pub(crate) use surface::{NoGuarantee, WhyNot, none};
 
 /// Times that facets partly within the reach of a pressed obstacle are refined.
@@ -71,9 +75,9 @@ pub(crate) fn problem(scene: &Scene, model: &Model) -> Result<(ContinuumProblem,
             .map(|boundary| (boundary.name.clone(), body.region_of(boundary).unwrap_or(0)))
             .collect(),
     };
-    let at_body = |error: Error| match error {
-        Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
-        other => other.into(),
+    let at_body = |error: fem::Error| match error {
+        fem::Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
+        other => Error::from(other).into(),
     };
     let mut pieces = Pieces::of(model.mesh()).map_err(at_body)?;
     if problem.is_axisymmetric {
@@ -108,11 +112,6 @@ pub(crate) fn problem(scene: &Scene, model: &Model) -> Result<(ContinuumProblem,
             none(format!("ties[{tie}]"), message)
         }
     })?;
-    if problem.turns_inside(&mesh) {
-        let message =
-            "axes around a line through the body have no guaranteed bound: on the line the stiffness has no value";
-        return Err(none("material.orthotropic.around", message));
-    }
     for (tie, covered) in model.parts.ties.covered.iter().enumerate() {
         let is_joined = |&(side, share): &(usize, f64)| {
             joined.get(tie).is_some_and(|shares| (shares[side] - share).abs() <= ALL_OF_IT)
@@ -144,8 +143,8 @@ pub(crate) fn on_last_mesh(scene: &Scene, first: &Model, last: &ContinuumAnswer)
 
 /// What fills the elements of a phase, under the body forces of the scene.
 fn medium(scene: &Scene, phase: &Phase, formulation: &Formulation) -> Result<Medium, WhyNot> {
-    if phase.law.turns() && (formulation.dimension() == 3 || phase.own.is_some()) {
-        let message = "a stiffness with axes around a line has no guaranteed bound in space, nor with a temperature or an initial stress";
+    if phase.law.turns() {
+        let message = "a stiffness with axes around a line has no guaranteed bound";
         return Err(none("material.orthotropic.around", message));
     }
     let mut body_force = [0.0; 3];

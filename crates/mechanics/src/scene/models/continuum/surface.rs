@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use crate::continuum::{Circle, Condition, Held, Linear, Point};
 use crate::error::Error;
 use crate::fem::Mesh;
 use crate::fem::assembly::turning_traction;
