@@ -94,9 +94,9 @@ AREAS = {
         ),
     ),
     "guarantee": Area(
-        ("crates/mechanics/src/continuum/**",),
+        ("crates/guarantee/src/**",),
         (
-            Stage("own", ("--package", "signorini-mechanics", "--lib"), ("continuum::",)),
+            Stage("own", ("--package", "signorini-guarantee", "--lib"), ("",)),
             Stage("program", ("--test", "program"), ("total_error", "guarantees"), 240),
         ),
     ),

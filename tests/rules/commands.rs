@@ -287,12 +287,12 @@ fn every_command_of_documents_and_comments_names_what_exists() {
 fn a_wrong_command_is_found() {
     let known = Known::read();
     for (right, wrong) in [
-        ("cargo test --package signorini-mechanics --lib continuum", "cargo test --lib continuum"),
+        ("cargo test --package signorini-guarantee --lib keys", "cargo test --lib keys"),
         ("cargo test --test rules a_wrong_command", "cargo test --test rules a_right_command"),
         ("cargo test --test rules", "cargo test --test rule"),
         (
-            "cargo test --package signorini-mechanics blocks_of_many_cells -- --ignored",
-            "cargo test --package signorini-mechanics blocks_of_many_cells",
+            "cargo test --package signorini-guarantee blocks_of_many_cells -- --ignored",
+            "cargo test --package signorini-guarantee blocks_of_many_cells",
         ),
         ("cargo run --release --example two_springs", "cargo run --release --example three_springs"),
         ("cargo run --example studies -- modes scenes 200", "cargo run --example studies -- mods scenes 200"),

@@ -60,6 +60,7 @@ fn each_dependency_stands_once_in_the_workspace_with_its_reason_above_it() {
         "crates/qp",
         "crates/lcp",
         "crates/fem",
+        "crates/guarantee",
         "crates/mechanics",
         "crates/output",
         "python",

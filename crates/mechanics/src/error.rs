@@ -102,6 +102,16 @@ impl From<signorini_fem::Error> for Error {
     }
 }
 
+impl From<signorini_guarantee::Error> for Error {
+    fn from(error: signorini_guarantee::Error) -> Self {
+        match error {
+            signorini_guarantee::Error::Linear(error) => error.into(),
+            signorini_guarantee::Error::Fem(error) => error.into(),
+            signorini_guarantee::Error::Qp(error) => error.into(),
+        }
+    }
+}
+
 impl Error {
     /// The best answer of a solve that ended without a certified one; `None` for every other error.
     pub fn into_best(self) -> Option<Solution> {

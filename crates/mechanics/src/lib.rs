@@ -36,7 +36,6 @@
 #![allow(clippy::missing_errors_doc, reason = "see above: the sentence of an error says what is wrong")]
 
 mod bytes;
-mod continuum;
 mod error;
 pub mod motion;
 pub mod scene;

@@ -113,45 +113,10 @@ pub struct ModalAnalysis {
     pub seconds: f64,
 }
 
-impl Scene {
-    /// The request for modes, if the scene has one.
-    pub fn modes(&self) -> Option<&ModesSpec> {
-        match &self.analysis {
-            Some(AnalysisSpec::Modes(spec)) => Some(spec),
-            _ => None,
-        }
-    }
-
-    /// The `count` lowest natural vibrations of the scene about its equilibrium.
-    ///
-    /// ```
-    /// use signorini_mechanics::Scene;
-    /// use signorini_qp::Settings;
-    ///
-    /// // A bar of length 1 with waves of speed 1, held at one end: f = 1/4, 3/4, 5/4, ...
-    /// let scene = Scene::from_json(
-    ///     r#"{
-    ///         "model": "bar",
-    ///         "body": {"bar": {"area": 1, "x": {"points": [0, 1], "divisions": [100]}}},
-    ///         "material": {"young": 1, "poisson": 0, "density": 1},
-    ///         "supports": [{"on": {"boundary": "left"}, "x": 0}],
-    ///         "analysis": {"modes": {"count": 2}}
-    ///     }"#,
-    ///     "bar",
-    /// )?;
-    /// let found = scene.modal_analysis(2, &Settings::default())?;
-    /// assert!((found.modes[0].frequency - 0.25).abs() < 1e-5 && (found.modes[1].frequency - 0.75).abs() < 1e-3);
-    /// # Ok::<(), signorini_mechanics::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a count of zero or above 1000, and for a material without density; those of
-    /// [`Scene::build`], of the equilibrium, and of the factorisations.
-    pub fn modal_analysis(&self, count: usize, settings: &Settings) -> Result<ModalAnalysis, Error> {
-        let analysis = Some(AnalysisSpec::Modes(ModesSpec { count }));
-        let scene = Scene { analysis, ..self.clone() };
-        ModalAnalysis::of(Arc::new(scene.build()?), count, settings)
-    }
+pub(crate) fn modal_analysis(scene: &Scene, count: usize, settings: &Settings) -> Result<ModalAnalysis, Error> {
+    let analysis = Some(AnalysisSpec::Modes(ModesSpec { count }));
+    let scene = Scene { analysis, ..scene.clone() };
+    ModalAnalysis::of(Arc::new(scene.build()?), count, settings)
 }
 
 impl ModalAnalysis {
@@ -246,7 +211,8 @@ impl<'a> Shapes<'a> {
         let nodal = SymmetricMatrix::from_lower(model.nodal_mass(MassForm::Consistent)?)?;
         let of_nodes = nodal.mul(&vec![1.0; nodal.dim()]);
         let is_radial = |axis: usize| model.body().formulation().is_axisymmetric() && axis == 0;
-        let axes = (0..dimension).map(|axis| !is_radial(axis) && !model.parts.symmetry.crosses(axis)).collect();
+        let axes =
+            (0..dimension).map(|axis| !is_radial(axis) && !model.parts.conditions.symmetry.crosses(axis)).collect();
         let moved = problem.contact().mul(answer.unknowns());
         let gaps = problem.gap().iter().zip(moved).map(|(gap, moved)| gap - moved).collect();
         Ok(Shapes { model, closed, of_nodes, axes, forces: answer.multiplier().to_vec(), gaps })

@@ -10,6 +10,7 @@ use super::{ModelSize, Summary};
 use crate::bytes;
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
+use crate::scene::models::rigid_body_modes::RigidBodyModes;
 use crate::scene::{Answer, ContactExtent, Model, Warning};
 use serde::Serialize;
 use signorini_qp as qp;
@@ -61,11 +62,12 @@ impl Summary {
             ..ModelSize::of(model.problem())
         };
         let mut summary = Summary::new(solution, size, goal, assemble_seconds);
-        if summary.solution.lost_pivot().is_some() && !model.is_supported() {
+        let is_supported = || RigidBodyModes::of_parts(&model.parts).free(&model.parts, &[]).is_empty();
+        if summary.solution.lost_pivot().is_some() && !is_supported() {
             // The small pivot belongs to a rigid-body mode that only contact holds: no digit is lost.
             summary.warnings.clear();
         }
-        if !model.is_linear() && warnings.iter().any(|warning| warning.code == BEYOND) {
+        if !model.parts.scene.is_linear && warnings.iter().any(|warning| warning.code == BEYOND) {
             summary.status = Status::BeyondSmallDisplacements;
         }
         summary.warnings.extend(warnings);

@@ -416,8 +416,9 @@ fn between(answer: &Answer, index: usize) -> Option<BetweenBodies> {
 
 fn of_obstacle(answer: &Answer, index: usize, resultant: &Resultant, segments: &[Segment]) -> ObstacleContact {
     let model = answer.model();
-    let copies = model.copies_of_obstacle(index);
-    let parts = model.parts_of_whole() / copies;
+    let parts = model.parts.parts_of_obstacle(index);
+    let (approach, nodes) = (model.obstacles()[index].approach(), model.mesh().nodes());
+    let contacts = |own: &Segment| model.parts.conditions.symmetry.contacts(approach, nodes, &own.nodes);
     let own = segments.iter().filter(|segment| segment.obstacle == index);
     let rows = || model.rows().iter().enumerate().filter(|(_, row)| row.obstacle == index).map(|(row, _)| row);
     let sum_of_multipliers = rows().fold(0.0, |sum, row| sum - answer.multiplier()[row]) * parts;
@@ -429,14 +430,14 @@ fn of_obstacle(answer: &Answer, index: usize, resultant: &Resultant, segments: &
         of: resultant.of.clone(),
         on: resultant.on.clone(),
         between: between(answer, index),
-        copies: copies as usize,
+        copies: (model.parts_of_whole() / parts) as usize,
         count: rows().filter(|&row| answer.contact_set().contains(row)).count(),
         force: if length(force) > CANCELS * sum_of_multipliers { length(force) } else { 0.0 },
         sum_of_multipliers,
         travel: resultant.travel,
         pressure_max: rows().map(|row| answer.pressure()[row]).fold(0.0, f64::max) + 0.0,
         pressure_mean: (area > 0.0).then(|| sum_of_multipliers / area),
-        contacts: own.map(|segment| model.contacts_of(index, &segment.nodes)).sum(),
+        contacts: own.map(contacts).sum(),
         estimate: estimate.filter(|_| model.mesh().dimension() > 1),
     }
 }

@@ -73,7 +73,7 @@ impl Answer {
     /// solution if small displacements do not describe it, unless the scene [is linear](crate::Scene::is_linear).
     pub fn of(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
         let answer = Self::of_any_size(model, solution)?;
-        match answer.beyond_small_displacements().filter(|_| !answer.model.is_linear()) {
+        match answer.beyond_small_displacements().filter(|_| !answer.model.parts.scene.is_linear) {
             Some(message) => Err(Error::BeyondSmallDisplacements { message, solution: Box::new(solution.clone()) }),
             None => Ok(answer),
         }
@@ -166,7 +166,8 @@ impl Answer {
     /// The whole shift of an obstacle along its approach direction, in length: the gap of the scene plus its own gap,
     /// minus its travel.
     pub fn shift(&self, obstacle: usize) -> f64 {
-        self.model.shift_of(obstacle) - self.travel(obstacle).unwrap_or(0.0)
+        let (own, moved) = (self.model.obstacles()[obstacle].shift(self.model.gap()), self.model.moved_obstacles());
+        own + moved.get(obstacle).copied().unwrap_or(0.0) - self.travel(obstacle).unwrap_or(0.0)
     }
 
     /// The remaining gap at the node of each row, one entry per contact row, in length, `>= 0` up to rounding.
@@ -228,7 +229,7 @@ impl Answer {
     /// [`ReferencePoints::values`](crate::scene::models::points::ReferencePoints::values).
     pub(crate) fn values_of_points(&self) -> Vec<[[f64; 6]; 2]> {
         let displacement = |node: usize| self.model.at_node(&self.displacement, node);
-        let points = &self.model.parts.points;
+        let points = &self.model.parts.conditions.points;
         let mut all = points.values(displacement, &self.model.parts.ties.rows, &self.of_ties);
         for (point, [moved, force]) in points.all.iter().zip(&mut all) {
             if let Some(tie) = point.bolt {
@@ -379,7 +380,7 @@ impl Model {
     fn state(&self, displacement: &[f64]) -> Result<State, Error> {
         let nodes = self.mesh().nodes();
         let State { stress, force, deformation } = State::of(self.body(), displacement)?;
-        let stress = stress.of_whole(self.body(), |node| self.parts.symmetry.axes_at(&nodes[node]));
+        let stress = stress.of_whole(self.body(), |node| self.parts.conditions.symmetry.axes_at(&nodes[node]));
         Ok(State { stress, force, deformation })
     }
 

@@ -19,7 +19,7 @@ impl Answer {
         let resultants = self.resultants()?;
         let named = |of: String| resultants.iter().find(|one| one.of == of);
         // The points of a deck are called by the numbers of their nodes.
-        let points = self.model().parts.points.all.iter().zip(self.values_of_points());
+        let points = self.model().parts.conditions.points.all.iter().zip(self.values_of_points());
         let mut all: HashMap<usize, [[f64; 6]; 2]> =
             points.filter_map(|(point, values)| Some((point.name.parse().ok()?, values))).collect();
         let of_node = |node: &ReferenceNode| {

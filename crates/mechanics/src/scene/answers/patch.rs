@@ -163,14 +163,18 @@ impl<'a> ContactPatch<'a> {
             }
         }
         // Beyond a plane of symmetry the boundary goes on.
-        let model = self.answer.model();
-        beside.iter().any(|(&other, &cells)| cells == 1 && !model.share_plane(node, other))
+        beside.iter().any(|(&other, &cells)| cells == 1 && !self.share_plane(node, other))
     }
 
     /// Returns `true` if a node lies on a plane of symmetry: the boundary of the meshed part ends there, not that of
     /// the whole.
     pub fn is_on_plane(&self, node: usize) -> bool {
-        self.answer.model().share_plane(node, node)
+        self.share_plane(node, node)
+    }
+
+    fn share_plane(&self, node: usize, other: usize) -> bool {
+        let (model, nodes) = (self.answer.model(), self.answer.model().mesh().nodes());
+        model.parts.conditions.symmetry.share_plane(&nodes[node], &nodes[other])
     }
 
     /// The mean pressure of nodes around a node, itself or not, in force per area. A node on a plane of symmetry has
@@ -183,7 +187,7 @@ impl<'a> ContactPatch<'a> {
 
     /// The places of the node `other` and its mirror images that are around a node in the whole.
     fn images_around(&self, node: usize, other: usize) -> Vec<[f64; 3]> {
-        self.answer.model().parts.symmetry.images_around(&self.place(node), &self.place(other))
+        self.answer.model().parts.conditions.symmetry.images_around(&self.place(node), &self.place(other))
     }
 
     /// Returns `true` if all nodes around a node are closed.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::parameter::{Kind, Parameter};
+use super::parameter::{self, Kind, Parameter};
 use crate::error::Error;
 use crate::fem::ElasticBody;
 use crate::fem::assembly::internal_force;
@@ -10,7 +10,10 @@ use crate::fem::body::PhaseNumber;
 use crate::fem::geometry::COORDINATES;
 use crate::scene::answers::answer::Answer;
 use crate::scene::input::obstacle::PlacedObstacle;
+use crate::scene::input::parse::files;
 use crate::scene::input::schema::Scene;
+use crate::scene::models::elastic::{bodies, joined};
+use crate::scene::models::load::add_load;
 use crate::scene::models::rows::{self, Found};
 use signorini_qp::{Change, SparseMatrix, largest};
 
@@ -49,20 +52,20 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
         }
         Kind::Load(index) => {
             let mut nodal = vec![0.0; parts.body.nodal_dofs()];
-            scene.add_load(&parts.body, *index, &mut nodal).map_err(in_words)?;
+            add_load(scene, &parts.body, *index, &mut nodal).map_err(in_words)?;
             of_load(&nodal)
         }
         Kind::InLoad(index, _) if parameter.is_linear() => {
             let mut nodal = vec![0.0; parts.body.nodal_dofs()];
-            let unit = scene.unit_load(parameter).map_err(in_words)?;
-            unit.add_load(&parts.body, *index, &mut nodal).map_err(in_words)?;
+            let unit = parameter::unit_load(scene, parameter).map_err(in_words)?;
+            add_load(&unit, &parts.body, *index, &mut nodal).map_err(in_words)?;
             of_load(&nodal)
         }
         Kind::InLoad(index, _) => {
             let at = |by: f64| -> Result<Vec<f64>, Why> {
                 let mut nodal = vec![0.0; parts.body.nodal_dofs()];
-                let varied = scene.varied(parameter, by).map_err(in_words)?;
-                varied.add_load(&parts.body, *index, &mut nodal).map_err(in_words)?;
+                let varied = parameter::varied(scene, parameter, by).map_err(in_words)?;
+                add_load(&varied, &parts.body, *index, &mut nodal).map_err(in_words)?;
                 Ok(nodal)
             };
             let scale = if parameter.value == 0.0 { 1.0 } else { parameter.value.abs() };
@@ -88,10 +91,12 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
 /// the body.
 fn is_proportional(answer: &Answer) -> bool {
     let parts = &answer.model().parts;
-    let is_moved =
-        || (0..parts.dofs.nodal_count()).any(|dof| parts.dofs.prescribed(dof).is_some_and(|value| value != 0.0));
+    let is_moved = || {
+        (0..parts.conditions.dofs.nodal_count())
+            .any(|dof| parts.conditions.dofs.prescribed(dof).is_some_and(|value| value != 0.0))
+    };
     let is_one = parts.body.phases().len() == 1 && !parts.body.has_own_stress();
-    is_one && parts.springs.is_empty() && parts.rigid_faces.is_empty() && !is_moved()
+    is_one && parts.conditions.springs.is_empty() && parts.conditions.rigid_faces.is_empty() && !is_moved()
 }
 
 /// No change of the problem of an answer.
@@ -103,7 +108,7 @@ fn unchanged(answer: &Answer) -> Change {
 /// The change by a load on the nodes (length `dim * n_nodes`, in force per unit).
 fn of_nodal_load(answer: &Answer, nodal: &[f64]) -> Result<Change, Why> {
     let parts = &answer.model().parts;
-    let load = parts.unknowns.force(parts.dofs.restrict(nodal).map_err(in_words)?);
+    let load = parts.unknowns.force(parts.conditions.dofs.restrict(nodal).map_err(in_words)?);
     Ok(Change { load, ..unchanged(answer) })
 }
 
@@ -119,8 +124,8 @@ fn derivative_of_body(scene: &Scene, parameter: &Parameter, body: &ElasticBody) 
         _ => {
             // The phases that another value would change.
             let by_value = if parameter.value == 0.0 { 0.1 } else { -1e-3 * parameter.value };
-            let varied = scene.varied(parameter, by_value).map_err(in_words)?;
-            let varied = varied.bodies().and_then(|bodies| varied.joined(bodies)).map_err(in_words)?;
+            let varied = parameter::varied(scene, parameter, by_value).map_err(in_words)?;
+            let varied = bodies(&varied).and_then(|bodies| joined(&varied, bodies)).map_err(in_words)?;
             if varied.phases().len() != body.phases().len() {
                 return Err(format!("`{}` joins or parts materials", parameter.name));
             }
@@ -142,8 +147,9 @@ fn of_rows(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usiz
     for &row in active {
         let ends = model.rows()[row].ends.iter().map(|end| end.0);
         let of_axes = ends.flat_map(|node| (0..dimension).map(move |axis| (node, axis)));
-        let of_ends =
-            of_axes.flat_map(|(node, axis)| parts.unknowns.along(&parts.dofs, node, &COORDINATES[axis][..dimension]).0);
+        let of_ends = of_axes.flat_map(|(node, axis)| {
+            parts.unknowns.along(&parts.conditions.dofs, node, &COORDINATES[axis][..dimension]).0
+        });
         let travel = parts.unknowns.travel(model.rows()[row].obstacle);
         let mut of_row: Vec<usize> = of_ends.map(|entry| entry.0).chain(travel).collect();
         of_row.sort_unstable();
@@ -206,10 +212,10 @@ fn obstacles(
     match &parameter.kind {
         Kind::GapOf(index) => obstacles[*index] = obstacles[*index].moved(by),
         Kind::InShape(index, _) => {
-            let varied = scene.varied(parameter, by).map_err(in_words)?;
-            let site = (&parts.body, &parts.dofs);
+            let varied = parameter::varied(scene, parameter, by).map_err(in_words)?;
+            let site = (&parts.body, &parts.conditions.dofs);
             let path = format!("obstacles[{index}]");
-            let shaped = obstacles[*index].shaped(&varied.obstacles[*index], &path, site, varied.files());
+            let shaped = obstacles[*index].shaped(&varied.obstacles[*index], &path, site, files(&varied));
             obstacles[*index] = shaped.map_err(in_words)?;
         }
         _ => return Ok((obstacles, gap + by)),

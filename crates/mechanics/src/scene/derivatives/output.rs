@@ -102,7 +102,7 @@ impl Output {
                 3 => names.extend((0..3).map(|axis| format!("obstacles[{index}].moment[{axis}]"))),
                 _ => {}
             }
-            names.extend(model.is_pressed(index).then(|| format!("obstacles[{index}].travel")));
+            names.extend(model.parts.unknowns.pressed.contains(&index).then(|| format!("obstacles[{index}].travel")));
         }
         names.extend(["largest-displacement", "strain-energy"].map(String::from));
         names.push(format!("stress@{place}:xx"));
@@ -273,7 +273,7 @@ impl Output {
 
 /// The moment of a force of an obstacle at a place about an axis through the origin, in the whole body.
 pub(super) fn moment_of(model: &Model, obstacle: usize, at: [f64; 3], force: [f64; 3], axis: usize) -> f64 {
-    model.parts.symmetry.moment(model.obstacles()[obstacle].approach(), at, force, axis)
+    model.parts.conditions.symmetry.moment(model.obstacles()[obstacle].approach(), at, force, axis)
 }
 
 /// The work that the internal forces of a body do up to the displacement of an answer: they grow linearly from those of
@@ -393,7 +393,7 @@ fn equivalent([xx, yy, zz, xy, yz, zx]: &Symmetric) -> f64 {
 /// The derivative with respect to the unknowns, from that with respect to the displacements of the nodes.
 fn of_nodal(model: &Model, nodal: &[f64]) -> Result<Vec<f64>, Why> {
     let parts = &model.parts;
-    Ok(parts.unknowns.force(parts.dofs.restrict(nodal).map_err(in_words)?))
+    Ok(parts.unknowns.force(parts.conditions.dofs.restrict(nodal).map_err(in_words)?))
 }
 
 impl Smooth {

@@ -45,155 +45,135 @@ pub(crate) enum Kind {
     Places,
 }
 
-impl Scene {
-    /// The names of all numbers of the scene by which outputs have derivatives, and `nodes`.
-    pub fn parameters(&self) -> Vec<String> {
-        self.all_parameters().into_iter().map(|parameter| parameter.name).collect()
+pub(crate) fn named(scene: &Scene, name: &str) -> Result<Parameter, Error> {
+    let all = all(scene);
+    if let Some(found) = all.iter().find(|parameter| parameter.name == name) {
+        return Ok(found.clone());
     }
+    let names = || all.iter().map(|parameter| parameter.name.as_str());
+    let listed: Vec<String> = names().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
+    let more = if all.len() > MOST_LISTED { format!(" and {} more", all.len() - MOST_LISTED) } else { String::new() };
+    let meant = nearly(name, names());
+    Err(wrong("--to", format!("there is no parameter `{name}`; there are {}{more}{meant}", listed.join(", "))))
+}
 
-    /// The same scene with another value of the parameter of this name; `loads[0]` is a factor of that load.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a name that does not exist, with those that do, and for a value that the scene does not
-    /// allow.
-    pub fn with_parameter(&self, name: &str, value: f64) -> Result<Scene, Error> {
-        let parameter = self.parameter(name)?;
-        self.varied(&parameter, value - parameter.value)
+pub(crate) fn all(scene: &Scene) -> Vec<Parameter> {
+    let (length, force) = (scene.units.length.clone(), scene.units.force.clone());
+    let (pressure, none) = (scene.units.pressure(), String::new);
+    let mut all = Vec::new();
+    let mut add = |name: String, kind: Kind, value: f64, unit: String| all.push(Parameter { name, kind, value, unit });
+    if !scene.obstacles.is_empty() {
+        add("gap".into(), Kind::Gap, scene.gap, length.clone());
     }
-
-    pub(crate) fn parameter(&self, name: &str) -> Result<Parameter, Error> {
-        let all = self.all_parameters();
-        if let Some(found) = all.iter().find(|parameter| parameter.name == name) {
-            return Ok(found.clone());
+    for (index, obstacle) in scene.obstacles.iter().enumerate() {
+        let named = |field: &str| format!("obstacles[{index}].{field}");
+        match obstacle.force {
+            Some(value) => add(named("force"), Kind::Force(index), value, force.clone()),
+            None => add(named("gap"), Kind::GapOf(index), obstacle.gap.unwrap_or(0.0), length.clone()),
         }
-        let names = || all.iter().map(|parameter| parameter.name.as_str());
-        let listed: Vec<String> = names().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
-        let more =
-            if all.len() > MOST_LISTED { format!(" and {} more", all.len() - MOST_LISTED) } else { String::new() };
-        let meant = nearly(name, names());
-        Err(wrong("--to", format!("there is no parameter `{name}`; there are {}{more}{meant}", listed.join(", "))))
+        if obstacle.shape.shape().other_boundary().is_some() {
+            continue;
+        }
+        for (pointer, value) in numbers_of(&obstacle.shape) {
+            let is_length = !NO_LENGTHS.iter().any(|word| pointer.split('/').any(|part| part == *word));
+            let unit = if is_length { length.clone() } else { none() };
+            add(named(&in_words(&pointer)), Kind::InShape(index, pointer), value, unit);
+        }
     }
-
-    pub(crate) fn all_parameters(&self) -> Vec<Parameter> {
-        let (length, force) = (self.units.length.clone(), self.units.force.clone());
-        let (pressure, none) = (self.units.pressure(), String::new);
-        let mut all = Vec::new();
-        let mut add =
-            |name: String, kind: Kind, value: f64, unit: String| all.push(Parameter { name, kind, value, unit });
-        if !self.obstacles.is_empty() {
-            add("gap".into(), Kind::Gap, self.gap, length.clone());
+    for (index, load) in scene.loads.iter().enumerate() {
+        add(format!("loads[{index}]"), Kind::Load(index), 1.0, none());
+        for (pointer, value) in numbers_of(load) {
+            let name = in_words(&pointer);
+            let name = if name.starts_with('[') || name.is_empty() { name } else { format!(".{name}") };
+            // A load of one number is that number.
+            let name = if name.is_empty() { ".value".to_string() } else { name };
+            let unit = match pointer.split('/').nth(1) {
+                Some("traction" | "pressure") if pointer.contains("/value") => pressure.clone(),
+                Some("force") if pointer.contains("/value") => force.clone(),
+                Some("nodal-forces") => force.clone(),
+                _ => none(),
+            };
+            add(format!("loads[{index}]{name}"), Kind::InLoad(index, pointer), value, unit);
         }
-        for (index, obstacle) in self.obstacles.iter().enumerate() {
-            let named = |field: &str| format!("obstacles[{index}].{field}");
-            match obstacle.force {
-                Some(value) => add(named("force"), Kind::Force(index), value, force.clone()),
-                None => add(named("gap"), Kind::GapOf(index), obstacle.gap.unwrap_or(0.0), length.clone()),
-            }
-            if obstacle.shape.shape().other_boundary().is_some() {
-                continue;
-            }
-            for (pointer, value) in numbers_of(&obstacle.shape) {
-                let is_length = !NO_LENGTHS.iter().any(|word| pointer.split('/').any(|part| part == *word));
-                let unit = if is_length { length.clone() } else { none() };
-                add(named(&in_words(&pointer)), Kind::InShape(index, pointer), value, unit);
-            }
+    }
+    let text = serde_json::to_value(scene).unwrap_or_default();
+    let mut materials = vec![(String::new(), "/material".to_string())];
+    let mut temperatures = Vec::new();
+    let bodies = std::iter::once((String::new(), String::new())).chain(
+        (0..scene.further_bodies.len())
+            .map(|body| (format!("further-bodies[{body}]."), format!("/further-bodies/{body}"))),
+    );
+    for (name, place) in bodies {
+        if !name.is_empty() {
+            materials.push((name.clone(), format!("{place}/material")));
         }
-        for (index, load) in self.loads.iter().enumerate() {
-            add(format!("loads[{index}]"), Kind::Load(index), 1.0, none());
-            for (pointer, value) in numbers_of(load) {
-                let name = in_words(&pointer);
-                let name = if name.starts_with('[') || name.is_empty() { name } else { format!(".{name}") };
-                // A load of one number is that number.
-                let name = if name.is_empty() { ".value".to_string() } else { name };
-                let unit = match pointer.split('/').nth(1) {
-                    Some("traction" | "pressure") if pointer.contains("/value") => pressure.clone(),
-                    Some("force") if pointer.contains("/value") => force.clone(),
-                    Some("nodal-forces") => force.clone(),
-                    _ => none(),
-                };
-                add(format!("loads[{index}]{name}"), Kind::InLoad(index, pointer), value, unit);
-            }
-        }
-        let text = serde_json::to_value(self).unwrap_or_default();
-        let mut materials = vec![(String::new(), "/material".to_string())];
-        let mut temperatures = Vec::new();
-        let bodies = std::iter::once((String::new(), String::new())).chain(
-            (0..self.further_bodies.len())
-                .map(|body| (format!("further-bodies[{body}]."), format!("/further-bodies/{body}"))),
+        let count = |key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_array).map_or(0, Vec::len);
+        materials.extend(
+            (0..count("materials"))
+                .map(|part| (format!("{name}materials[{part}]."), format!("{place}/materials/{part}/material"))),
         );
-        for (name, place) in bodies {
-            if !name.is_empty() {
-                materials.push((name.clone(), format!("{place}/material")));
-            }
-            let count =
-                |key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_array).map_or(0, Vec::len);
-            materials.extend(
-                (0..count("materials"))
-                    .map(|part| (format!("{name}materials[{part}]."), format!("{place}/materials/{part}/material"))),
-            );
-            temperatures.extend(
-                (0..count("temperature"))
-                    .map(|entry| (format!("{name}temperature[{entry}]"), format!("{place}/temperature/{entry}"))),
-            );
-        }
-        let number = |place: &str, key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_f64);
-        for (name, place) in materials {
-            if let Some(value) = number(&place, "young") {
-                add(format!("{name}young"), Kind::Young(place.clone()), value, pressure.clone());
-            }
-            if let Some(value) = number(&place, "poisson") {
-                add(format!("{name}poisson"), Kind::Poisson(place), value, none());
-            }
-        }
-        for (name, place) in temperatures {
-            if let Some(value) = number(&place, "value") {
-                add(name, Kind::Temperature(place), value, "degree".into());
-            }
-        }
-        add("nodes".into(), Kind::Places, 0.0, length);
-        all
+        temperatures.extend(
+            (0..count("temperature"))
+                .map(|entry| (format!("{name}temperature[{entry}]"), format!("{place}/temperature/{entry}"))),
+        );
     }
+    let number = |place: &str, key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_f64);
+    for (name, place) in materials {
+        if let Some(value) = number(&place, "young") {
+            add(format!("{name}young"), Kind::Young(place.clone()), value, pressure.clone());
+        }
+        if let Some(value) = number(&place, "poisson") {
+            add(format!("{name}poisson"), Kind::Poisson(place), value, none());
+        }
+    }
+    for (name, place) in temperatures {
+        if let Some(value) = number(&place, "value") {
+            add(name, Kind::Temperature(place), value, "degree".into());
+        }
+    }
+    add("nodes".into(), Kind::Places, 0.0, length);
+    all
+}
 
-    /// The scene with a parameter of its shapes, loads, materials or temperatures changed by `by`.
-    pub(crate) fn varied(&self, parameter: &Parameter, by: f64) -> Result<Scene, Error> {
-        let mut varied = self.clone();
-        let value = parameter.value + by;
-        let refused = |error: serde_json::Error| wrong(parameter.name.as_str(), error.to_string());
-        match &parameter.kind {
-            Kind::Gap => varied.gap = value,
-            Kind::GapOf(index) => varied.obstacles[*index].gap = Some(value),
-            Kind::Force(index) => varied.obstacles[*index].force = Some(value),
-            Kind::InLoad(index, pointer) => {
-                varied.loads[*index] = with_number(&varied.loads[*index], pointer, value).map_err(refused)?;
-            }
-            Kind::InShape(index, pointer) => {
-                let shape = &varied.obstacles[*index].shape;
-                varied.obstacles[*index].shape = with_number(shape, pointer, value).map_err(refused)?;
-            }
-            Kind::Young(place) | Kind::Poisson(place) | Kind::Temperature(place) => {
-                let key = match parameter.kind {
-                    Kind::Young(_) => "young",
-                    Kind::Poisson(_) => "poisson",
-                    _ => "value",
-                };
-                let changed: Scene = with_number(self, &format!("{place}/{key}"), value).map_err(refused)?;
-                let (folder, reads_outside, is_linear) = (self.folder.clone(), self.reads_outside, self.is_linear);
-                varied = Scene { folder, reads_outside, is_linear, noted: self.noted.clone(), ..changed };
-            }
-            Kind::Load(index) => {
-                for (pointer, number) in numbers_of(&self.loads[*index]) {
-                    let number = match is_linear_in(&pointer) {
-                        true => number * value,
-                        false if pointer.ends_with("/omega") => number * value.max(0.0).sqrt(),
-                        false => continue,
-                    };
-                    varied.loads[*index] = with_number(&varied.loads[*index], &pointer, number).map_err(refused)?;
-                }
-            }
-            Kind::Places => return Err(wrong("nodes", "the places of all nodes are no single number")),
+/// The scene with a parameter of its shapes, loads, materials or temperatures changed by `by`.
+pub(crate) fn varied(scene: &Scene, parameter: &Parameter, by: f64) -> Result<Scene, Error> {
+    let mut varied = scene.clone();
+    let value = parameter.value + by;
+    let refused = |error: serde_json::Error| wrong(parameter.name.as_str(), error.to_string());
+    match &parameter.kind {
+        Kind::Gap => varied.gap = value,
+        Kind::GapOf(index) => varied.obstacles[*index].gap = Some(value),
+        Kind::Force(index) => varied.obstacles[*index].force = Some(value),
+        Kind::InLoad(index, pointer) => {
+            varied.loads[*index] = with_number(&varied.loads[*index], pointer, value).map_err(refused)?;
         }
-        Ok(varied)
+        Kind::InShape(index, pointer) => {
+            let shape = &varied.obstacles[*index].shape;
+            varied.obstacles[*index].shape = with_number(shape, pointer, value).map_err(refused)?;
+        }
+        Kind::Young(place) | Kind::Poisson(place) | Kind::Temperature(place) => {
+            let key = match parameter.kind {
+                Kind::Young(_) => "young",
+                Kind::Poisson(_) => "poisson",
+                _ => "value",
+            };
+            let changed: Scene = with_number(scene, &format!("{place}/{key}"), value).map_err(refused)?;
+            let (folder, reads_outside, is_linear) = (scene.folder.clone(), scene.reads_outside, scene.is_linear);
+            varied = Scene { folder, reads_outside, is_linear, noted: scene.noted.clone(), ..changed };
+        }
+        Kind::Load(index) => {
+            for (pointer, number) in numbers_of(&scene.loads[*index]) {
+                let number = match is_linear_in(&pointer) {
+                    true => number * value,
+                    false if pointer.ends_with("/omega") => number * value.max(0.0).sqrt(),
+                    false => continue,
+                };
+                varied.loads[*index] = with_number(&varied.loads[*index], &pointer, number).map_err(refused)?;
+            }
+        }
+        Kind::Places => return Err(wrong("nodes", "the places of all nodes are no single number")),
     }
+    Ok(varied)
 }
 
 impl Parameter {
@@ -203,21 +183,19 @@ impl Parameter {
     }
 }
 
-impl Scene {
-    /// The scene with a one in the place of a number to which a load is proportional, and zeros in those of its other
-    /// components.
-    pub(crate) fn unit_load(&self, parameter: &Parameter) -> Result<Scene, Error> {
-        let mut unit = self.clone();
-        let Kind::InLoad(index, own) = &parameter.kind else { return Ok(unit) };
-        for (pointer, _) in numbers_of(&self.loads[*index]) {
-            if is_linear_in(&pointer) {
-                let number = if pointer == *own { 1.0 } else { 0.0 };
-                unit.loads[*index] = with_number(&unit.loads[*index], &pointer, number)
-                    .map_err(|error| wrong(parameter.name.as_str(), error.to_string()))?;
-            }
+/// The scene with a one in the place of a number to which a load is proportional, and zeros in those of its other
+/// components.
+pub(crate) fn unit_load(scene: &Scene, parameter: &Parameter) -> Result<Scene, Error> {
+    let mut unit = scene.clone();
+    let Kind::InLoad(index, own) = &parameter.kind else { return Ok(unit) };
+    for (pointer, _) in numbers_of(&scene.loads[*index]) {
+        if is_linear_in(&pointer) {
+            let number = if pointer == *own { 1.0 } else { 0.0 };
+            unit.loads[*index] = with_number(&unit.loads[*index], &pointer, number)
+                .map_err(|error| wrong(parameter.name.as_str(), error.to_string()))?;
         }
-        Ok(unit)
     }
+    Ok(unit)
 }
 
 /// Returns `true` for the place of a number to which a load is proportional.

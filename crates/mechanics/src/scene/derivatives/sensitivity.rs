@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::effect::{Effect, Why, effect};
 use super::output::{Output, Smooth};
-use super::parameter::{Kind, Parameter};
+use super::parameter::{self, Kind, Parameter};
 use super::places::{Pairing, by_places};
 use crate::error::Error;
 use crate::scene::answers::answer::Answer;
@@ -72,54 +72,6 @@ pub struct Sensitivities {
     pub seconds: f64,
 }
 
-impl Scene {
-    /// Solves the scene, and gives the derivatives of `outputs` with respect to `parameters`, by their names: see
-    /// [`Scene::parameters`] and [`Scene::outputs`].
-    ///
-    /// ```
-    /// use signorini_mechanics::Scene;
-    /// use signorini_qp::{Derivative, Settings};
-    ///
-    /// // A bar of 2 m and 5000 N/m, pulled with 20 N towards a wall at 0.001 m: the wall takes 20 - 5000 x 0.001 = 15 N.
-    /// let scene = Scene::from_json(
-    ///     r#"{
-    ///         "model": "bar", "gap": 0.001,
-    ///         "body": {"bar": {"area": 0.01, "x": {"points": [0, 2], "divisions": [4]}}},
-    ///         "material": {"young": 1e6, "poisson": 0},
-    ///         "supports": [{"on": {"boundary": "left"}, "x": 0}],
-    ///         "loads": [{"traction": {"boundary": "right", "value": [2000]}}],
-    ///         "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [2], "normal": [1]}}}]
-    ///     }"#,
-    ///     "bar",
-    /// )?;
-    /// let found = scene.sensitivity(&["force"], &["gap", "young", "loads[0]"], &Settings::default())?;
-    /// let of = |place: usize| match found.outputs[0].by[place].derivative {
-    ///     Derivative::Proven(value) => value,
-    ///     _ => f64::NAN,
-    /// };
-    /// assert!((of(0) + 5000.0).abs() < 1e-6 && (of(1) + 5e-6).abs() < 1e-15 && (of(2) - 20.0).abs() < 1e-9);
-    /// # Ok::<(), signorini_mechanics::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a name that does not exist, with those that do, and for a scene of a motion; those of
-    /// [`Scene::build`] and of [`signorini_qp::solve`].
-    pub fn sensitivity(
-        &self,
-        outputs: &[&str],
-        parameters: &[&str],
-        settings: &Settings,
-    ) -> Result<Sensitivities, Error> {
-        let model = Arc::new(self.build()?);
-        Sensitivities::of(self, model, outputs, parameters, settings)
-    }
-
-    /// The names of the outputs that have derivatives; `X,Y` stands for the coordinates of a place.
-    pub fn outputs(&self) -> Result<Vec<String>, Error> {
-        Ok(outputs_of(&self.build()?))
-    }
-}
-
 /// The names that [`Scene::outputs`] gives, for a scene whose model is built already.
 pub fn outputs_of(model: &Model) -> Vec<String> {
     Output::names(model)
@@ -140,7 +92,7 @@ impl Sensitivities {
         }
         let outputs: Vec<Output> = outputs.iter().map(|name| Output::of(name, &model)).collect::<Result<_, _>>()?;
         let parameters: Vec<Parameter> =
-            parameters.iter().map(|name| scene.parameter(name)).collect::<Result<_, _>>()?;
+            parameters.iter().map(|name| parameter::named(scene, name)).collect::<Result<_, _>>()?;
         let (answer, solution, derivatives) = proven(&model, settings)?;
         let clock = Instant::now();
         let at = At { scene, answer: &answer, derivatives: &derivatives };

@@ -7,7 +7,7 @@ pub(crate) mod entry;
 mod json;
 pub(crate) mod names;
 pub(crate) mod obstacle;
-mod parse;
+pub(crate) mod parse;
 pub(crate) mod roles;
 pub(crate) mod schema;
 pub(crate) mod size;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::absent::other_format;
 use super::deck::is_deck;
-use super::entry::Named;
+use super::entry::{Files, Named};
 use super::json::{Typed, line_and_column, parsed, plain, start_of};
 use crate::error::Error;
 use crate::scene::Scene;
@@ -14,51 +14,35 @@ use serde_json::Value;
 use signorini_qp as qp;
 use signorini_qp::file::read_text_capped;
 
-impl Scene {
-    /// Reads a scene from JSON text, in which lines that begin with `//` are comments; errors begin with `source_name`.
-    ///
-    /// # Errors
-    /// [`Error::SceneSyntax`] for text that is not JSON, or does not have the form of a scene.
-    pub fn from_json(text: &str, source_name: &str) -> Result<Scene, Error> {
-        let text = plain(text);
-        parsed(&text).and_then(|scene| Scene::deserialize(Typed(&scene))).map_err(|fault| {
-            let (line, column) = line_and_column(&text, fault.at.unwrap_or_default());
-            let message = other_format(&text).unwrap_or_else(|| fault.to_string());
-            let path = if fault.path.is_empty() { ".".into() } else { fault.path };
-            Error::SceneSyntax { source_name: source_name.into(), line, column, path, message }
-        })
-    }
-
-    /// Reads a scene from a JSON file, or from a deck of CalculiX, whose name ends with `.inp`; relative names of other
-    /// files start in its folder.
-    ///
-    /// # Errors
-    /// [`qp::LinearError::File`] for a file that cannot be read, and as [`Scene::from_json`] and [`Scene::read_deck`].
-    pub fn read(path: impl AsRef<Path>) -> Result<Scene, Error> {
-        let path = path.as_ref();
-        if path.is_dir() {
-            let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, but a scene is a JSON file");
-            return Err(qp::LinearError::File { action: "read", path: path.into(), source }.into());
-        }
-        if is_deck(path) {
-            return Scene::read_deck(path, &[], None);
-        }
-        let text = read_text_capped(path, MOST_OF_SCENE)?;
-        let scene = Self::from_json(&text, &path.display().to_string())?;
-        Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
-    }
+pub(crate) fn scene_of(text: &str, source_name: &str) -> Result<Scene, Error> {
+    let text = plain(text);
+    parsed(&text).and_then(|scene| Scene::deserialize(Typed(&scene))).map_err(|fault| {
+        let (line, column) = line_and_column(&text, fault.at.unwrap_or_default());
+        let message = other_format(&text).unwrap_or_else(|| fault.to_string());
+        let path = if fault.path.is_empty() { ".".into() } else { fault.path };
+        Error::SceneSyntax { source_name: source_name.into(), line, column, path, message }
+    })
 }
 
-impl Scene {
-    /// The JSON Schema of scenes, as indented text: fields, choices and the ranges of single numbers. Only
-    /// [`Scene::build`] checks conditions between several fields.
-    pub fn json_schema() -> String {
-        let mut schema = schemars::schema_for!(Scene).to_value();
-        without_null(&mut schema);
-        let version = env!("CARGO_PKG_VERSION");
-        schema["$id"] = Value::String(format!("urn:signorini:scene:{version}"));
-        format!("{schema:#}\n")
+pub(crate) fn read(path: &Path) -> Result<Scene, Error> {
+    if path.is_dir() {
+        let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, but a scene is a JSON file");
+        return Err(qp::LinearError::File { action: "read", path: path.into(), source }.into());
     }
+    if is_deck(path) {
+        return Scene::read_deck(path, &[], None);
+    }
+    let text = read_text_capped(path, MOST_OF_SCENE)?;
+    let scene = scene_of(&text, &path.display().to_string())?;
+    Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
+}
+
+pub(crate) fn json_schema() -> String {
+    let mut schema = schemars::schema_for!(Scene).to_value();
+    without_null(&mut schema);
+    let version = env!("CARGO_PKG_VERSION");
+    schema["$id"] = Value::String(format!("urn:signorini:scene:{version}"));
+    format!("{schema:#}\n")
 }
 
 /// Removes `null` from the allowed values: a field that is left out is absent, not null.
@@ -88,67 +72,67 @@ fn without_null(schema: &mut Value) {
 /// Most bytes of a scene: a height map of millions of points fits.
 pub(super) const MOST_OF_SCENE: u64 = 256 << 20;
 
-impl Scene {
-    /// An error of a value of a scene of a deck with the line of the deck that it comes from.
-    pub(crate) fn with_line(&self, error: Error) -> Error {
-        let of = |path: &str| {
-            let is_in = |known: &str| {
-                path.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-            };
-            let known = self.lines.iter().filter(|(known, _)| known.is_empty() || is_in(known));
-            known.max_by_key(|(known, _)| known.len()).map(|(_, place)| place.clone())
-        };
-        match error {
-            Error::Scene { path, message } => match of(&path) {
-                Some((file, line)) => {
-                    let message = format!("at `{path}` of the scene of this deck: {message}");
-                    qp::LinearError::FileSyntax { file, line, message }.into()
-                }
-                None => Error::Scene { path, message },
-            },
-            Error::Refused { code, place, path, message } => {
-                let found = of(&path).map(|(file, line)| format!("{}:{line}: ", file.display()));
-                Error::Refused { code, place: found.unwrap_or(place), path, message }
-            }
-            other => other,
-        }
-    }
+/// The files that the scene may name.
+pub(crate) fn files(scene: &Scene) -> Files<'_> {
+    Files { folder: scene.folder.as_deref().unwrap_or(Path::new("")), reads_outside: scene.reads_outside }
+}
 
-    /// An error of a value with its line and column, if the scene was read from a file that can be read again. Errors
-    /// of decks have their lines.
-    pub fn located(error: Error, file: &Path) -> Error {
-        if is_deck(file) {
-            return error;
+/// An error of a value of a scene of a deck with the line of the deck that it comes from.
+pub(crate) fn with_line(scene: &Scene, error: Error) -> Error {
+    let of = |path: &str| {
+        let is_in =
+            |known: &str| path.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+        let known = scene.lines.iter().filter(|(known, _)| known.is_empty() || is_in(known));
+        known.max_by_key(|(known, _)| known.len()).map(|(_, place)| place.clone())
+    };
+    match error {
+        Error::Scene { path, message } => match of(&path) {
+            Some((file, line)) => {
+                let message = format!("at `{path}` of the scene of this deck: {message}");
+                qp::LinearError::FileSyntax { file, line, message }.into()
+            }
+            None => Error::Scene { path, message },
+        },
+        Error::Refused { code, place, path, message } => {
+            let found = of(&path).map(|(file, line)| format!("{}:{line}: ", file.display()));
+            Error::Refused { code, place: found.unwrap_or(place), path, message }
         }
-        let place_of = |path: &str| match read_text_capped(file, MOST_OF_SCENE) {
-            Ok(text) if file.is_file() => position(&text, path),
-            _ => None,
-        };
-        match error {
-            Error::Scene { path, message } => match place_of(&path) {
-                Some((line, column)) => {
-                    Error::SceneSyntax { source_name: file.display().to_string(), line, column, path, message }
+        other => other,
+    }
+}
+
+pub(crate) fn located(error: Error, file: &Path) -> Error {
+    if is_deck(file) {
+        return error;
+    }
+    let place_of = |path: &str| match read_text_capped(file, MOST_OF_SCENE) {
+        Ok(text) if file.is_file() => position(&text, path),
+        _ => None,
+    };
+    match error {
+        Error::Scene { path, message } => match place_of(&path) {
+            Some((line, column)) => {
+                Error::SceneSyntax { source_name: file.display().to_string(), line, column, path, message }
+            }
+            None => Error::Scene { path, message },
+        },
+        Error::Refused { code, place, path, message } => {
+            let found = place_of(&path).map(|(line, column)| format!("{}:{line}:{column}: ", file.display()));
+            Error::Refused { code, place: found.unwrap_or(place), path, message }
+        }
+        Error::Linear(qp::LinearError::File { action, path, source }) => {
+            let named = source.get_ref().and_then(|reason| reason.downcast_ref::<Named>()).cloned();
+            let place = named.as_ref().and_then(|named| place_of(&named.path));
+            let source = match (named, place) {
+                (Some(named), Some((line, column))) => {
+                    let scene = format!("{}:{line}:{column}", file.display());
+                    io::Error::new(source.kind(), Named { scene, ..named })
                 }
-                None => Error::Scene { path, message },
-            },
-            Error::Refused { code, place, path, message } => {
-                let found = place_of(&path).map(|(line, column)| format!("{}:{line}:{column}: ", file.display()));
-                Error::Refused { code, place: found.unwrap_or(place), path, message }
-            }
-            Error::Linear(qp::LinearError::File { action, path, source }) => {
-                let named = source.get_ref().and_then(|reason| reason.downcast_ref::<Named>()).cloned();
-                let place = named.as_ref().and_then(|named| place_of(&named.path));
-                let source = match (named, place) {
-                    (Some(named), Some((line, column))) => {
-                        let scene = format!("{}:{line}:{column}", file.display());
-                        io::Error::new(source.kind(), Named { scene, ..named })
-                    }
-                    _ => source,
-                };
-                qp::LinearError::File { action, path, source }.into()
-            }
-            other => other,
+                _ => source,
+            };
+            qp::LinearError::File { action, path, source }.into()
         }
+        other => other,
     }
 }
 

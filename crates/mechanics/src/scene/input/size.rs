@@ -1,6 +1,7 @@
 //! The size of a scene before it is built: dofs, entries, factor, bytes; the same scene on a finer mesh.
 
 use super::entry::wrong;
+use super::parse::files;
 use super::schema::{AnalysisSpec, ModesSpec, Scene};
 use crate::bytes;
 use crate::error::Error;
@@ -34,105 +35,73 @@ impl Size {
     pub fn assembly_seconds(&self) -> f64 {
         Estimate::assembly_seconds(self.stiffness_entries)
     }
-}
 
-impl Scene {
-    /// Estimates the size of the scene without building it; of a named file only the length is read.
-    pub fn size(&self) -> Size {
-        let bodies = std::iter::once(&self.body).chain(self.further_bodies.iter().map(|further| &further.body));
-        let radius = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().radius());
-        let reach = 2.0 * radius.fold(0.0, f64::max);
-        let surfaces: f64 = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().bytes(self.files())).sum();
-        let bytes = Estimate::START + surfaces;
-        let mut size = Size { bytes, multigrid_bytes: bytes, model_bytes: bytes, ..Size::default() };
-        for body in bodies {
-            let block = body.shape().block(Some(self.files()));
-            let (dimension, counts) = (block.cells.len() as f64, block.counts);
-            let cells: f64 = block.cells.iter().product();
-            let lines: f64 = block.cells.iter().map(|cells| cells + 1.0).product();
-            let nodes = lines * counts.nodes;
-            let entries = nodes * counts.neighbours * dimension * dimension;
-            let across: Vec<f64> = block.cells.iter().map(|cells| cells * counts.line + 1.0).collect();
-            let full: f64 = across.iter().product();
-            // The lattice of lines has points without a node, for example in the middle of a Q8 cell.
-            let factor = dimension * dimension * filled(&across, 0.0) * (nodes / full).min(1.0);
-            let narrowest = across.iter().copied().fold(f64::INFINITY, f64::min);
-            let share: f64 = block.lengths.iter().map(|length| (reach / length).min(1.0)).fold(1.0, f64::min);
-            let shares = share.powi(block.cells.len() as i32 - 1);
-            let candidates = if reach > 0.0 { full / narrowest * shares } else { 0.0 };
-            size.nodes += nodes;
-            size.dofs += nodes * dimension;
-            size.stiffness_entries += entries;
-            size.factor_entries += factor;
-            let (mesh, dofs) = (bytes::of_mesh(nodes, cells * counts.connections), nodes * dimension);
-            size.bytes += mesh + Estimate::bytes_of_factor(dofs, entries, factor, candidates);
-            size.multigrid_bytes += mesh + Estimate::bytes_of_hierarchy(dofs, entries);
-            size.model_bytes += mesh + bytes::of_model(dofs, entries);
-        }
-        match &self.analysis {
-            Some(AnalysisSpec::Dynamic(_)) => size.bytes += bytes::of_motion(size.dofs, size.stiffness_entries),
-            Some(AnalysisSpec::Modes(ModesSpec { count })) => {
-                size.bytes += bytes::of_modes(*count as f64, size.dofs, size.stiffness_entries, size.factor_entries);
-            }
-            None => {}
-        }
-        size
-    }
-
-    /// Refuses a scene that would take more than `most` bytes. [`Scene::build`] refuses a scene with too many nodes at
-    /// its divisions.
-    ///
-    /// # Errors
-    /// [`qp::Error::TooLarge`].
-    pub fn check_size(&self, most: f64) -> Result<(), Error> {
-        let Size { bytes, factor_entries, .. } = self.size();
-        self.check_bytes(bytes, factor_entries, most)
-    }
-
-    /// As [`Scene::check_size`], for methods that may do without a factor.
-    ///
-    /// # Errors
-    /// [`qp::Error::TooLarge`].
-    pub fn check_size_without_factor(&self, most: f64) -> Result<(), Error> {
-        let Size { bytes, multigrid_bytes, .. } = self.size();
-        self.check_bytes(bytes.min(multigrid_bytes), 0.0, most)
-    }
-
-    /// As [`Scene::check_size`], for commands that only build the model and solve nothing.
-    ///
-    /// # Errors
-    /// [`qp::Error::TooLarge`].
-    pub fn check_size_of_model(&self, most: f64) -> Result<(), Error> {
-        self.check_bytes(self.size().model_bytes, 0.0, most)
-    }
-
-    /// Refuses bodies whose assembly alone would take more than `most` bytes: the size of a mesh from a file is known
-    /// only now.
-    pub(crate) fn check_bodies(bodies: &[ElasticBody], most: f64) -> Result<(), Error> {
-        let (mut dofs, mut stiffness_entries, mut bytes) = (0.0, 0.0, Estimate::START);
-        for mesh in bodies.iter().map(ElasticBody::mesh) {
-            let (nodes, dimension) = (mesh.nodes().len() as f64, mesh.dimension() as f64);
-            let neighbours = mesh.kinds().map(|kind| kind.reference().counts.neighbours).fold(0.0, f64::max);
-            let entries = nodes * neighbours * dimension * dimension;
-            let connections = mesh.elements().map(<[usize]>::len).sum::<usize>() as f64;
-            dofs += nodes * dimension;
-            stiffness_entries += entries;
-            bytes += bytes::of_mesh(nodes, connections) + bytes::of_model(nodes * dimension, entries);
-        }
-        match bytes > most {
-            true => {
-                Err(qp::Error::TooLarge { dofs, stiffness_entries, factor_entries: 0.0, bytes, allowed: most }.into())
-            }
-            false => Ok(()),
-        }
-    }
-
-    fn check_bytes(&self, bytes: f64, factor_entries: f64, most: f64) -> Result<(), Error> {
-        let Size { nodes, dofs, stiffness_entries, .. } = self.size();
-        if nodes <= MAX_NODES as f64 && bytes > most {
-            return Err(qp::Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed: most }.into());
+    pub(crate) fn check(&self, [bytes, factor_entries]: [f64; 2], allowed: f64) -> Result<(), Error> {
+        let Size { nodes, dofs, stiffness_entries, .. } = *self;
+        if nodes <= MAX_NODES as f64 && bytes > allowed {
+            return Err(qp::Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }.into());
         }
         Ok(())
+    }
+}
+
+pub(crate) fn estimated(scene: &Scene) -> Size {
+    let bodies = std::iter::once(&scene.body).chain(scene.further_bodies.iter().map(|further| &further.body));
+    let radius = scene.obstacles.iter().map(|obstacle| obstacle.shape.shape().radius());
+    let reach = 2.0 * radius.fold(0.0, f64::max);
+    let surfaces: f64 = scene.obstacles.iter().map(|obstacle| obstacle.shape.shape().bytes(files(scene))).sum();
+    let bytes = Estimate::START + surfaces;
+    let mut size = Size { bytes, multigrid_bytes: bytes, model_bytes: bytes, ..Size::default() };
+    for body in bodies {
+        let block = body.shape().block(Some(files(scene)));
+        let (dimension, counts) = (block.cells.len() as f64, block.counts);
+        let cells: f64 = block.cells.iter().product();
+        let lines: f64 = block.cells.iter().map(|cells| cells + 1.0).product();
+        let nodes = lines * counts.nodes;
+        let entries = nodes * counts.neighbours * dimension * dimension;
+        let across: Vec<f64> = block.cells.iter().map(|cells| cells * counts.line + 1.0).collect();
+        let full: f64 = across.iter().product();
+        // The lattice of lines has points without a node, for example in the middle of a Q8 cell.
+        let factor = dimension * dimension * filled(&across, 0.0) * (nodes / full).min(1.0);
+        let narrowest = across.iter().copied().fold(f64::INFINITY, f64::min);
+        let share: f64 = block.lengths.iter().map(|length| (reach / length).min(1.0)).fold(1.0, f64::min);
+        let shares = share.powi(block.cells.len() as i32 - 1);
+        let candidates = if reach > 0.0 { full / narrowest * shares } else { 0.0 };
+        size.nodes += nodes;
+        size.dofs += nodes * dimension;
+        size.stiffness_entries += entries;
+        size.factor_entries += factor;
+        let (mesh, dofs) = (bytes::of_mesh(nodes, cells * counts.connections), nodes * dimension);
+        size.bytes += mesh + Estimate::bytes_of_factor(dofs, entries, factor, candidates);
+        size.multigrid_bytes += mesh + Estimate::bytes_of_hierarchy(dofs, entries);
+        size.model_bytes += mesh + bytes::of_model(dofs, entries);
+    }
+    match &scene.analysis {
+        Some(AnalysisSpec::Dynamic(_)) => size.bytes += bytes::of_motion(size.dofs, size.stiffness_entries),
+        Some(AnalysisSpec::Modes(ModesSpec { count })) => {
+            size.bytes += bytes::of_modes(*count as f64, size.dofs, size.stiffness_entries, size.factor_entries);
+        }
+        None => {}
+    }
+    size
+}
+
+/// Refuses bodies whose assembly alone would take more than `most` bytes: the size of a mesh from a file is known
+/// only now.
+pub(crate) fn check_bodies(bodies: &[ElasticBody], most: f64) -> Result<(), Error> {
+    let (mut dofs, mut stiffness_entries, mut bytes) = (0.0, 0.0, Estimate::START);
+    for mesh in bodies.iter().map(ElasticBody::mesh) {
+        let (nodes, dimension) = (mesh.nodes().len() as f64, mesh.dimension() as f64);
+        let neighbours = mesh.kinds().map(|kind| kind.reference().counts.neighbours).fold(0.0, f64::max);
+        let entries = nodes * neighbours * dimension * dimension;
+        let connections = mesh.elements().map(<[usize]>::len).sum::<usize>() as f64;
+        dofs += nodes * dimension;
+        stiffness_entries += entries;
+        bytes += bytes::of_mesh(nodes, connections) + bytes::of_model(nodes * dimension, entries);
+    }
+    match bytes > most {
+        true => Err(qp::Error::TooLarge { dofs, stiffness_entries, factor_entries: 0.0, bytes, allowed: most }.into()),
+        false => Ok(()),
     }
 }
 
@@ -166,29 +135,23 @@ fn filled(lattice: &[f64], around: f64) -> f64 {
     separator * separator / 2.0 + separator * around + 2.0 * filled(&half, around_half)
 }
 
-impl Scene {
-    /// The scene with every cell of its bodies cut into `times` parts along each edge; graded meshes are nested.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for `times` 0, and for a body from a mesh file, which cannot be refined.
-    pub fn refined(&self, times: usize) -> Result<Scene, Error> {
-        if times == 0 {
-            return Err(wrong("body", "each edge of the cells must be divided into at least 1 part, not 0"));
-        }
-        let mut scene = self.clone();
-        if times == 1 {
-            return Ok(scene);
-        }
-        let further = scene.further_bodies.iter_mut().map(|further| &mut further.body);
-        for body in std::iter::once(&mut scene.body).chain(further) {
-            body.shape_mut().refine(times)?;
-        }
-        Ok(scene)
+pub(crate) fn refined(scene: &Scene, times: usize) -> Result<Scene, Error> {
+    if times == 0 {
+        return Err(wrong("body", "each edge of the cells must be divided into at least 1 part, not 0"));
     }
+    let mut scene = scene.clone();
+    if times == 1 {
+        return Ok(scene);
+    }
+    let further = scene.further_bodies.iter_mut().map(|further| &mut further.body);
+    for body in std::iter::once(&mut scene.body).chain(further) {
+        body.shape_mut().refine(times)?;
+    }
+    Ok(scene)
+}
 
-    /// Returns `true` if a body has sides that approximate known circles or spheres, to which finer meshes come nearer.
-    pub(crate) fn is_round(&self) -> bool {
-        let further = self.further_bodies.iter().map(|further| &further.body);
-        std::iter::once(&self.body).chain(further).any(|body| body.shape().is_round())
-    }
+/// Returns `true` if a body has sides that approximate known circles or spheres, to which finer meshes come nearer.
+pub(crate) fn is_round(scene: &Scene) -> bool {
+    let further = scene.further_bodies.iter().map(|further| &further.body);
+    std::iter::once(&scene.body).chain(further).any(|body| body.shape().is_round())
 }

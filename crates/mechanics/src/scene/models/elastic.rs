@@ -7,6 +7,7 @@ use crate::fem::{self, ElementKind, Formulation, Integration, Mesh, Region};
 use crate::scene::Warning;
 use crate::scene::input::body::{BodySpec, Site};
 use crate::scene::input::entry::{MeshFiles, finite, located, point, vector, wrong};
+use crate::scene::input::parse::files;
 use crate::scene::input::schema::{DynamicSpec, InitialStressSpec, ModelSpec, Scene, TemperatureSpec, Units};
 use signorini_qp as qp;
 
@@ -42,47 +43,45 @@ struct DescribedBody<'a> {
     place: String,
 }
 
-impl Scene {
-    pub(crate) fn bodies(&self) -> Result<Vec<ElasticBody>, Error> {
-        let read = MeshFiles::default();
-        self.described().map(|described| described.elastic_body(&read)).collect()
-    }
+pub(crate) fn bodies(scene: &Scene) -> Result<Vec<ElasticBody>, Error> {
+    let read = MeshFiles::default();
+    described(scene).map(|described| described.elastic_body(&read)).collect()
+}
 
-    /// The bodies in the order of the scene, combined in one.
-    pub(crate) fn joined(&self, bodies: Vec<ElasticBody>) -> Result<ElasticBody, Error> {
-        let (mut bodies, mut described) = (bodies.into_iter(), self.described());
-        let (Some(mut joined), Some(_)) = (bodies.next(), described.next()) else {
-            return Err(wrong("body", "there is no body"));
-        };
-        let further = self.further_bodies.iter().zip(described).zip(bodies).enumerate();
-        for (index, ((spec, described), body)) in further {
-            let name = &spec.name;
-            if name.is_empty() || self.further_bodies[..index].iter().any(|other| other.name == *name) {
-                let message = format!("`{name}` is not allowed: every further body needs a name of its own");
-                return Err(wrong(format!("{}name", described.place), message));
-            }
-            joined = joined.beside(&body, name).map_err(|error| described.at_body(error))?;
+/// The bodies in the order of the scene, combined in one.
+pub(crate) fn joined(scene: &Scene, bodies: Vec<ElasticBody>) -> Result<ElasticBody, Error> {
+    let (mut bodies, mut described) = (bodies.into_iter(), described(scene));
+    let (Some(mut joined), Some(_)) = (bodies.next(), described.next()) else {
+        return Err(wrong("body", "there is no body"));
+    };
+    let further = scene.further_bodies.iter().zip(described).zip(bodies).enumerate();
+    for (index, ((spec, described), body)) in further {
+        let name = &spec.name;
+        if name.is_empty() || scene.further_bodies[..index].iter().any(|other| other.name == *name) {
+            let message = format!("`{name}` is not allowed: every further body needs a name of its own");
+            return Err(wrong(format!("{}name", described.place), message));
         }
-        Ok(joined)
+        joined = joined.beside(&body, name).map_err(|error| described.at_body(error))?;
     }
+    Ok(joined)
+}
 
-    fn described(&self) -> impl Iterator<Item = DescribedBody<'_>> {
-        let (model, has_mass) = (self.model, self.analysis.is_some());
-        let of_body = move |material, parts, place: &str| {
-            let place = place.into();
-            BodyMaterials { material, parts, place, model, has_mass }
-        };
-        let materials = of_body(self.material.as_ref(), &self.materials, "");
-        let unstrained = Unstrained { temperature: &self.temperature, stress: &self.initial_stress };
-        let first = DescribedBody { scene: self, spec: &self.body, materials, unstrained, place: String::new() };
-        let further = self.further_bodies.iter().enumerate().map(move |(index, further)| {
-            let place = format!("further-bodies[{index}].");
-            let materials = of_body(further.material.as_ref(), &further.materials, &place);
-            let unstrained = Unstrained { temperature: &further.temperature, stress: &further.initial_stress };
-            DescribedBody { scene: self, spec: &further.body, materials, unstrained, place }
-        });
-        std::iter::once(first).chain(further)
-    }
+fn described(scene: &Scene) -> impl Iterator<Item = DescribedBody<'_>> {
+    let (model, has_mass) = (scene.model, scene.analysis.is_some());
+    let of_body = move |material, parts, place: &str| {
+        let place = place.into();
+        BodyMaterials { material, parts, place, model, has_mass }
+    };
+    let materials = of_body(scene.material.as_ref(), &scene.materials, "");
+    let unstrained = Unstrained { temperature: &scene.temperature, stress: &scene.initial_stress };
+    let first = DescribedBody { scene, spec: &scene.body, materials, unstrained, place: String::new() };
+    let further = scene.further_bodies.iter().enumerate().map(move |(index, further)| {
+        let place = format!("further-bodies[{index}].");
+        let materials = of_body(further.material.as_ref(), &further.materials, &place);
+        let unstrained = Unstrained { temperature: &further.temperature, stress: &further.initial_stress };
+        DescribedBody { scene, spec: &further.body, materials, unstrained, place }
+    });
+    std::iter::once(first).chain(further)
 }
 
 impl DescribedBody<'_> {
@@ -101,7 +100,7 @@ impl DescribedBody<'_> {
     /// The mesh of the shape.
     fn mesh(&self, read: &MeshFiles) -> Result<Mesh, Error> {
         let (path, names_groups) = (self.path(""), self.names_groups());
-        let site = Site { path, model: self.scene.model, files: self.scene.files(), read, names_groups };
+        let site = Site { path, model: self.scene.model, files: files(self.scene), read, names_groups };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
 

@@ -37,75 +37,73 @@ pub(crate) enum Acting<'a> {
     Centrifugal { omega: f64, axis: ([f64; 3], [f64; 3]) },
 }
 
-impl Scene {
-    pub(crate) fn load(&self, body: &ElasticBody) -> Result<Vec<f64>, Error> {
-        let mut load = vec![0.0; body.nodal_dofs()];
-        for index in 0..self.loads.len() {
-            self.add_load(body, index, &mut load)?;
-        }
-        match load.iter().all(|value| value.is_finite()) {
-            true => Ok(load),
-            false => Err(wrong("loads", "the loads add up to a force that is not finite")),
-        }
+pub(crate) fn load(scene: &Scene, body: &ElasticBody) -> Result<Vec<f64>, Error> {
+    let mut load = vec![0.0; body.nodal_dofs()];
+    for index in 0..scene.loads.len() {
+        add_load(scene, body, index, &mut load)?;
     }
-
-    /// Adds load number `index` to the nodal load.
-    pub(crate) fn add_load(&self, body: &ElasticBody, index: usize, load: &mut [f64]) -> Result<(), Error> {
-        match self.acting(body, index)? {
-            Acting::Traction { boundary, traction, profile: None } => add_traction(body, boundary, traction, load),
-            Acting::Traction { boundary, traction, profile: Some(profile) } => {
-                let field = |at, _| traction.map(|component| profile.at(at) * component);
-                add_traction_with_kinks(body, boundary, profile.kinks(), field, load);
-            }
-            Acting::Pressure { boundary, pressure, profile: None } => add_pressure(body, boundary, pressure, load),
-            Acting::Pressure { boundary, pressure, profile: Some(profile) } => {
-                let field = |at, normal: [f64; 3]| normal.map(|component| -pressure * profile.at(at) * component);
-                add_traction_with_kinks(body, boundary, profile.kinks(), field, load);
-            }
-            Acting::Spread { boundary, force } => {
-                let path = format!("loads[{index}].force.boundary");
-                add_traction(body, boundary, spread(body, boundary, force, &path)?, load);
-            }
-            Acting::AtNodes(forces) => {
-                let dimension = body.dimension();
-                for (node, force) in forces {
-                    let entries = &mut load[dimension * node..dimension * (node + 1)];
-                    entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
-                }
-            }
-            Acting::Moment { boundary, moment } => add_moment(body, boundary, moment, load).ok_or_else(|| {
-                let name = &boundary.name;
-                let message = format!(
-                    "no turning traction on `{name}` has this moment: its facets lie on a straight line, or its size is \
-                     not finite"
-                );
-                wrong(format!("loads[{index}].moment.boundary"), message)
-            })?,
-            Acting::BodyForce(force) => add_body_force(body, force, load),
-            Acting::Gravity(acceleration) => add_gravity(body, acceleration, load)?,
-            Acting::Centrifugal { omega, axis } => add_centrifugal(body, omega, axis, load)?,
-        }
-        Ok(())
+    match load.iter().all(|value| value.is_finite()) {
+        true => Ok(load),
+        false => Err(wrong("loads", "the loads add up to a force that is not finite")),
     }
+}
 
-    /// Load number `index` on a body.
-    pub(crate) fn acting<'a>(&self, body: &'a ElasticBody, index: usize) -> Result<Acting<'a>, Error> {
-        let placed = |kind: &str| PlacedLoad { body, path: format!("loads[{index}].{kind}"), model: self.model };
-        match &self.loads[index] {
-            LoadSpec::Traction(spec) => placed("traction").traction(spec),
-            LoadSpec::Pressure(spec) => placed("pressure").pressure(spec),
-            LoadSpec::Force(spec) => placed("force").force(spec),
-            LoadSpec::NodalForces(forces) => placed("nodal-forces").nodal(forces),
-            LoadSpec::Moment(spec) => placed("moment").moment(spec),
-            LoadSpec::BodyForce(value) => Ok(Acting::BodyForce(placed("body-force").vector("", value)?)),
-            LoadSpec::Gravity(value) => {
-                let placed = placed("gravity");
-                let acceleration = placed.vector("", value)?;
-                placed.check_density()?;
-                Ok(Acting::Gravity(acceleration))
-            }
-            LoadSpec::Centrifugal(spec) => placed("centrifugal").centrifugal(spec),
+/// Adds load number `index` to the nodal load.
+pub(crate) fn add_load(scene: &Scene, body: &ElasticBody, index: usize, load: &mut [f64]) -> Result<(), Error> {
+    match acting(scene, body, index)? {
+        Acting::Traction { boundary, traction, profile: None } => add_traction(body, boundary, traction, load),
+        Acting::Traction { boundary, traction, profile: Some(profile) } => {
+            let field = |at, _| traction.map(|component| profile.at(at) * component);
+            add_traction_with_kinks(body, boundary, profile.kinks(), field, load);
         }
+        Acting::Pressure { boundary, pressure, profile: None } => add_pressure(body, boundary, pressure, load),
+        Acting::Pressure { boundary, pressure, profile: Some(profile) } => {
+            let field = |at, normal: [f64; 3]| normal.map(|component| -pressure * profile.at(at) * component);
+            add_traction_with_kinks(body, boundary, profile.kinks(), field, load);
+        }
+        Acting::Spread { boundary, force } => {
+            let path = format!("loads[{index}].force.boundary");
+            add_traction(body, boundary, spread(body, boundary, force, &path)?, load);
+        }
+        Acting::AtNodes(forces) => {
+            let dimension = body.dimension();
+            for (node, force) in forces {
+                let entries = &mut load[dimension * node..dimension * (node + 1)];
+                entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
+            }
+        }
+        Acting::Moment { boundary, moment } => add_moment(body, boundary, moment, load).ok_or_else(|| {
+            let name = &boundary.name;
+            let message = format!(
+                "no turning traction on `{name}` has this moment: its facets lie on a straight line, or its size is \
+                 not finite"
+            );
+            wrong(format!("loads[{index}].moment.boundary"), message)
+        })?,
+        Acting::BodyForce(force) => add_body_force(body, force, load),
+        Acting::Gravity(acceleration) => add_gravity(body, acceleration, load)?,
+        Acting::Centrifugal { omega, axis } => add_centrifugal(body, omega, axis, load)?,
+    }
+    Ok(())
+}
+
+/// Load number `index` on a body.
+pub(crate) fn acting<'a>(scene: &Scene, body: &'a ElasticBody, index: usize) -> Result<Acting<'a>, Error> {
+    let placed = |kind: &str| PlacedLoad { body, path: format!("loads[{index}].{kind}"), model: scene.model };
+    match &scene.loads[index] {
+        LoadSpec::Traction(spec) => placed("traction").traction(spec),
+        LoadSpec::Pressure(spec) => placed("pressure").pressure(spec),
+        LoadSpec::Force(spec) => placed("force").force(spec),
+        LoadSpec::NodalForces(forces) => placed("nodal-forces").nodal(forces),
+        LoadSpec::Moment(spec) => placed("moment").moment(spec),
+        LoadSpec::BodyForce(value) => Ok(Acting::BodyForce(placed("body-force").vector("", value)?)),
+        LoadSpec::Gravity(value) => {
+            let placed = placed("gravity");
+            let acceleration = placed.vector("", value)?;
+            placed.check_density()?;
+            Ok(Acting::Gravity(acceleration))
+        }
+        LoadSpec::Centrifugal(spec) => placed("centrifugal").centrifugal(spec),
     }
 }
 

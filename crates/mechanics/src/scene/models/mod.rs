@@ -2,7 +2,7 @@
 
 pub(crate) mod build;
 pub(crate) mod continuum;
-mod elastic;
+pub(crate) mod elastic;
 mod facing;
 pub(crate) mod held;
 pub(crate) mod load;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::parts::{Origin, Parts};
+use super::parts::Parts;
 use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
 use super::suspect::suspect_rows;
@@ -55,51 +55,58 @@ pub struct Model {
     problem: ContactProblem,
 }
 
+/// Rows come first: they decide whether the body is held, before anything expensive is built.
+pub(crate) fn check_held(parts: &Parts, built: &rows::Rows) -> Result<(), Error> {
+    match parts.moves() || parts.scene.modes().is_some() && built.rows.is_empty() {
+        true => Ok(()),
+        false => RigidBodyModes::of_parts(parts).check_held(parts, &built.rows),
+    }
+}
+
+/// Stiffness, load and near null space in the unknowns.
+type Matrices = (SymmetricMatrix, Vec<f64>, Option<Arc<NearNullSpace>>);
+
+pub(crate) fn matrices(parts: &Parts) -> Result<Matrices, Error> {
+    let dofs = &parts.conditions.dofs;
+    let of_body = stiffness(&parts.body, dofs).map_err(Error::from);
+    let of_free = of_body.and_then(|of_body| parts.on_springs(of_body)).map_err(|error| match error {
+        Error::Linear(qp::LinearError::NotFinite { .. }) => {
+            let message = "the stiffness that it makes with body and thickness overflows; choose other units";
+            wrong("material", message)
+        }
+        other => other,
+    })?;
+    let force = |obstacle: usize| parts.share_of(obstacle, parts.obstacles[obstacle].force().unwrap_or(0.0));
+    let load = free_load(&parts.body, dofs, &parts.acting_load()?)?;
+    let load = parts.unknowns.load(load, &of_free, force);
+    let stiffness = parts.unknowns.congruent(of_free)?;
+    let modes = rigid_body_modes(&parts.body, dofs).into_iter();
+    let modes = modes.map(|mode| parts.unknowns.of_motion(mode, |_| 0.0)).collect();
+    Ok((stiffness, load, NearNullSpace::of_modes(modes).map(Arc::new)))
+}
+
+pub(crate) fn assembled(
+    parts: Arc<Parts>,
+    gap: f64,
+    built: rows::Rows,
+    (stiffness, load, near_null): Matrices,
+) -> Result<Model, Error> {
+    let mut problem = ContactProblem::new(stiffness, load, built.contact, built.gap)?;
+    if let Some(near_null) = near_null {
+        problem = problem.with_near_null(near_null)?;
+    }
+    let problem = parts.tied(problem)?;
+    // A solver finds the motions of single bodies by itself.
+    if !(parts.moves() || parts.ties.rows.is_empty()) {
+        RigidBodyModes::of_parts(&parts).check_bounded(&parts, &problem)?;
+    }
+    let suspect = suspect_rows(&parts, &built.rows);
+    let warnings = parts.warnings.iter().chain(&parts.ties.warnings).cloned();
+    let warnings = warnings.chain(built.warnings).chain(suspect).collect();
+    Ok(Model { parts, gap, moved: Vec::new(), rows: built.rows, across: built.across, warnings, problem })
+}
+
 impl Model {
-    /// Rows first: they decide whether the body is held, before anything expensive is built.
-    pub(crate) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
-        let built = rows::build(&parts, gap)?;
-        if !(parts.moves || parts.vibrates && built.rows.is_empty()) {
-            RigidBodyModes::of_parts(&parts).check_held(&parts, &built.rows)?;
-        }
-        let of_body = stiffness(&parts.body, &parts.dofs).map_err(Error::from);
-        let of_free = of_body.and_then(|of_body| parts.on_springs(of_body)).map_err(|error| match error {
-            Error::Linear(qp::LinearError::NotFinite { .. }) => {
-                let message = "the stiffness that it makes with body and thickness overflows; choose other units";
-                wrong("material", message)
-            }
-            other => other,
-        })?;
-        let force = |obstacle: usize| parts.share_of(obstacle, parts.obstacles[obstacle].force().unwrap_or(0.0));
-        let load = free_load(&parts.body, &parts.dofs, &parts.acting_load()?)?;
-        let load = parts.unknowns.load(load, &of_free, force);
-        let stiffness = parts.unknowns.congruent(of_free)?;
-        let modes = rigid_body_modes(&parts.body, &parts.dofs).into_iter();
-        let modes = modes.map(|mode| parts.unknowns.of_motion(mode, |_| 0.0)).collect();
-        let near_null = NearNullSpace::of_modes(modes).map(Arc::new);
-        Self::with_rows(Arc::new(parts), gap, built, (stiffness, load, near_null))
-    }
-
-    fn with_rows(
-        parts: Arc<Parts>,
-        gap: f64,
-        built: rows::Rows,
-        (stiffness, load, near_null): (SymmetricMatrix, Vec<f64>, Option<Arc<NearNullSpace>>),
-    ) -> Result<Self, Error> {
-        let mut problem = ContactProblem::new(stiffness, load, built.contact, built.gap)?;
-        if let Some(near_null) = near_null {
-            problem = problem.with_near_null(near_null)?;
-        }
-        let problem = parts.tied(problem)?;
-        // A solver finds the motions of single bodies by itself.
-        if !(parts.moves || parts.ties.rows.is_empty()) {
-            RigidBodyModes::of_parts(&parts).check_bounded(&parts, &problem)?;
-        }
-        let suspect = suspect_rows(&parts, &built.rows);
-        let warnings = parts.warnings.iter().cloned().chain(built.warnings).chain(suspect).collect();
-        Ok(Model { parts, gap, moved: Vec::new(), rows: built.rows, across: built.across, warnings, problem })
-    }
-
     /// The same scene with another scene-wide gap: only the contact rows are built again.
     ///
     /// # Errors
@@ -107,12 +114,12 @@ impl Model {
     /// [`qp::Error::UnderHeld`] if the new rows leave a rigid-body mode free.
     pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&self.parts, gap)?;
-        if !self.parts.moves {
+        if !self.parts.moves() {
             RigidBodyModes::of_parts(&self.parts).check_held(&self.parts, &built.rows)?;
         }
         let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
         let near_null = self.problem.near_null().cloned();
-        Self::with_rows(self.parts.clone(), gap, built, (stiffness, load, near_null))
+        assembled(self.parts.clone(), gap, built, (stiffness, load, near_null))
     }
 
     /// The same with obstacles that have moved along their approach directions, one entry per obstacle, in length: rows
@@ -135,31 +142,11 @@ impl Model {
         &self.moved
     }
 
-    /// The whole shift of an obstacle along its approach direction, without its travel: that of the scene, its own, and
-    /// that of a motion.
-    pub(crate) fn shift_of(&self, obstacle: usize) -> f64 {
-        self.obstacles()[obstacle].shift(self.gap) + self.moved.get(obstacle).copied().unwrap_or(0.0)
-    }
-
     /// The changes of the gaps of all rows if an obstacle moves by `by` along its approach direction.
     pub(crate) fn row_shifts(&self, obstacle: usize, by: f64) -> Vec<f64> {
         let approach = self.obstacles()[obstacle].approach();
         let of_row = |row: &ContactRow| if row.obstacle == obstacle { by * dot(&row.normal, &approach) } else { 0.0 };
         self.rows.iter().map(of_row).collect()
-    }
-
-    /// Where the model comes from.
-    pub(crate) fn origin(&self) -> Origin {
-        self.parts.origin
-    }
-
-    /// Returns `true` if answers that small displacements do not describe are wanted all the same.
-    pub(crate) fn is_linear(&self) -> bool {
-        self.parts.is_linear
-    }
-
-    pub(crate) fn is_pressed(&self, obstacle: usize) -> bool {
-        self.parts.unknowns.travel(obstacle).is_some()
     }
 
     /// The force that presses an obstacle, on the whole body; `None` if none does.
@@ -223,17 +210,12 @@ impl Model {
     /// The meaning of each unknown of the problem, in order.
     pub fn meanings(&self) -> impl Iterator<Item = crate::scene::Meaning> + '_ {
         let parts = &self.parts;
-        parts.unknowns.meanings(&parts.dofs, parts.body.dimension(), &parts.rigid_faces)
+        parts.unknowns.meanings(&parts.conditions.dofs, parts.body.dimension(), &parts.conditions.rigid_faces)
     }
 
     /// Number of copies of the modelled part in the whole, by planes of symmetry.
     pub fn parts_of_whole(&self) -> f64 {
-        self.parts.symmetry.parts()
-    }
-
-    /// Returns `true` for each axis across which a place lies on a plane of symmetry.
-    pub(crate) fn axes_of_symmetry(&self, at: &[f64; 3]) -> [bool; 3] {
-        self.parts.symmetry.axes_at(at)
+        self.parts.conditions.symmetry.parts()
     }
 
     /// The sum of the contact forces on each obstacle and pair of bodies, one entry per obstacle in the order of the
@@ -271,33 +253,14 @@ impl Model {
         }
     }
 
-    /// Number of copies of an obstacle in the whole: a plane of symmetry normal to its approach direction gives it a
-    /// mirror image.
-    pub(crate) fn copies_of_obstacle(&self, obstacle: usize) -> f64 {
-        self.parts_of_whole() / self.parts.parts_of_obstacle(obstacle)
-    }
-
-    /// Number of places at which a contact at these nodes stands on one copy of an obstacle.
-    pub(crate) fn contacts_of(&self, obstacle: usize, nodes: &[usize]) -> usize {
-        let places: Vec<[f64; 3]> = nodes.iter().map(|&node| self.mesh().nodes()[node]).collect();
-        let approach = self.obstacles()[obstacle].approach();
-        self.parts.symmetry.contacts(&places, |axis| approach[axis] == 0.0)
-    }
-
-    /// Returns `true` if two nodes lie on one plane of symmetry.
-    pub(crate) fn share_plane(&self, node: usize, other: usize) -> bool {
-        let nodes = self.mesh().nodes();
-        self.parts.symmetry.share_plane(&nodes[node], &nodes[other])
-    }
-
     /// The title of the scene, as reports and pictures print it.
     pub fn title(&self) -> &str {
-        &self.parts.title
+        &self.parts.scene.title
     }
 
     /// The names of the units of length and force that the scene gives to tables and pictures.
     pub fn units(&self) -> &Units {
-        &self.parts.units
+        &self.parts.scene.units
     }
 
     /// The scene-wide gap, in length: the shift of every obstacle along its approach direction; negative into the body.
@@ -317,7 +280,7 @@ impl Model {
 
     /// Free and supported dofs.
     pub fn dofs(&self) -> &DofMap {
-        &self.parts.dofs
+        &self.parts.conditions.dofs
     }
 
     /// The obstacles in the order of the scene, then those of a user.
@@ -349,11 +312,6 @@ impl Model {
         &self.warnings
     }
 
-    /// Returns `true` if the supports alone hold all bodies; otherwise contact holds some rigid-body mode.
-    pub(crate) fn is_supported(&self) -> bool {
-        RigidBodyModes::of_parts(&self.parts).free(&self.parts, &[]).is_empty()
-    }
-
     /// The contact problem in the free dofs.
     pub fn problem(&self) -> &ContactProblem {
         &self.problem
@@ -362,12 +320,12 @@ impl Model {
     /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs; supports have their
     /// prescribed values.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
-        Ok(self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)?)
+        Ok(self.parts.conditions.dofs.expand(&self.parts.unknowns.displacement(displacement)?)?)
     }
 
     /// Nodal velocities, length `dim * n_nodes`, in length over time, from those of the unknowns; supports stand still.
     pub fn nodal_velocity(&self, velocity: &[f64]) -> Result<Vec<f64>, Error> {
-        Ok(self.parts.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)?)
+        Ok(self.parts.conditions.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)?)
     }
 
     /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these
@@ -416,27 +374,27 @@ impl Model {
     pub fn contact_forces(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
         let dimension = self.body().dimension();
-        let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
+        let mut forces = vec![0.0; self.parts.conditions.dofs.nodal_count()];
         for (row, lambda) in self.rows.iter().zip(multiplier) {
             for &(node, share) in &row.ends {
                 let entries = &mut forces[dimension * node..dimension * (node + 1)];
                 entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += share * lambda * component);
             }
         }
-        self.parts.dofs.basis.scatter(&mut forces, dimension);
+        self.parts.conditions.dofs.basis.scatter(&mut forces, dimension);
         Ok(forces)
     }
 
     /// External loads at all nodes, length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the
     /// positive axes.
     pub fn nodal_load(&self) -> &[f64] {
-        &self.parts.load
+        &self.parts.conditions.load
     }
 
     /// The point of application of the force of a row for moments: the node, or, in the middle of a curved edge, its
     /// coefficient.
     pub(crate) fn place(&self, node: usize) -> [f64; 3] {
-        self.parts.dofs.basis.place(self.mesh().nodes(), node)
+        self.parts.conditions.dofs.basis.place(self.mesh().nodes(), node)
     }
 
     /// Multipliers of contact rows, followed by those of the equations of ties.

@@ -11,22 +11,20 @@ use crate::scene::input::schema::{PartSpec, Scene};
 /// Deviations of normals beyond the given angle by less than this, in degrees, are rounding of coordinates.
 const SAME_ANGLE: f64 = 1e-6;
 
-impl Scene {
-    /// The body with the parts of its boundaries that the scene names, after the others.
-    pub(crate) fn with_parts(&self, mut body: ElasticBody) -> Result<ElasticBody, Error> {
-        for (index, spec) in self.parts.iter().enumerate() {
-            let path = format!("parts[{index}]");
-            let mesh = body.mesh();
-            if spec.name.is_empty() || mesh.boundary(&spec.name).is_some() {
-                let message = format!("`{}` is not allowed: every part needs a name of its own", spec.name);
-                return Err(wrong(format!("{path}.name"), message));
-            }
-            let whole = spec.whole(&body, &path)?;
-            let part = spec.facets(&body, &whole, &path)?;
-            body = body.with_boundary(part)?;
+/// The body with the parts of its boundaries that the scene names, after the others.
+pub(crate) fn with_parts(scene: &Scene, mut body: ElasticBody) -> Result<ElasticBody, Error> {
+    for (index, spec) in scene.parts.iter().enumerate() {
+        let path = format!("parts[{index}]");
+        let mesh = body.mesh();
+        if spec.name.is_empty() || mesh.boundary(&spec.name).is_some() {
+            let message = format!("`{}` is not allowed: every part needs a name of its own", spec.name);
+            return Err(wrong(format!("{path}.name"), message));
         }
-        Ok(body)
+        let whole = spec.whole(&body, &path)?;
+        let part = spec.facets(&body, &whole, &path)?;
+        body = body.with_boundary(part)?;
     }
+    Ok(body)
 }
 
 impl PartSpec {

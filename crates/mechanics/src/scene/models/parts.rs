@@ -9,21 +9,30 @@ use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, NodalForces, Springs};
 use crate::fem::body::ElasticBody;
+use crate::scene::Warning;
 use crate::scene::input::obstacle::PlacedObstacle;
-use crate::scene::{Units, Warning};
+use crate::scene::input::schema::{ContactSpec, Scene};
 use signorini_qp::{ContactProblem, SymmetricMatrix};
 
 /// The data that do not depend on the gap.
 #[derive(Debug)]
 pub(crate) struct Parts {
-    pub title: String,
-    pub units: Units,
+    /// With the contacts that were found.
+    pub scene: Scene,
     pub body: ElasticBody,
+    pub conditions: Conditions,
+    pub obstacles: Vec<PlacedObstacle>,
+    pub unknowns: Unknowns,
+    pub ties: Ties,
+    pub warnings: Vec<Warning>,
+}
+
+/// What a scene asks of its body.
+#[derive(Debug)]
+pub(crate) struct Conditions {
     pub dofs: DofMap,
     /// The prescribed components of the nodes.
     pub held: Held,
-    /// Number of supports in the scene.
-    pub supports: usize,
     /// `true` if a support may replace the other half of a symmetric body.
     pub is_part: bool,
     /// External load at all nodes, length `dim * n_nodes`.
@@ -33,18 +42,7 @@ pub(crate) struct Parts {
     pub symmetry: Symmetry,
     /// Boundaries that move as rigid plates, in the order of the scene.
     pub rigid_faces: Vec<RigidFace>,
-    pub obstacles: Vec<PlacedObstacle>,
-    pub unknowns: Unknowns,
-    pub ties: Ties,
     pub points: ReferencePoints,
-    pub warnings: Vec<Warning>,
-    /// `true` if inertia resists motions that no support holds: in a motion.
-    pub moves: bool,
-    /// `true` if the natural vibrations are asked for: without contact rows they need no equilibrium.
-    pub vibrates: bool,
-    /// `true` if answers that small displacements do not describe are wanted all the same.
-    pub is_linear: bool,
-    pub origin: Origin,
 }
 
 /// Where a model comes from: what sentences may advise.
@@ -57,23 +55,37 @@ pub(crate) enum Origin {
 }
 
 impl Parts {
+    /// Returns `true` if inertia resists motions that no support holds: in a motion.
+    pub fn moves(&self) -> bool {
+        self.scene.dynamic().is_some()
+    }
+
+    pub fn origin(&self) -> Origin {
+        match self.scene.contact {
+            _ if !self.scene.lines.is_empty() => Origin::Deck,
+            Some(ContactSpec::Auto) => Origin::WithAuto,
+            None => Origin::Scene,
+        }
+    }
+
     /// The stiffness of the free dofs of the bodies, with all springs of the scene added to it.
     pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        match self.springs.is_empty() {
+        let Conditions { springs, dofs, .. } = &self.conditions;
+        match springs.is_empty() {
             true => Ok(of_body),
-            false => Ok(Springs::added_to(&self.springs, &of_body, &self.dofs, self.body.dimension())?),
+            false => Ok(Springs::added_to(springs, &of_body, dofs, self.body.dimension())?),
         }
     }
 
     /// The external load with the tensions of bolts, and the forces of springs on nodes with prescribed displacements.
     pub fn acting_load(&self) -> Result<Vec<f64>, Error> {
-        let mut load = self.load.clone();
+        let mut load = self.conditions.load.clone();
         if !self.ties.shortenings.is_empty() {
             let tensions = self.tie_forces(&vec![0.0; self.ties.rows.len()]);
             load.iter_mut().zip(tensions).for_each(|(load, force)| *load += force);
         }
-        if !self.springs.is_empty() {
-            let lifted = self.dofs.expand(&vec![0.0; self.dofs.free().len()])?;
+        if !self.conditions.springs.is_empty() {
+            let lifted = self.conditions.dofs.expand(&vec![0.0; self.conditions.dofs.free().len()])?;
             load.iter_mut().zip(self.spring_forces(&lifted)).for_each(|(load, force)| *load += force);
         }
         Ok(load)
@@ -102,7 +114,7 @@ impl Parts {
         let mut forces = NodalForces::new();
         for (terms, own, size) in of_rows.chain(tensions.filter_map(|of| Some((&of.terms, &of.own, of.force?)))) {
             for (node, vector) in &terms[if one.is_some() { own.clone() } else { 0..terms.len() }] {
-                for (of, share) in self.dofs.basis.shares(*node) {
+                for (of, share) in self.conditions.dofs.basis.shares(*node) {
                     let force = forces.entry(of).or_default();
                     force.iter_mut().zip(vector).for_each(|(entry, part)| *entry += share * size * part);
                 }
@@ -113,11 +125,13 @@ impl Parts {
 
     /// The forces of all springs on the nodes in a nodal displacement.
     pub fn spring_forces(&self, displacement: &[f64]) -> Vec<f64> {
-        self.on_all_nodes(self.springs.iter().map(|springs| springs.forces(displacement, self.body.dimension())))
+        self.on_all_nodes(
+            self.conditions.springs.iter().map(|springs| springs.forces(displacement, self.body.dimension())),
+        )
     }
 
     fn on_all_nodes(&self, all: impl IntoIterator<Item = NodalForces>) -> Vec<f64> {
-        let (mut forces, dimension) = (vec![0.0; self.dofs.nodal_count()], self.body.dimension());
+        let (mut forces, dimension) = (vec![0.0; self.conditions.dofs.nodal_count()], self.body.dimension());
         for (node, force) in all.into_iter().flatten() {
             let entries = &mut forces[dimension * node..dimension * (node + 1)];
             entries.iter_mut().zip(force).for_each(|(entry, part)| *entry += part);
@@ -132,6 +146,6 @@ impl Parts {
 
     /// Number of copies of the modelled part that one copy of an obstacle presses.
     pub fn parts_of_obstacle(&self, obstacle: usize) -> f64 {
-        self.symmetry.parts_of_obstacle(self.obstacles[obstacle].approach())
+        self.conditions.symmetry.parts_of_obstacle(self.obstacles[obstacle].approach())
     }
 }

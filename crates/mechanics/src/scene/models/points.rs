@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::facing::TieRow;
-use super::preload::terms_of;
+use super::preload::{bolt_of, point_named, terms_of};
 use super::rigid_face::{Given, motion_name, motions};
-use crate::error::{Error, nearly};
+use crate::error::Error;
 use crate::fem::assembly::Springs;
 use crate::fem::body::ElasticBody;
 use crate::fem::tributary_areas;
@@ -58,79 +58,68 @@ pub(crate) struct ReferencePoint {
     applied: [f64; 6],
 }
 
-impl Scene {
-    pub(super) fn point_named(&self, name: &str, path: &str) -> Result<usize, Error> {
-        self.points.iter().position(|point| point.name == name).ok_or_else(|| {
-            let names = || self.points.iter().map(|point| point.name.as_str());
-            let listed: Vec<String> = names().map(|name| format!("`{name}`")).collect();
-            let there = if listed.is_empty() { "none; add it to `points`".into() } else { listed.join(", ") };
-            wrong(path, format!("there is no reference point `{name}`; there are {there}{}", nearly(name, names())))
-        })
+/// The number of a reference point that equations, springs and couplings may name.
+fn joining(scene: &Scene, name: &str, path: &str) -> Result<usize, Error> {
+    match bolt_of(scene, name) {
+        None => point_named(scene, name, path),
+        Some(bolt) => Err(wrong(
+            path,
+            format!("`{name}` stands for the bolt of ties[{bolt}]; prescribe its `x` or its `force` instead"),
+        )),
     }
+}
 
-    /// The number of a reference point that equations, springs and couplings may name.
-    fn joining(&self, name: &str, path: &str) -> Result<usize, Error> {
-        match self.bolt_of(name) {
-            None => self.point_named(name, path),
-            Some(bolt) => Err(wrong(
-                path,
-                format!("`{name}` stands for the bolt of ties[{bolt}]; prescribe its `x` or its `force` instead"),
-            )),
+/// A sum of terms, and the place of the first one in the list; points come after the nodes.
+fn sum_of(scene: &Scene, terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<(Sum, usize), Error> {
+    let (mut sum, nodes) = (Sum::default(), body.mesh().nodes().len());
+    let point = |name: &str, path: String| joining(scene, name, &path).map(|point| nodes + point);
+    let placed = terms_of(terms, path, body, &point)?;
+    for (term, &(place, vector)) in terms.iter().zip(&placed) {
+        sum.add_along(place, vector);
+        let turns = [term.rotation.x, term.rotation.y, term.rotation.z].into_iter().enumerate();
+        turns.filter(|turn| turn.1 != 0.0).for_each(|(axis, part)| sum.add((place, 3 + axis), part));
+    }
+    Ok((sum, placed.first().map_or(0, |first| first.0)))
+}
+
+/// The reference points, eliminated from all ties, springs and loads.
+pub(crate) fn reference_points(scene: &Scene, body: &ElasticBody) -> Result<ReferencePoints, Error> {
+    let nodes = body.mesh().nodes().len();
+    let mut points = ReferencePoints { nodes, ..ReferencePoints::default() };
+    let mut prescribed = BTreeMap::new();
+    for (index, spec) in scene.points.iter().enumerate() {
+        let path = format!("points[{index}]");
+        if spec.name.is_empty() || scene.points[..index].iter().any(|other| other.name == spec.name) {
+            let message = format!("`{}` is not allowed: every point needs a name of its own", spec.name);
+            return Err(wrong(format!("{path}.name"), message));
         }
-    }
-
-    /// A sum of terms, and the place of the first one in the list; points come after the nodes.
-    fn sum_of(&self, terms: &[TermSpec], path: &str, body: &ElasticBody) -> Result<(Sum, usize), Error> {
-        let (mut sum, nodes) = (Sum::default(), body.mesh().nodes().len());
-        let point = |name: &str, path: String| self.joining(name, &path).map(|point| nodes + point);
-        let placed = terms_of(terms, path, body, &point)?;
-        for (term, &(place, vector)) in terms.iter().zip(&placed) {
-            sum.add_along(place, vector);
-            let turns = [term.rotation.x, term.rotation.y, term.rotation.z].into_iter().enumerate();
-            turns.filter(|turn| turn.1 != 0.0).for_each(|(axis, part)| sum.add((place, 3 + axis), part));
-        }
-        Ok((sum, placed.first().map_or(0, |first| first.0)))
-    }
-
-    /// The reference points, eliminated from all ties, springs and loads.
-    pub(crate) fn reference_points(&self, body: &ElasticBody) -> Result<ReferencePoints, Error> {
-        let nodes = body.mesh().nodes().len();
-        let mut points = ReferencePoints { nodes, ..ReferencePoints::default() };
-        let mut prescribed = BTreeMap::new();
-        for (index, spec) in self.points.iter().enumerate() {
-            let path = format!("points[{index}]");
-            if spec.name.is_empty() || self.points[..index].iter().any(|other| other.name == spec.name) {
-                let message = format!("`{}` is not allowed: every point needs a name of its own", spec.name);
-                return Err(wrong(format!("{path}.name"), message));
-            }
-            let at = vector(&format!("{path}.at"), &spec.at, body.dimension())?;
-            let turns = spec.rotation.clone().unwrap_or_default();
-            let given = Given {
-                motions: [spec.x, spec.y, spec.z, turns.x, turns.y, turns.z],
-                force: spec.force.as_deref(),
-                moment: spec.moment.as_deref(),
-            };
-            let (mut applied, bolt) = ([0.0; 6], self.bolt_of(&spec.name));
-            for motion in motions(&given, &path, body)? {
-                applied[motion.kind] = motion.force;
-                if bolt.is_some() {
-                    if motion.kind > 0 && (motion.force != 0.0 || motion.prescribed.is_some_and(|value| value != 0.0)) {
-                        let message = "the point stands for a bolt, which has a shortening and a tension along x alone";
-                        return Err(wrong(format!("{path}.{}", motion.name()), message));
-                    }
-                    continue;
+        let at = vector(&format!("{path}.at"), &spec.at, body.dimension())?;
+        let turns = spec.rotation.clone().unwrap_or_default();
+        let given = Given {
+            motions: [spec.x, spec.y, spec.z, turns.x, turns.y, turns.z],
+            force: spec.force.as_deref(),
+            moment: spec.moment.as_deref(),
+        };
+        let (mut applied, bolt) = ([0.0; 6], bolt_of(scene, &spec.name));
+        for motion in motions(&given, &path, body)? {
+            applied[motion.kind] = motion.force;
+            if bolt.is_some() {
+                if motion.kind > 0 && (motion.force != 0.0 || motion.prescribed.is_some_and(|value| value != 0.0)) {
+                    let message = "the point stands for a bolt, which has a shortening and a tension along x alone";
+                    return Err(wrong(format!("{path}.{}", motion.name()), message));
                 }
-                points.load.add((nodes + index, motion.kind), motion.force);
-                prescribed.extend(motion.prescribed.map(|value| ((nodes + index, motion.kind), value)));
+                continue;
             }
-            let (name, moved) = (spec.name.clone(), Default::default());
-            points.all.push(ReferencePoint { name, at, bolt, moved, applied });
+            points.load.add((nodes + index, motion.kind), motion.force);
+            prescribed.extend(motion.prescribed.map(|value| ((nodes + index, motion.kind), value)));
         }
-        if !points.all.is_empty() {
-            Elimination::of(self, body, points.load)?.points(self, &prescribed, points.all)
-        } else {
-            Ok(points)
-        }
+        let (name, moved) = (spec.name.clone(), Default::default());
+        points.all.push(ReferencePoint { name, at, bolt, moved, applied });
+    }
+    if !points.all.is_empty() {
+        Elimination::of(scene, body, points.load)?.points(scene, &prescribed, points.all)
+    } else {
+        Ok(points)
     }
 }
 
@@ -143,7 +132,7 @@ impl CouplingSpec {
     /// The sums that the coupling makes zero.
     fn sums(&self, scene: &Scene, path: &str, body: &ElasticBody) -> Result<Vec<Sum>, Error> {
         let (mesh, dimension) = (body.mesh(), body.dimension());
-        let number = scene.joining(&self.point, &format!("{path}.point"))?;
+        let number = joining(scene, &self.point, &format!("{path}.point"))?;
         let at = vector(&format!("points[{number}].at"), &scene.points[number].at, dimension)?;
         let point = (mesh.nodes().len() + number, at);
         let all = motions(&Given::default(), path, body)?;
@@ -192,7 +181,7 @@ impl Elimination {
                 TieSpec::Equation(spec) if names_point(&spec.terms) => {
                     let path = format!("ties[{index}].equation");
                     finite(format!("{path}.value"), spec.value)?;
-                    let (mut sum, first) = scene.sum_of(&spec.terms, &path, body)?;
+                    let (mut sum, first) = sum_of(scene, &spec.terms, &path, body)?;
                     (sum.constant, sum.scale) = (-spec.value, spec.value.abs());
                     sides.insert(index, [first].into());
                     equations.push((index, sum));
@@ -209,7 +198,7 @@ impl Elimination {
         for (index, spec) in scene.springs.iter().enumerate().filter(|(_, spec)| names_point(&spec.terms)) {
             let path = format!("springs[{index}]");
             let along = positive(&format!("{path}.along"), spec.along_alone(&path)?)?;
-            springs.insert(index, (scene.sum_of(&spec.terms, &path, body)?.0, along));
+            springs.insert(index, (sum_of(scene, &spec.terms, &path, body)?.0, along));
         }
         let tied = equations.iter().flat_map(|(_, sum): &(usize, Sum)| sum.terms.keys());
         let tied: BTreeSet<usize> = tied.map(|component| component.0).collect();

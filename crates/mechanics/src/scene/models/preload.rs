@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::facing::{Facing, TieRow, in_unknowns};
 use super::unknowns::Unknowns;
-use crate::error::Error;
+use crate::error::{Error, nearly};
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{cross, dot, length, plus, shifted, unit};
@@ -49,30 +49,37 @@ impl Shortening {
     }
 }
 
-impl Scene {
-    /// The number of the preload that a reference point of this name stands for.
-    pub(super) fn bolt_of(&self, point: &str) -> Option<usize> {
-        let stands = |tie: &TieSpec| matches!(tie, TieSpec::Preload(spec) if spec.point.as_deref() == Some(point));
-        self.ties.iter().position(stands)
-    }
+/// The number of the preload that a reference point of this name stands for.
+pub(super) fn bolt_of(scene: &Scene, point: &str) -> Option<usize> {
+    let stands = |tie: &TieSpec| matches!(tie, TieSpec::Preload(spec) if spec.point.as_deref() == Some(point));
+    scene.ties.iter().position(stands)
+}
 
-    /// A preload with the force or the shortening of its point.
-    pub(super) fn drawn(&self, spec: &PreloadSpec, (path, tie): (&str, usize)) -> Result<PreloadSpec, Error> {
-        let Some(name) = &spec.point else { return Ok(spec.clone()) };
-        let point = self.point_named(name, &format!("{path}.point"))?;
-        if let Some(other) = self.bolt_of(name).filter(|&other| other != tie) {
-            let message = format!("`{name}` stands for the bolt of ties[{other}]; give each bolt a point of its own");
-            return Err(wrong(format!("{path}.point"), message));
-        }
-        if spec.force.or(spec.shortening).is_some() {
-            let message = format!("has the point `{name}`; give the tension or the shortening there, along x");
-            return Err(wrong(path, message));
-        }
-        let PointSpec { x: shortening, force, .. } = &self.points[point];
-        let tension = force.as_ref().and_then(|force| force.first().copied()).unwrap_or(0.0);
-        let force = if shortening.is_none() { Some(tension) } else { None };
-        Ok(PreloadSpec { force, shortening: *shortening, ..spec.clone() })
+pub(super) fn point_named(scene: &Scene, name: &str, path: &str) -> Result<usize, Error> {
+    scene.points.iter().position(|point| point.name == name).ok_or_else(|| {
+        let names = || scene.points.iter().map(|point| point.name.as_str());
+        let listed: Vec<String> = names().map(|name| format!("`{name}`")).collect();
+        let there = if listed.is_empty() { "none; add it to `points`".into() } else { listed.join(", ") };
+        wrong(path, format!("there is no reference point `{name}`; there are {there}{}", nearly(name, names())))
+    })
+}
+
+/// A preload with the force or the shortening of its point.
+pub(super) fn drawn(scene: &Scene, spec: &PreloadSpec, (path, tie): (&str, usize)) -> Result<PreloadSpec, Error> {
+    let Some(name) = &spec.point else { return Ok(spec.clone()) };
+    let point = point_named(scene, name, &format!("{path}.point"))?;
+    if let Some(other) = bolt_of(scene, name).filter(|&other| other != tie) {
+        let message = format!("`{name}` stands for the bolt of ties[{other}]; give each bolt a point of its own");
+        return Err(wrong(format!("{path}.point"), message));
     }
+    if spec.force.or(spec.shortening).is_some() {
+        let message = format!("has the point `{name}`; give the tension or the shortening there, along x");
+        return Err(wrong(path, message));
+    }
+    let PointSpec { x: shortening, force, .. } = &scene.points[point];
+    let tension = force.as_ref().and_then(|force| force.first().copied()).unwrap_or(0.0);
+    let force = if shortening.is_none() { Some(tension) } else { None };
+    Ok(PreloadSpec { force, shortening: *shortening, ..spec.clone() })
 }
 
 impl PreloadSpec {

@@ -196,7 +196,7 @@ impl Model {
         for (row, &lambda) in self.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
             force -= lambda;
             for &(node, share) in &row.ends {
-                let lever = minus(self.parts.dofs.basis.place(nodes, node), nodes[row.node]);
+                let lever = minus(self.parts.conditions.dofs.basis.place(nodes, node), nodes[row.node]);
                 let of_end = cross(lever, row.normal.map(|part| share * lambda * part));
                 moment = plus(moment, of_end);
             }
@@ -216,21 +216,21 @@ impl Model {
 
     /// The names of the supports in reports: `supports[i]`.
     pub fn support_names(&self) -> impl Iterator<Item = String> {
-        (0..self.parts.supports).map(|index| format!("supports[{index}]"))
+        (0..self.parts.scene.supports.len()).map(|index| format!("supports[{index}]"))
     }
 
     /// The names of the springs in reports: `springs[i]`.
     pub fn spring_names(&self) -> impl Iterator<Item = String> {
-        (0..self.parts.springs.len()).map(|index| format!("springs[{index}]"))
+        (0..self.parts.conditions.springs.len()).map(|index| format!("springs[{index}]"))
     }
 
     /// The resultants of the support reactions, support by support, from the force on each held node; its part along
     /// free dofs is left out.
     pub(crate) fn support_resultants(&self, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
         let nodes = self.mesh().nodes();
-        let mut supports = vec![Sum::default(); self.parts.supports];
+        let mut supports = vec![Sum::default(); self.parts.scene.supports.len()];
         let mut held: Vec<Option<usize>> = vec![None; supports.len()];
-        for (node, shares) in self.parts.held.shares(reaction) {
+        for (node, shares) in self.parts.conditions.held.shares(reaction) {
             // A support may hold a node in several directions.
             let mut of_node = BTreeMap::<usize, [f64; 3]>::new();
             for (by, force) in shares {
@@ -254,7 +254,7 @@ impl Model {
     /// Adds a force on the modelled part with its mirror images in those planes of symmetry for whose axis `across` is
     /// `true`.
     fn add_images(&self, sum: &mut Sum, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) {
-        self.parts.symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
+        self.parts.conditions.symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
     }
 
     /// The sum of nodal forces on the whole body.
@@ -273,19 +273,20 @@ impl Model {
 
     /// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
     pub(crate) fn spring_resultants(&self, displacement: &[f64]) -> Vec<Resultant> {
-        let at_points = self.parts.points.forces_of_springs(|node| self.at_node(displacement, node));
+        let at_points = self.parts.conditions.points.forces_of_springs(|node| self.at_node(displacement, node));
         let of_springs = |((index, springs), name): ((usize, &Springs), String)| match at_points.get(&index) {
             Some(forces) => self.resultant_at(forces, name),
             None => self.sum_of(springs.forces(displacement, self.body().dimension())).resultant(self, name),
         };
-        self.parts.springs.iter().enumerate().zip(self.spring_names()).map(of_springs).collect()
+        self.parts.conditions.springs.iter().enumerate().zip(self.spring_names()).map(of_springs).collect()
     }
 
     /// The resultant of forces and moments on nodes and reference points.
     fn resultant_at(&self, forces: &ForcesAt, of: String) -> Resultant {
         let (mut sum, mut nodes, size) = (Sum::default(), 0, self.mesh().size());
         for (&place, force) in forces {
-            let at = self.parts.points.at(place).map_or_else(|| self.mesh().nodes()[place], |point| point.at);
+            let at =
+                self.parts.conditions.points.at(place).map_or_else(|| self.mesh().nodes()[place], |point| point.at);
             let before = sum.forces.len();
             self.add_images(&mut sum, at, [force[0], force[1], force[2]], |_| true);
             nodes += sum.forces.len() - before;
@@ -304,7 +305,7 @@ impl Model {
     /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the
     /// body.
     pub(crate) fn force_of_faces(&self, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
-        let faces = self.parts.rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
+        let faces = self.parts.conditions.rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
         let mut on_face = vec![false; self.mesh().nodes().len()];
         faces.flat_map(|(_, face)| &face.nodes).for_each(|&node| on_face[node] = true);
         let dimension = self.body().dimension();
@@ -313,8 +314,8 @@ impl Model {
 
     /// The resultants of the rigid faces on the body, in the order of the scene, with their motions.
     pub(crate) fn face_resultants(&self, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
-        let mut all = Vec::with_capacity(self.parts.rigid_faces.len());
-        for (index, face) in self.parts.rigid_faces.iter().enumerate() {
+        let mut all = Vec::with_capacity(self.parts.conditions.rigid_faces.len());
+        for (index, face) in self.parts.conditions.rigid_faces.iter().enumerate() {
             let sum = self.sum_of(self.by_node(&self.force_of_faces(forces, |other| other == index)?));
             let found = self.parts.unknowns.motions(unknowns, index);
             let amount = |(motion, unknown): (&Motion, Option<f64>)| {
@@ -335,7 +336,7 @@ impl Model {
     /// The resultants of the ties on their first sides, in the order of the scene, from the nodal displacement, the
     /// multipliers of all equations, and the values of the unknowns.
     pub(crate) fn tie_resultants(&self, displacement: &[f64], of_ties: &[f64], unknowns: &[f64]) -> Vec<Resultant> {
-        let (ties, points) = (&self.parts.ties, &self.parts.points);
+        let (ties, points) = (&self.parts.ties, &self.parts.conditions.points);
         let at_points = points.forces_of_ties(|node| self.at_node(displacement, node), &ties.rows, of_ties);
         let of_tie = |(index, rows): (usize, &Range<usize>)| {
             let of = format!("ties[{index}]");
@@ -384,13 +385,13 @@ impl Model {
             }
             found
         };
-        self.parts.points.all.iter().zip(values).enumerate().map(of_point).collect()
+        self.parts.conditions.points.all.iter().zip(values).enumerate().map(of_point).collect()
     }
 
     /// The resultant of the loads but those on reference points, if there are any.
     pub(crate) fn load_resultant(&self) -> Option<Resultant> {
         let mut on_points = vec![0.0; self.nodal_load().len()];
-        self.parts.points.add_load(&mut on_points, self.body().dimension());
+        self.parts.conditions.points.add_load(&mut on_points, self.body().dimension());
         let loads: Vec<f64> = self.nodal_load().iter().zip(on_points).map(|(load, on_point)| load - on_point).collect();
         let loads = self.sum_of(self.by_node(&loads));
         (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
@@ -432,7 +433,7 @@ impl Model {
             Formulation::Bar { .. } | Formulation::Space => None,
         };
         let part = match self.parts_of_whole() {
-            1.0 => self.parts.is_part.then(|| MESHED_PART.to_string()),
+            1.0 => self.parts.conditions.is_part.then(|| MESHED_PART.to_string()),
             parts => Some(format!("of the whole body, {parts} times the meshed part")),
         };
         across.into_iter().chain(part).collect::<Vec<_>>().join(", ")

@@ -46,29 +46,27 @@ impl Motion {
     }
 }
 
-impl Scene {
-    /// The rigid faces. Other prescribed components of their nodes are removed if the faces move the nodes in the same
-    /// way.
-    pub(crate) fn rigid_faces(&self, body: &ElasticBody, held: &mut Held) -> Result<Vec<RigidFace>, Error> {
-        let mut owner: BTreeMap<usize, usize> = BTreeMap::new();
-        let mut faces = Vec::with_capacity(self.rigid_faces.len());
-        for (index, spec) in self.rigid_faces.iter().enumerate() {
-            let path = format!("rigid-faces[{index}]");
-            let face = RigidFace::of(spec, &path, body)?;
-            for &node in &face.nodes {
-                if let Some(other) = owner.insert(node, index) {
-                    let at = point(&body.mesh().nodes()[node][..body.dimension()]);
-                    let message = format!(
-                        "node {node} at {at} belongs to rigid-faces[{other}] too; each node may move with one face only"
-                    );
-                    return Err(wrong(format!("{path}.boundary"), message));
-                }
-                face.release(node, body.mesh().nodes()[node], held, &path)?;
+/// The rigid faces. Other prescribed components of their nodes are removed if the faces move the nodes in the same
+/// way.
+pub(crate) fn rigid_faces(scene: &Scene, body: &ElasticBody, held: &mut Held) -> Result<Vec<RigidFace>, Error> {
+    let mut owner: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut faces = Vec::with_capacity(scene.rigid_faces.len());
+    for (index, spec) in scene.rigid_faces.iter().enumerate() {
+        let path = format!("rigid-faces[{index}]");
+        let face = RigidFace::of(spec, &path, body)?;
+        for &node in &face.nodes {
+            if let Some(other) = owner.insert(node, index) {
+                let at = point(&body.mesh().nodes()[node][..body.dimension()]);
+                let message = format!(
+                    "node {node} at {at} belongs to rigid-faces[{other}] too; each node may move with one face only"
+                );
+                return Err(wrong(format!("{path}.boundary"), message));
             }
-            faces.push(face);
+            face.release(node, body.mesh().nodes()[node], held, &path)?;
         }
-        Ok(faces)
+        faces.push(face);
     }
+    Ok(faces)
 }
 
 impl RigidFace {

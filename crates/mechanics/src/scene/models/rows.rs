@@ -89,7 +89,7 @@ pub(crate) struct Found {
 /// The rows with all obstacles, in their places in the list, shifted by `scene_gap`.
 pub(crate) fn found(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64) -> Result<Found, Error> {
     finite("gap", scene_gap)?;
-    let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);
+    let (mesh, dofs) = (parts.body.mesh(), &parts.conditions.dofs);
     let dimension = parts.body.dimension();
     let rounding = COORDINATE_ROUNDING * mesh.size();
     let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -155,7 +155,7 @@ fn of_obstacle(
 ) -> Result<Vec<ContactRow>, Error> {
     let (nodes, dimension) = (parts.body.mesh().nodes(), parts.body.dimension());
     let mut rows = Vec::with_capacity(obstacle.candidates().len());
-    let areas = parts.dofs.row_areas(obstacle.candidates());
+    let areas = parts.conditions.dofs.row_areas(obstacle.candidates());
     for (candidate, (node, tributary_area)) in areas.into_iter().enumerate() {
         let at = nodes[node];
         let found = obstacle.row(candidate, at, obstacle.shift(scene_gap)).map_err(|reason| {
@@ -165,7 +165,7 @@ fn of_obstacle(
         let Some(ObstacleRow { normal, gap }) = found else { continue };
         let facing = obstacle.facing(candidate);
         let outward = facing.and_then(|facing| facing.outward).unwrap_or_else(|| obstacle.outward(candidate));
-        let outward = parts.symmetry.of_whole(&at, outward);
+        let outward = parts.conditions.symmetry.of_whole(&at, outward);
         let ends = facing.map_or_else(|| vec![(node, 1.0)], |facing| facing.ends.clone());
         let mean = facing.and_then(|facing| facing.area);
         let (tributary_area, is_mean) = (mean.unwrap_or(tributary_area), mean.is_some());
@@ -173,7 +173,7 @@ fn of_obstacle(
     }
     for (candidate, facing, ObstacleRow { normal, gap }) in obstacle.further_rows(obstacle.shift(scene_gap)) {
         let (node, ends) = (obstacle.candidates()[candidate].0, facing.ends.clone());
-        let outward = parts.symmetry.of_whole(&nodes[node], facing.outward.unwrap_or(normal));
+        let outward = parts.conditions.symmetry.of_whole(&nodes[node], facing.outward.unwrap_or(normal));
         let (tributary_area, is_mean) = (facing.area.unwrap_or(0.0), true);
         rows.push(ContactRow { node, ends, obstacle: index, normal, gap, tributary_area, is_mean, outward });
     }

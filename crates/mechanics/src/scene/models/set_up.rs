@@ -39,16 +39,16 @@ impl Model {
         let mut nodes = Vec::new();
         let mut hold =
             |node: usize, hold: Hold, directions: Vec<[f64; 3]>| nodes.push(HeldNode { node, hold, directions });
-        for (node, directions) in parts.held.directions() {
+        for (node, directions) in parts.conditions.held.directions() {
             let is_fixed = directions.len() >= self.mesh().dimension();
             hold(node, if is_fixed { Hold::Fixed } else { Hold::Guided }, directions);
         }
-        for springs in &parts.springs {
+        for springs in &parts.conditions.springs {
             for (node, direction) in springs.resisted().into_iter().flatten() {
                 hold(node, Hold::Spring, vec![unit(direction)]);
             }
         }
-        for face in &parts.rigid_faces {
+        for face in &parts.conditions.rigid_faces {
             face.nodes.iter().for_each(|&node| hold(node, Hold::RigidFace, Vec::new()));
         }
         nodes
@@ -74,7 +74,7 @@ impl Model {
     /// The mass of the unknowns, from that of the nodes.
     pub(crate) fn mass_of(&self, nodal_mass: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
         let parts = &self.parts;
-        let of_body = parts.unknowns.congruent(free_mass(&parts.body, &parts.dofs, nodal_mass)?)?;
+        let of_body = parts.unknowns.congruent(free_mass(&parts.body, &parts.conditions.dofs, nodal_mass)?)?;
         let of_obstacle = |obstacle: usize| {
             parts.share_of(obstacle, parts.obstacles[obstacle].inertia().map_or(0.0, |inertia| inertia.mass))
         };

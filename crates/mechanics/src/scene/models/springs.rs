@@ -13,15 +13,13 @@ use crate::scene::input::schema::{Place, Scene, SpringSpec};
 /// The refusal of a spring that is written in two ways.
 const BOTH: &str = "has both a place `on` and `terms` with `along`; give one of them";
 
-impl Scene {
-    /// The springs, in the order of the scene.
-    pub(crate) fn springs(&self, body: &ElasticBody, points: &ReferencePoints) -> Result<Vec<Springs>, Error> {
-        let placed = |(index, spec): (usize, &SpringSpec)| match points.spring(index) {
-            Some(springs) => Ok(springs),
-            None => spec.placed(&format!("springs[{index}]"), body),
-        };
-        self.springs.iter().enumerate().map(placed).collect()
-    }
+/// The springs, in the order of the scene.
+pub(crate) fn springs(scene: &Scene, body: &ElasticBody, points: &ReferencePoints) -> Result<Vec<Springs>, Error> {
+    let placed = |(index, spec): (usize, &SpringSpec)| match points.spring(index) {
+        Some(springs) => Ok(springs),
+        None => spec.placed(&format!("springs[{index}]"), body),
+    };
+    scene.springs.iter().enumerate().map(placed).collect()
 }
 
 impl SpringSpec {

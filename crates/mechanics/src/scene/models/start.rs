@@ -3,47 +3,30 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::build::model_of;
 use super::elastic::STEEL;
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, distance};
 use crate::fem::mesh::gmsh::Glued;
 use crate::fem::mesh::{Mesh, extent, fail};
 use crate::fem::{ElasticBody, Formulation, GmshFile, Material, tributary_areas};
-use crate::scene::input::absent::absent;
 use crate::scene::input::entry::number;
 use crate::scene::input::roles::{Chosen, Roles, roles};
 use crate::scene::input::schema::{PartSpec, Scene};
 
-impl Scene {
-    /// The sentence that a scene with this unknown name is answered with, if other programs give the name to a thing
-    /// that is not modelled here.
-    pub fn not_modelled(name: &str) -> Option<&'static str> {
-        absent(name)
-    }
-
-    /// The text of a scene for the mesh `file`, with comment lines; `named` is the name of the file in the scene. The
-    /// scene is built before it is returned, so that it is not refused later.
-    ///
-    /// Groups of elements that share nodes are one body, and the others are further bodies. One is held, one is
-    /// pressed, and weak springs keep those that no support holds.
-    ///
-    /// # Errors
-    /// As [`GmshFile::read`] and [`GmshFile::mesh`]; [`Error::Mesh`] for a mesh of which no boundary can be held while
-    /// another is pressed.
-    pub fn start(file: &Path, named: &str) -> Result<String, Error> {
-        let bodies = Bodies::of(&GmshFile::read(file)?)?;
-        let comments = head(named, &bodies);
-        let mut reason = String::from("no side faces up while another, which holds all pieces of the mesh, faces down");
-        for roles in roles(&bodies.joined) {
-            let text = comments.clone() + &scene(named, &bodies, &roles);
-            match Scene::from_json(&text, named)?.build_of(bodies.separate.clone(), &[]) {
-                Ok(_) => return Ok(text),
-                Err(error) => reason = error.to_string(),
-            }
+pub(crate) fn first_scene(file: &Path, named: &str) -> Result<String, Error> {
+    let bodies = Bodies::of(&GmshFile::read(file)?)?;
+    let comments = head(named, &bodies);
+    let mut reason = String::from("no side faces up while another, which holds all pieces of the mesh, faces down");
+    for roles in roles(&bodies.joined) {
+        let text = comments.clone() + &scene(named, &bodies, &roles);
+        match model_of(&Scene::from_json(&text, named)?, bodies.separate.clone(), &[]) {
+            Ok(_) => return Ok(text),
+            Err(error) => reason = error.to_string(),
         }
-        let message = format!("no first scene holds one boundary of this mesh and presses another: {reason}");
-        fail(message)
     }
+    let message = format!("no first scene holds one boundary of this mesh and presses another: {reason}");
+    fail(message)
 }
 
 /// The approximate strain under the force: far from large, far above rounding.

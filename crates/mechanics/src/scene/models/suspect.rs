@@ -2,9 +2,12 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
+use super::elastic::{locking, stiffness_jumps, unit_of_young};
+use super::load::add_load;
 use super::parts::Parts;
 use super::preload::terms_of;
 use super::rows::ContactRow;
+use super::ties::tied_surfaces;
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::fem::{Boundary, DofMap, ElasticBody};
@@ -21,68 +24,70 @@ const PARALLEL: f64 = 1e-9;
 /// Prefix of the name of a cut at a plane of symmetry, in the meshes of the program.
 const SYMMETRY: &str = "symmetry-";
 
-impl Scene {
-    /// The suspect supports, loads and properties of the mesh.
-    pub(crate) fn suspect(&self, body: &ElasticBody, dofs: &DofMap) -> Result<Vec<Warning>, Error> {
-        let mut warnings = self.free_symmetries(body);
-        let tied = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));
-        warnings.extend(coincident_nodes(body, &tied.flat_map(Boundary::nodes).collect()));
-        warnings.extend(folded_corner(body));
-        // An equation hands a force on one of its nodes over to the others.
-        let mut joined = HashSet::new();
-        for (index, tie) in self.ties.iter().enumerate() {
-            if let TieSpec::Equation(EquationSpec { terms, .. }) = tie {
-                let path = format!("ties[{index}].equation");
-                let points = |_: &str, _: String| Ok(usize::MAX);
-                joined.extend(terms_of(terms, &path, body, &points)?.into_iter().map(|(node, _)| node));
-            }
+/// What reading noted, and the suspect materials, supports, loads and properties of the mesh.
+pub(crate) fn suspect(scene: &Scene, body: &ElasticBody, dofs: &DofMap) -> Result<Vec<Warning>, Error> {
+    let mut warnings = scene.noted.clone();
+    warnings.extend(locking(body));
+    warnings.extend(stiffness_jumps(body));
+    warnings.extend(unit_of_young(body, &scene.units));
+    warnings.extend(free_symmetries(scene, body));
+    let tied = tied_surfaces(scene).flatten().filter_map(|name| body.mesh().boundary(name));
+    warnings.extend(coincident_nodes(body, &tied.flat_map(Boundary::nodes).collect()));
+    warnings.extend(folded_corner(body));
+    // An equation hands a force on one of its nodes over to the others.
+    let mut joined = HashSet::new();
+    for (index, tie) in scene.ties.iter().enumerate() {
+        if let TieSpec::Equation(EquationSpec { terms, .. }) = tie {
+            let path = format!("ties[{index}].equation");
+            let points = |_: &str, _: String| Ok(usize::MAX);
+            joined.extend(terms_of(terms, &path, body, &points)?.into_iter().map(|(node, _)| node));
         }
-        for index in 0..self.loads.len() {
-            let mut load = vec![0.0; body.nodal_dofs()];
-            self.add_load(body, index, &mut load)?;
-            let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
-            let (whole, free) = (size(&load), size(&dofs.restrict(&load)?));
-            if whole > 0.0 && free <= NOTHING * whole {
-                let message = format!(
-                    "loads[{index}] acts only on nodes that supports hold: the supports take it and nothing moves; load another \
-                     boundary"
-                );
-                warnings.push(Warning::new("load-on-support", message));
-            } else if self.loads[index].is_at_points()
-                && body.dimension() > 1
-                && node_alone(&load, body.dimension()).is_some_and(|node| !joined.contains(&node))
-            {
-                let message = format!(
-                    "loads[{index}] is a force on a single node: displacement and stress there grow with every refinement; spread it over a \
-                     boundary as a traction if they matter"
-                );
-                warnings.push(Warning::new("point-load", message));
-            }
-        }
-        Ok(warnings)
     }
-
-    /// Cuts at planes of symmetry that no support holds.
-    fn free_symmetries(&self, body: &ElasticBody) -> Vec<Warning> {
-        let is_held = |name: &str| {
-            let of_plane = |plane: &SymmetryPlane| name.strip_prefix(SYMMETRY) == Some(plane.name());
-            let of_support = |support: &SupportSpec| matches!(&support.on, Place::Boundary(on) if on == name);
-            self.symmetry.iter().any(of_plane) || self.supports.iter().any(of_support)
-        };
-        let names = body.mesh().boundaries().iter().map(|boundary| boundary.name.as_str());
-        let is_cut = |name: &&str| name.rsplit('.').next().is_some_and(|own| own.starts_with(SYMMETRY));
-        // In an axisymmetric section the axis itself holds the cut.
-        let on_axis = |name: &&str| body.formulation().is_axisymmetric() && name.ends_with("symmetry-x");
-        let free = names.filter(is_cut).filter(|name| !is_held(name) && !on_axis(name));
-        let warning = |name: &str| {
+    for index in 0..scene.loads.len() {
+        let mut load = vec![0.0; body.nodal_dofs()];
+        add_load(scene, body, index, &mut load)?;
+        let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
+        let (whole, free) = (size(&load), size(&dofs.restrict(&load)?));
+        if whole > 0.0 && free <= NOTHING * whole {
             let message = format!(
-                "no support holds the boundary `{name}`: the body can move across this cut, so that it is not half of a symmetric body; \
-                 hold the component across the cut"
+                "loads[{index}] acts only on nodes that supports hold: the supports take it and nothing moves; load another \
+                 boundary"
             );
-            Warning::new("free-symmetry", message)
-        };
-        free.map(warning).collect()
+            warnings.push(Warning::new("load-on-support", message));
+        } else if scene.loads[index].is_at_points()
+            && body.dimension() > 1
+            && node_alone(&load, body.dimension()).is_some_and(|node| !joined.contains(&node))
+        {
+            let message = format!(
+                "loads[{index}] is a force on a single node: displacement and stress there grow with every refinement; spread it over a \
+                 boundary as a traction if they matter"
+            );
+            warnings.push(Warning::new("point-load", message));
+        }
     }
+    Ok(warnings)
+}
+
+/// Cuts at planes of symmetry that no support holds.
+fn free_symmetries(scene: &Scene, body: &ElasticBody) -> Vec<Warning> {
+    let is_held = |name: &str| {
+        let of_plane = |plane: &SymmetryPlane| name.strip_prefix(SYMMETRY) == Some(plane.name());
+        let of_support = |support: &SupportSpec| matches!(&support.on, Place::Boundary(on) if on == name);
+        scene.symmetry.iter().any(of_plane) || scene.supports.iter().any(of_support)
+    };
+    let names = body.mesh().boundaries().iter().map(|boundary| boundary.name.as_str());
+    let is_cut = |name: &&str| name.rsplit('.').next().is_some_and(|own| own.starts_with(SYMMETRY));
+    // In an axisymmetric section the axis itself holds the cut.
+    let on_axis = |name: &&str| body.formulation().is_axisymmetric() && name.ends_with("symmetry-x");
+    let free = names.filter(is_cut).filter(|name| !is_held(name) && !on_axis(name));
+    let warning = |name: &str| {
+        let message = format!(
+            "no support holds the boundary `{name}`: the body can move across this cut, so that it is not half of a symmetric body; \
+             hold the component across the cut"
+        );
+        Warning::new("free-symmetry", message)
+    };
+    free.map(warning).collect()
 }
 
 /// The first element whose Jacobian is negative at a node, although it is positive where it is integrated.
@@ -133,7 +138,8 @@ fn coincident_nodes(body: &ElasticBody, tied: &HashSet<usize>) -> Option<Warning
 pub(crate) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     let dimension = parts.body.dimension();
     let mut warnings = Vec::new();
-    let is_held = |node: usize| (0..dimension).all(|axis| parts.dofs.number(dimension * node + axis).is_none());
+    let is_held =
+        |node: usize| (0..dimension).all(|axis| parts.conditions.dofs.number(dimension * node + axis).is_none());
     for (index, obstacle) in parts.obstacles.iter().enumerate() {
         let all = obstacle.candidates();
         let held = all.iter().filter(|candidate| is_held(candidate.0)).count();

@@ -18,26 +18,24 @@ pub(crate) struct Symmetry {
     rounding: f64,
 }
 
-impl Scene {
-    /// The planes of symmetry; they lie at flat ends of the body.
-    pub(crate) fn planes_of_symmetry(&self, body: &ElasticBody) -> Result<Symmetry, Error> {
-        let rounding = COORDINATE_ROUNDING * body.mesh().size();
-        let mut symmetry = Symmetry { planes: Vec::new(), rounding };
-        for (index, plane) in self.symmetry.iter().enumerate() {
-            let (path, name, axis) = (format!("symmetry[{index}]"), plane.name(), plane.axis());
-            if axis >= self.model.dimension() {
-                return Err(wrong(path, format!("the model `{}` has no {name}", self.model.name())));
-            }
-            if self.model == ModelSpec::Axisymmetric && *plane == SymmetryPlane::X {
-                return Err(wrong(path, "x is the radius: an axisymmetric body needs no plane across it; leave x out"));
-            }
-            if self.symmetry[..index].contains(plane) {
-                return Err(wrong(path, format!("`{name}` is named twice")));
-            }
-            symmetry.planes.push((axis, flat_end(body, axis, rounding).map_err(|message| wrong(path, message))?));
+/// The planes of symmetry; they lie at flat ends of the body.
+pub(crate) fn planes_of_symmetry(scene: &Scene, body: &ElasticBody) -> Result<Symmetry, Error> {
+    let rounding = COORDINATE_ROUNDING * body.mesh().size();
+    let mut symmetry = Symmetry { planes: Vec::new(), rounding };
+    for (index, plane) in scene.symmetry.iter().enumerate() {
+        let (path, name, axis) = (format!("symmetry[{index}]"), plane.name(), plane.axis());
+        if axis >= scene.model.dimension() {
+            return Err(wrong(path, format!("the model `{}` has no {name}", scene.model.name())));
         }
-        Ok(symmetry)
+        if scene.model == ModelSpec::Axisymmetric && *plane == SymmetryPlane::X {
+            return Err(wrong(path, "x is the radius: an axisymmetric body needs no plane across it; leave x out"));
+        }
+        if scene.symmetry[..index].contains(plane) {
+            return Err(wrong(path, format!("`{name}` is named twice")));
+        }
+        symmetry.planes.push((axis, flat_end(body, axis, rounding).map_err(|message| wrong(path, message))?));
     }
+    Ok(symmetry)
 }
 
 /// The coordinate of the flat end of the body along an axis: the plane of symmetry.
@@ -96,12 +94,13 @@ impl Symmetry {
         2.0_f64.powi(self.planes.iter().filter(|plane| approach[plane.0] == 0.0).count() as i32)
     }
 
-    /// Number of places at which a contact of nodes at `places` stands in the whole. A contact that reaches a plane
+    /// Number of places at which a contact at nodes stands on one copy of an obstacle. A contact that reaches a plane
     /// goes on in its mirror image and is one with it; a plane that it does not reach gives a second contact. Planes
-    /// for whose axis `across` is `false` do not count.
-    pub fn contacts(&self, places: &[[f64; 3]], across: impl Fn(usize) -> bool) -> usize {
-        let reached = |plane: &(usize, f64)| places.iter().any(|at| self.lies_on(*plane, at));
-        self.planes.iter().filter(|plane| across(plane.0) && !reached(plane)).fold(1, |contacts, _| 2 * contacts)
+    /// across the `approach` direction make another copy.
+    pub fn contacts(&self, approach: [f64; 3], nodes: &[[f64; 3]], own: &[usize]) -> usize {
+        let reached = |plane: (usize, f64)| own.iter().any(|&node| self.lies_on(plane, &nodes[node]));
+        let beyond = self.planes.iter().filter(|plane| approach[plane.0] == 0.0 && !reached(**plane));
+        beyond.fold(1, |contacts, _| 2 * contacts)
     }
 
     /// A unit vector of the body's surface at a node of the part, as the whole has it: at a plane it lies in the plane.

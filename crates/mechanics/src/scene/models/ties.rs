@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::facing::{Facing, TieRow, in_unknowns};
 use super::points::ReferencePoints;
-use super::preload::{Shortening, no_point, terms_of};
+use super::preload::{Shortening, drawn, no_point, terms_of};
 use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
@@ -55,101 +55,99 @@ impl Ties {
     }
 }
 
-impl Scene {
-    /// The ties, without equations that supports alone fulfil.
-    pub(crate) fn tied(
-        &self,
-        body: &ElasticBody,
-        (dofs, unknowns): (&DofMap, &Unknowns),
-        points: &ReferencePoints,
-    ) -> Result<Ties, Error> {
-        if !self.ties.is_empty() && self.dynamic().is_some() {
-            return Err(wrong("ties", "ties are for equilibria only; a motion has only supports"));
-        }
-        let surfaces = self.tied_surfaces().flatten().filter_map(|name| body.mesh().boundary(name));
-        let order = SideOrder::of(body, surfaces);
-        let (mut rows, mut of_tie, mut warnings) = (Vec::new(), Vec::with_capacity(self.ties.len()), Vec::new());
-        let mut covered = vec![None; self.ties.len()];
-        let (mut entries, mut values, mut shortenings) = (Vec::new(), Vec::new(), Vec::new());
-        let (dimension, rounding) = (body.dimension(), COORDINATE_ROUNDING * body.mesh().size());
-        for (index, tie) in self.ties.iter().enumerate() {
-            let path = format!("ties[{index}]");
-            let at_points = points.ties.get(&index);
-            let found = match tie {
-                TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, reach }) => {
-                    let path = format!("{path}.surfaces");
-                    let facing = Facing::of([boundary, to], *reach, &path, (body, dofs, &order), &mut warnings)?;
-                    covered[index] = Some((usize::from(facing.is_swapped), facing.found.covered[0]));
-                    rows_of_means(&facing)?
-                }
-                TieSpec::Preload(spec) => {
-                    let path = format!("{path}.preload");
-                    let drawn = self.drawn(spec, (&path, index))?;
-                    let (rows, shortening) = drawn.rows((&path, index), (body, dofs, &order), &mut warnings)?;
-                    shortenings.push(shortening);
-                    rows
-                }
-                TieSpec::Equation(_) | TieSpec::Coupling(_) if at_points.is_some() => {
-                    let of_one = matches!(tie, TieSpec::Equation(_));
-                    at_points.into_iter().flatten().map(|sum| of_sum(sum, dofs, of_one)).collect()
-                }
-                TieSpec::Equation(spec) => vec![of_equation(spec, &path, body, dofs)?],
-                TieSpec::Coupling(_) => Vec::new(),
-            };
-            let first = rows.len();
-            for row in found {
-                let (free, prescribed) = in_unknowns(&row.terms, (dofs, unknowns), dimension);
-                let left = row.value - prescribed;
-                if !free.is_empty() {
-                    entries.extend(free.into_iter().map(|(column, part)| (rows.len(), column, part)));
-                    values.push(left);
-                    rows.push(row);
-                } else if left.abs() > rounding {
-                    let message = format!(
-                        "supports prescribe all its displacements, and miss it by {}; change the tie or the supports",
-                        number(left)
-                    );
-                    return Err(wrong(path, message));
-                }
+/// The ties, without equations that supports alone fulfil.
+pub(crate) fn tied(
+    scene: &Scene,
+    body: &ElasticBody,
+    (dofs, unknowns): (&DofMap, &Unknowns),
+    points: &ReferencePoints,
+) -> Result<Ties, Error> {
+    if !scene.ties.is_empty() && scene.dynamic().is_some() {
+        return Err(wrong("ties", "ties are for equilibria only; a motion has only supports"));
+    }
+    let surfaces = tied_surfaces(scene).flatten().filter_map(|name| body.mesh().boundary(name));
+    let order = SideOrder::of(body, surfaces);
+    let (mut rows, mut of_tie, mut warnings) = (Vec::new(), Vec::with_capacity(scene.ties.len()), Vec::new());
+    let mut covered = vec![None; scene.ties.len()];
+    let (mut entries, mut values, mut shortenings) = (Vec::new(), Vec::new(), Vec::new());
+    let (dimension, rounding) = (body.dimension(), COORDINATE_ROUNDING * body.mesh().size());
+    for (index, tie) in scene.ties.iter().enumerate() {
+        let path = format!("ties[{index}]");
+        let at_points = points.ties.get(&index);
+        let found = match tie {
+            TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, reach }) => {
+                let path = format!("{path}.surfaces");
+                let facing = Facing::of([boundary, to], *reach, &path, (body, dofs, &order), &mut warnings)?;
+                covered[index] = Some((usize::from(facing.is_swapped), facing.found.covered[0]));
+                rows_of_means(&facing)?
             }
-            of_tie.push(first..rows.len());
-        }
-        let matrix = SparseMatrix::from_triplets(rows.len(), unknowns.count(), &entries)?;
-        let tensioned: Vec<&Shortening> = shortenings.iter().filter(|one| one.force.is_some()).collect();
+            TieSpec::Preload(spec) => {
+                let path = format!("{path}.preload");
+                let drawn = drawn(scene, spec, (&path, index))?;
+                let (rows, shortening) = drawn.rows((&path, index), (body, dofs, &order), &mut warnings)?;
+                shortenings.push(shortening);
+                rows
+            }
+            TieSpec::Equation(_) | TieSpec::Coupling(_) if at_points.is_some() => {
+                let of_one = matches!(tie, TieSpec::Equation(_));
+                at_points.into_iter().flatten().map(|sum| of_sum(sum, dofs, of_one)).collect()
+            }
+            TieSpec::Equation(spec) => vec![of_equation(spec, &path, body, dofs)?],
+            TieSpec::Coupling(_) => Vec::new(),
+        };
         let first = rows.len();
-        // Number of rows that follow from no others, with zeros as values: nothing contradicts.
-        let independent = |bolts: &[&Shortening]| -> Result<usize, Error> {
-            let own = bolts.iter().enumerate().flat_map(|(number, bolt)| {
-                let own = in_unknowns(&bolt.terms, (dofs, unknowns), dimension).0;
-                own.into_iter().map(move |(column, part)| (first + number, column, part))
-            });
-            let all: Vec<_> = entries.iter().copied().chain(own).collect();
-            let all = SparseMatrix::from_triplets(first + bolts.len(), unknowns.count(), &all)?;
-            Ok(all.independent_rows(&[], REPEATED).len())
-        };
-        let alone = if tensioned.is_empty() { 0 } else { independent(&[])? };
-        // All bolts at once first: one of them is seldom stuck.
-        let stuck = match tensioned.is_empty() || independent(&tensioned)? == alone + tensioned.len() {
-            true => None,
-            false => tensioned.iter().find(|bolt| independent(&[**bolt]).is_ok_and(|with| with == alone)),
-        };
-        if let Some(bolt) = stuck {
-            let message = "supports and ties fix the distance of the faces along the bolt, so that the tension would do nothing; change \
-                           them, or the `direction`";
-            return Err(wrong(format!("ties[{}].preload", bolt.tie), message));
+        for row in found {
+            let (free, prescribed) = in_unknowns(&row.terms, (dofs, unknowns), dimension);
+            let left = row.value - prescribed;
+            if !free.is_empty() {
+                entries.extend(free.into_iter().map(|(column, part)| (rows.len(), column, part)));
+                values.push(left);
+                rows.push(row);
+            } else if left.abs() > rounding {
+                let message = format!(
+                    "supports prescribe all its displacements, and miss it by {}; change the tie or the supports",
+                    number(left)
+                );
+                return Err(wrong(path, message));
+            }
         }
-        let ties = Ties { rows, of_tie, covered, matrix, values, shortenings, warnings };
-        Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })
+        of_tie.push(first..rows.len());
     }
+    let matrix = SparseMatrix::from_triplets(rows.len(), unknowns.count(), &entries)?;
+    let tensioned: Vec<&Shortening> = shortenings.iter().filter(|one| one.force.is_some()).collect();
+    let first = rows.len();
+    // Number of rows that follow from no others, with zeros as values: nothing contradicts.
+    let independent = |bolts: &[&Shortening]| -> Result<usize, Error> {
+        let own = bolts.iter().enumerate().flat_map(|(number, bolt)| {
+            let own = in_unknowns(&bolt.terms, (dofs, unknowns), dimension).0;
+            own.into_iter().map(move |(column, part)| (first + number, column, part))
+        });
+        let all: Vec<_> = entries.iter().copied().chain(own).collect();
+        let all = SparseMatrix::from_triplets(first + bolts.len(), unknowns.count(), &all)?;
+        Ok(all.independent_rows(&[], REPEATED).len())
+    };
+    let alone = if tensioned.is_empty() { 0 } else { independent(&[])? };
+    // All bolts at once first: one of them is seldom stuck.
+    let stuck = match tensioned.is_empty() || independent(&tensioned)? == alone + tensioned.len() {
+        true => None,
+        false => tensioned.iter().find(|bolt| independent(&[**bolt]).is_ok_and(|with| with == alone)),
+    };
+    if let Some(bolt) = stuck {
+        let message = "supports and ties fix the distance of the faces along the bolt, so that the tension would do nothing; change \
+                       them, or the `direction`";
+        return Err(wrong(format!("ties[{}].preload", bolt.tie), message));
+    }
+    let ties = Ties { rows, of_tie, covered, matrix, values, shortenings, warnings };
+    Ok(if ties.of_tie.len() > 1 { ties.without_repeated() } else { ties })
+}
 
-    /// The pairs of boundaries that are tied.
-    pub(crate) fn tied_surfaces(&self) -> impl Iterator<Item = [&str; 2]> {
-        self.ties.iter().filter_map(|tie| match tie {
-            TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
-            TieSpec::Preload(PreloadSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
-            TieSpec::Equation(_) | TieSpec::Coupling(_) => None,
-        })
-    }
+/// The pairs of boundaries that are tied.
+pub(crate) fn tied_surfaces(scene: &Scene) -> impl Iterator<Item = [&str; 2]> {
+    scene.ties.iter().filter_map(|tie| match tie {
+        TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
+        TieSpec::Preload(PreloadSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
+        TieSpec::Equation(_) | TieSpec::Coupling(_) => None,
+    })
 }
 
 /// The rows of two surfaces: the means of one of them in every direction.

@@ -15,6 +15,7 @@ use signorini_qp as qp;
 use super::rigid_face::RigidFace;
 use crate::error::Error;
 use crate::fem::assembly::{Along, DofMap};
+use crate::fem::body::ElasticBody;
 use crate::fem::dense::DenseMatrix;
 use crate::scene::input::obstacle::PlacedObstacle;
 use signorini_qp::{SparseMatrix, SymmetricMatrix, dot};
@@ -73,12 +74,12 @@ struct FaceMotions {
 impl Unknowns {
     /// The unknowns of a body with `dofs`, rigid faces and obstacles.
     pub fn of(
-        nodes: &[[f64; 3]],
+        body: &ElasticBody,
         dofs: &DofMap,
-        dimension: usize,
         faces: &[RigidFace],
         obstacles: &[PlacedObstacle],
     ) -> Result<Self, Error> {
+        let (nodes, dimension) = (body.mesh().nodes(), body.dimension());
         let has_travel = |index: &usize| obstacles[*index].has_travel();
         let on_faces = if faces.is_empty() { None } else { Some(FaceMotions::of(nodes, dofs, dimension, faces)?) };
         let pressed = (0..obstacles.len()).filter(has_travel).collect();

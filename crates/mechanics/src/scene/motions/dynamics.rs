@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::moving_supports::{MovingSupports, NodalLoads};
+use super::moving_supports::{MovingSupports, NodalLoads, loads_in_time};
 use crate::error::{Error, nearly};
 use crate::fem::Formulation;
 use crate::fem::assembly::{MassForm, free_mass, internal_force, least_over_lumped, stiffness};
@@ -10,7 +10,7 @@ use crate::fem::body::{ElasticBody, Phase};
 use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, TimeFunction, frequency_bound};
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, located, number, point, refused, vector, wrong};
 use crate::scene::input::schema::analysis::PATH;
-use crate::scene::input::schema::{AnalysisSpec, DynamicSpec, FieldSpec, PenetrationSpec, Scene};
+use crate::scene::input::schema::{DynamicSpec, FieldSpec, PenetrationSpec, Scene};
 use crate::scene::models::resultants::without_rounding;
 use crate::scene::{Model, Resultant, Warning, WatchedPoint};
 use signorini_qp as qp;
@@ -72,165 +72,152 @@ pub(crate) struct MovingObstacle {
     factor: TimeFunction,
 }
 
-impl Scene {
-    /// The specification of the motion, if the scene has one.
-    pub fn dynamic(&self) -> Option<&DynamicSpec> {
-        match &self.analysis {
-            Some(AnalysisSpec::Dynamic(spec)) => Some(spec),
-            _ => None,
-        }
+pub(crate) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<Dynamics>, Error> {
+    let Some(spec) = scene.dynamic() else { return Ok(None) };
+    let quadratic = model.mesh().kinds().find(|kind| kind.is_quadratic());
+    if let Some(kind) = quadratic.filter(|_| !model.dofs().basis.is_nodal()) {
+        let message = format!(
+            "contact of {} elements is for equilibria only; take {} for a motion",
+            kind.name(),
+            kind.linear().name()
+        );
+        return Err(wrong("analysis", message));
     }
-
-    /// The motion of `model`, which this scene built; `None` for a static scene.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a value that describes no motion, an initial penetration, a step beyond the stable one.
-    pub fn dynamics(&self, model: &Model) -> Result<Option<Dynamics>, Error> {
-        let Some(spec) = self.dynamic() else { return Ok(None) };
-        let quadratic = model.mesh().kinds().find(|kind| kind.is_quadratic());
-        if let Some(kind) = quadratic.filter(|_| !model.dofs().basis.is_nodal()) {
-            let message = format!(
-                "contact of {} elements is for equilibria only; take {} for a motion",
-                kind.name(),
-                kind.linear().name()
-            );
-            return Err(wrong("analysis", message));
-        }
-        if let Some(row) = model.rows().iter().find(|row| row.is_mean) {
-            let message = "the meshes of the two bodies do not match: their rows hold means over several nodes, for which the schemes \
-                           cannot share out the mass of the contact; give both boundaries nodes that lie opposite each other for a \
-                           motion, or leave the analysis out"
-                .into();
-            return Err(refused("motion-of-means", format!("obstacles[{}].shape.body", row.obstacle), message));
-        }
-        let scheme = spec.scheme();
-        spec.check_parameters()?;
-        scheme.check().map_err(in_place)?;
-        if !(spec.duration.is_finite() && spec.duration > 0.0) {
-            return Err(not_positive("duration", spec.duration));
-        }
-        if !(1..=MOST_FRAMES).contains(&spec.frames) {
-            let message = format!("{} is not allowed: it must be from 1 to {MOST_FRAMES}", spec.frames);
-            return Err(wrong(format!("{PATH}.frames"), message));
-        }
-        let form = spec.mass.unwrap_or(scheme.mass_form());
-        if !scheme.allows(form) {
-            let message = match scheme.is_explicit() {
-                true => "central differences need a lumped mass",
-                false => "a redistributed mass leaves dofs without mass, which only the scheme `midpoint` allows",
-            };
-            return Err(wrong(format!("{PATH}.mass"), message));
-        }
-        if scheme.is_unstable_in_contact(form) && !model.rows().is_empty() {
-            let message = format!(
-                "`{}` leaves mass on the contact nodes, and with the scheme `{}` the energy then grows at impacts: \
-                 only `redistributed` is allowed, or take the scheme `contact-stabilised`",
-                form.word(),
-                scheme.name()
-            );
-            return Err(refused("unstable", format!("{PATH}.mass"), message));
-        }
-        let path = |index: usize| format!("{PATH}.watch[{index}]");
-        let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
-        let watched = watched.collect::<Result<_, Error>>()?;
-        let loads = self.loads_in_time(model.body(), spec)?;
-        let nodal_mass = model.nodal_mass(form)?;
-        let mass = model.mass_of(&nodal_mass)?;
-        let moving = Self::moving(model, spec, mass, &loads)?;
-        let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
-        let mut problem = Self::starting(model, spec, moving)?;
-        if scheme.about().uses_frequency {
-            problem = problem.bounded_by(largest_frequency(model, form)?);
-        }
-        let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
-        let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
-        let gains = |name: &str| {
-            let message = format!(
-                "the scheme `{name}` can gain energy at every impact: it is for comparison only; take `fox-goodwin` or \
-                 `contact-stabilised` for answers"
-            );
-            Warning::new("gains-energy", message)
+    if let Some(row) = model.rows().iter().find(|row| row.is_mean) {
+        let message = "the meshes of the two bodies do not match: their rows hold means over several nodes, for which the schemes \
+                       cannot share out the mass of the contact; give both boundaries nodes that lie opposite each other for a \
+                       motion, or leave the analysis out"
+            .into();
+        return Err(refused("motion-of-means", format!("obstacles[{}].shape.body", row.obstacle), message));
+    }
+    let scheme = spec.scheme();
+    spec.check_parameters()?;
+    scheme.check().map_err(in_place)?;
+    if !(spec.duration.is_finite() && spec.duration > 0.0) {
+        return Err(not_positive("duration", spec.duration));
+    }
+    if !(1..=MOST_FRAMES).contains(&spec.frames) {
+        let message = format!("{} is not allowed: it must be from 1 to {MOST_FRAMES}", spec.frames);
+        return Err(wrong(format!("{PATH}.frames"), message));
+    }
+    let form = spec.mass.unwrap_or(scheme.mass_form());
+    if !scheme.allows(form) {
+        let message = match scheme.is_explicit() {
+            true => "central differences need a lumped mass",
+            false => "a redistributed mass leaves dofs without mass, which only the scheme `midpoint` allows",
         };
-        let warnings = scheme.gains_energy().then(|| gains(scheme.name())).into_iter().collect();
-        let windows = [WINDOW * crossing_time(model).unwrap_or(0.0), PEAK_CELLS * wave_time(model.body())];
-        let frames = spec.frames;
-        Ok(Some(Dynamics { problem, scheme, step, steps, frames, windows, watched, supports, obstacles, warnings }))
+        return Err(wrong(format!("{PATH}.mass"), message));
     }
-
-    /// Mass, damping, loads in time: the motion from rest.
-    fn moving(
-        model: &Model,
-        spec: &DynamicSpec,
-        mass: SymmetricMatrix,
-        loads: &NodalLoads,
-    ) -> Result<DynamicProblem, Error> {
-        let (parts, body) = (&model.parts, model.body());
-        let of_nodal = |nodal: &[f64]| Ok::<_, Error>(parts.unknowns.force(parts.dofs.restrict(nodal)?));
-        let changing: Vec<f64> = loads.constant.iter().zip(&parts.load).map(|(constant, all)| constant - all).collect();
-        let statics = model.problem();
-        let constant = statics.load().iter().zip(of_nodal(&changing)?).map(|(all, changing)| all + changing).collect();
-        let statics = statics.with_load(constant)?;
-        // The prescribed displacements alone.
-        let lifted = model.nodal_displacement(&vec![0.0; statics.dofs()])?;
-        let mut forces = parts.spring_forces(&lifted);
-        forces.iter_mut().zip(internal_force(body, &lifted)?).for_each(|(spring, internal)| *spring -= internal);
-        let energy = -dot(&lifted, &forces) / 2.0;
-        let held = of_nodal(&forces)?;
-        let mut problem = DynamicProblem::new(statics, mass)?
-            .with_damping(spec.damping.mass, spec.damping.stiffness)
-            .map_err(|error| match error {
-                Error::Linear(qp::LinearError::Setting { name, value, allowed }) => {
-                    let field = if name == "mass damping" { "mass" } else { "stiffness" };
-                    let message = format!("{} is not allowed: it must be {allowed}", number(value));
-                    wrong(format!("{PATH}.damping.{field}"), message)
-                }
-                other => other,
-            })?
-            .holding(held, energy);
-        for (factor, load) in &loads.changing {
-            problem = problem.with_load(factor.clone(), of_nodal(load)?)?;
-        }
-        Ok(problem)
+    if scheme.is_unstable_in_contact(form) && !model.rows().is_empty() {
+        let message = format!(
+            "`{}` leaves mass on the contact nodes, and with the scheme `{}` the energy then grows at impacts: \
+             only `redistributed` is allowed, or take the scheme `contact-stabilised`",
+            form.word(),
+            scheme.name()
+        );
+        return Err(refused("unstable", format!("{PATH}.mass"), message));
     }
+    let path = |index: usize| format!("{PATH}.watch[{index}]");
+    let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
+    let watched = watched.collect::<Result<_, Error>>()?;
+    let loads = loads_in_time(scene, model.body(), spec)?;
+    let nodal_mass = model.nodal_mass(form)?;
+    let mass = model.mass_of(&nodal_mass)?;
+    let moving = moving(model, spec, mass, &loads)?;
+    let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
+    let mut problem = starting(model, spec, moving)?;
+    if scheme.about().uses_frequency {
+        problem = problem.bounded_by(largest_frequency(model, form)?);
+    }
+    let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
+    let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
+    let gains = |name: &str| {
+        let message = format!(
+            "the scheme `{name}` can gain energy at every impact: it is for comparison only; take `fox-goodwin` or \
+             `contact-stabilised` for answers"
+        );
+        Warning::new("gains-energy", message)
+    };
+    let warnings = scheme.gains_energy().then(|| gains(scheme.name())).into_iter().collect();
+    let windows = [WINDOW * crossing_time(model).unwrap_or(0.0), PEAK_CELLS * wave_time(model.body())];
+    let frames = spec.frames;
+    Ok(Some(Dynamics { problem, scheme, step, steps, frames, windows, watched, supports, obstacles, warnings }))
+}
 
-    /// The same from the initial state, after a check.
-    fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Result<DynamicProblem, Error> {
-        let (displacement, velocity) = spec.initial(model.body())?;
-        let (mesh, dimension) = (model.mesh(), model.body().dimension());
-        for (node, at) in mesh.nodes().iter().enumerate() {
-            let on_planes = model.axes_of_symmetry(at);
-            let crosses = |&axis: &usize| {
-                let dof = dimension * node + axis;
-                on_planes[axis] && (displacement[dof] != 0.0 || velocity[dof] != 0.0)
-            };
-            if let Some(axis) = (0..dimension).find(crosses) {
-                let message = format!(
-                    "node {node} at {} lies on a plane of symmetry and starts across it, along {}",
-                    point(&at[..dimension]),
-                    ["x", "y", "z"][axis]
-                );
-                return Err(wrong(format!("{PATH}.initial"), message));
+/// Mass, damping, loads in time: the motion from rest.
+fn moving(
+    model: &Model,
+    spec: &DynamicSpec,
+    mass: SymmetricMatrix,
+    loads: &NodalLoads,
+) -> Result<DynamicProblem, Error> {
+    let (parts, body) = (&model.parts, model.body());
+    let of_nodal = |nodal: &[f64]| Ok::<_, Error>(parts.unknowns.force(parts.conditions.dofs.restrict(nodal)?));
+    let changing: Vec<f64> =
+        loads.constant.iter().zip(&parts.conditions.load).map(|(constant, all)| constant - all).collect();
+    let statics = model.problem();
+    let constant = statics.load().iter().zip(of_nodal(&changing)?).map(|(all, changing)| all + changing).collect();
+    let statics = statics.with_load(constant)?;
+    // The prescribed displacements alone.
+    let lifted = model.nodal_displacement(&vec![0.0; statics.dofs()])?;
+    let mut forces = parts.spring_forces(&lifted);
+    forces.iter_mut().zip(internal_force(body, &lifted)?).for_each(|(spring, internal)| *spring -= internal);
+    let energy = -dot(&lifted, &forces) / 2.0;
+    let held = of_nodal(&forces)?;
+    let mut problem = DynamicProblem::new(statics, mass)?
+        .with_damping(spec.damping.mass, spec.damping.stiffness)
+        .map_err(|error| match error {
+            Error::Linear(qp::LinearError::Setting { name, value, allowed }) => {
+                let field = if name == "mass damping" { "mass" } else { "stiffness" };
+                let message = format!("{} is not allowed: it must be {allowed}", number(value));
+                wrong(format!("{PATH}.damping.{field}"), message)
             }
-        }
-        let unknowns = &model.parts.unknowns;
-        let mut displacement = unknowns.of_displacement(model.dofs().restrict(&displacement)?, |_| 0.0);
-        if let Some(deepest) = deepest(model, &displacement) {
-            if spec.initial_penetration == PenetrationSpec::Refuse {
-                return Err(deepest);
-            }
-            let mass = model.mass(MassForm::Lumped)?;
-            displacement = projected(model.problem(), mass, &displacement)?;
-        }
-        let speed = |obstacle: usize| model.obstacles()[obstacle].inertia().map_or(0.0, |inertia| inertia.speed);
-        let velocity = unknowns.of_motion(model.dofs().restrict(&velocity)?, speed);
-        let problem = problem.starting_from(displacement, velocity)?;
-        let energy = problem.initial_energy();
-        if !energy.is_finite() {
-            let message = format!("displacements and velocities are too large: their energy is {energy}");
+            other => other,
+        })?
+        .holding(held, energy);
+    for (factor, load) in &loads.changing {
+        problem = problem.with_load(factor.clone(), of_nodal(load)?)?;
+    }
+    Ok(problem)
+}
+
+/// The same from the initial state, after a check.
+fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Result<DynamicProblem, Error> {
+    let (displacement, velocity) = spec.initial(model.body())?;
+    let (mesh, dimension) = (model.mesh(), model.body().dimension());
+    for (node, at) in mesh.nodes().iter().enumerate() {
+        let on_planes = model.parts.conditions.symmetry.axes_at(at);
+        let crosses = |&axis: &usize| {
+            let dof = dimension * node + axis;
+            on_planes[axis] && (displacement[dof] != 0.0 || velocity[dof] != 0.0)
+        };
+        if let Some(axis) = (0..dimension).find(crosses) {
+            let message = format!(
+                "node {node} at {} lies on a plane of symmetry and starts across it, along {}",
+                point(&at[..dimension]),
+                ["x", "y", "z"][axis]
+            );
             return Err(wrong(format!("{PATH}.initial"), message));
         }
-        Ok(problem)
     }
+    let unknowns = &model.parts.unknowns;
+    let mut displacement = unknowns.of_displacement(model.dofs().restrict(&displacement)?, |_| 0.0);
+    if let Some(deepest) = deepest(model, &displacement) {
+        if spec.initial_penetration == PenetrationSpec::Refuse {
+            return Err(deepest);
+        }
+        let mass = model.mass(MassForm::Lumped)?;
+        displacement = projected(model.problem(), mass, &displacement)?;
+    }
+    let speed = |obstacle: usize| model.obstacles()[obstacle].inertia().map_or(0.0, |inertia| inertia.speed);
+    let velocity = unknowns.of_motion(model.dofs().restrict(&velocity)?, speed);
+    let problem = problem.starting_from(displacement, velocity)?;
+    let energy = problem.initial_energy();
+    if !energy.is_finite() {
+        let message = format!("displacements and velocities are too large: their energy is {energy}");
+        return Err(wrong(format!("{PATH}.initial"), message));
+    }
+    Ok(problem)
 }
 
 /// A bound on the largest frequency of a model with its mass in this form. Rigid faces only reduce it: it is that of
@@ -241,8 +228,8 @@ fn largest_frequency(model: &Model, form: MassForm) -> Result<f64, Error> {
     let of_lumped = match parts.unknowns.has_faces() {
         false => frequency_bound(model.problem().stiffness(), &model.mass_of(&lumped)?.diagonal()),
         true => {
-            let mass = free_mass(&parts.body, &parts.dofs, &lumped)?.diagonal();
-            frequency_bound(&parts.on_springs(stiffness(&parts.body, &parts.dofs)?)?, &mass)
+            let mass = free_mass(&parts.body, &parts.conditions.dofs, &lumped)?.diagonal();
+            frequency_bound(&parts.on_springs(stiffness(&parts.body, &parts.conditions.dofs)?)?, &mass)
         }
     };
     Ok(of_lumped / least_over_lumped(&parts.body, form)?.sqrt())
@@ -294,7 +281,7 @@ impl Dynamics {
 
     /// The forces of springs, damping included, in the balance of the last step.
     fn spring_resultants(&self, model: &Model, integrator: &Integrator) -> Result<Vec<Resultant>, Error> {
-        if model.parts.springs.is_empty() {
+        if model.parts.conditions.springs.is_empty() {
             return Ok(Vec::new());
         }
         let everywhere: Vec<usize> = (0..self.problem.statics().dofs()).collect();

@@ -10,6 +10,7 @@ use crate::scene::Model;
 use crate::scene::input::entry::{PLACE_TOLERANCE, located, number, point, table as check_table, vector, wrong};
 use crate::scene::input::schema::analysis::PATH;
 use crate::scene::input::schema::{DynamicSpec, FactorSpec, LoadInTimeSpec, Scene, WatchSpec};
+use crate::scene::models::load::add_load;
 use signorini_qp::SparseMatrix;
 
 /// Stiffness, mass and loads of the nodes with supported dofs, and the unknowns coupled to them: all data that a step
@@ -49,13 +50,16 @@ impl MovingSupports {
             parts.unknowns.along(dofs, node, &along_axis(axis, value)[..dimension])
         };
         let is_held = |node: usize| (dimension * node..dimension * (node + 1)).any(|dof| dofs.number(dof).is_none());
-        let count = if model.parts.supports > 0 { model.mesh().nodes().len() } else { 0 };
+        let count = if !model.parts.scene.supports.is_empty() { model.mesh().nodes().len() } else { 0 };
         let nodes: Vec<usize> = (0..count).filter(|&node| is_held(node)).collect();
         let mut holding = vec![0.0; dimension * nodes.len()];
         let (mut elastic, mut inertia): (Effects, Effects) = (Vec::new(), Vec::new());
         let of_body = stiffness_columns(body, &nodes)?;
-        let of_springs =
-            parts.springs.iter().flat_map(|one| one.columns(|node| nodes.binary_search(&node).ok(), dimension));
+        let of_springs = parts
+            .conditions
+            .springs
+            .iter()
+            .flat_map(|one| one.columns(|node| nodes.binary_search(&node).ok(), dimension));
         for (row, force, value) in of_body.triplets().chain(of_springs) {
             let (free, prescribed) = along(row / dimension, row % dimension, value);
             holding[force] += prescribed;
@@ -143,28 +147,26 @@ impl NodalLoads {
     }
 }
 
-impl Scene {
-    /// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is the JSON path of the
-    /// motion.
-    pub(crate) fn loads_in_time(&self, body: &ElasticBody, spec: &DynamicSpec) -> Result<NodalLoads, Error> {
-        let changes = |load: usize| spec.loads_in_time.iter().any(|changing| changing.load == load);
-        let mut constant = vec![0.0; body.nodal_dofs()];
-        for index in (0..self.loads.len()).filter(|&index| !changes(index)) {
-            self.add_load(body, index, &mut constant)?;
-        }
-        let mut changing = Vec::with_capacity(spec.loads_in_time.len());
-        for (entry, of_load) in spec.loads_in_time.iter().enumerate() {
-            let path = format!("{PATH}.loads-in-time[{entry}]");
-            let factor = of_load.function(&path, self.loads.len())?;
-            if spec.loads_in_time[..entry].iter().any(|other| other.load == of_load.load) {
-                return Err(wrong(path, format!("loads[{}] has two factors; give it one", of_load.load)));
-            }
-            let mut load = vec![0.0; body.nodal_dofs()];
-            self.add_load(body, of_load.load, &mut load)?;
-            changing.push((factor, load));
-        }
-        Ok(NodalLoads { constant, changing })
+/// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is the JSON path of the
+/// motion.
+pub(crate) fn loads_in_time(scene: &Scene, body: &ElasticBody, spec: &DynamicSpec) -> Result<NodalLoads, Error> {
+    let changes = |load: usize| spec.loads_in_time.iter().any(|changing| changing.load == load);
+    let mut constant = vec![0.0; body.nodal_dofs()];
+    for index in (0..scene.loads.len()).filter(|&index| !changes(index)) {
+        add_load(scene, body, index, &mut constant)?;
     }
+    let mut changing = Vec::with_capacity(spec.loads_in_time.len());
+    for (entry, of_load) in spec.loads_in_time.iter().enumerate() {
+        let path = format!("{PATH}.loads-in-time[{entry}]");
+        let factor = of_load.function(&path, scene.loads.len())?;
+        if spec.loads_in_time[..entry].iter().any(|other| other.load == of_load.load) {
+            return Err(wrong(path, format!("loads[{}] has two factors; give it one", of_load.load)));
+        }
+        let mut load = vec![0.0; body.nodal_dofs()];
+        add_load(scene, body, of_load.load, &mut load)?;
+        changing.push((factor, load));
+    }
+    Ok(NodalLoads { constant, changing })
 }
 
 impl LoadInTimeSpec {

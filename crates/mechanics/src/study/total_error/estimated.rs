@@ -8,6 +8,9 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::bisection::Tetrahedra;
 use crate::scene::answers::beside_nodes::Depths;
+use crate::scene::input::size::{check_bodies, is_round};
+use crate::scene::models::build::model_of;
+use crate::scene::models::elastic::bodies;
 use crate::scene::{Answer, Model, Scene};
 use crate::study::{ModelSize, Status};
 use signorini_qp as qp;
@@ -128,10 +131,10 @@ impl Refinement {
     fn of(scene: &Scene) -> Result<Self, Error> {
         // Only a mesh file cannot be divided further.
         let divided = || if scene.refined(2).is_ok() { Refinement::Divided(1) } else { Refinement::Fixed };
-        if scene.is_round() {
+        if is_round(scene) {
             return Ok(divided());
         }
-        let bisected: Option<_> = scene.bodies()?.into_iter().map(Bisected::of).collect();
+        let bisected: Option<_> = bodies(scene)?.into_iter().map(Bisected::of).collect();
         Ok(bisected.map_or_else(divided, |bodies| Refinement::Bisected(bodies, Answering::new())))
     }
 }
@@ -200,9 +203,9 @@ impl Asked<'_> {
                     return Ok(None);
                 }
                 if let Some(memory) = self.settings.memory {
-                    Scene::check_bodies(&finer, memory)?;
+                    check_bodies(&finer, memory)?;
                 }
-                scene.build_of(finer, &[]).map(Some)
+                model_of(scene, finer, &[]).map(Some)
             }
             Refinement::Divided(times) => {
                 let dimension = shares.model.body().dimension() as i32;

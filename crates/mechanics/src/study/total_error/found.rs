@@ -3,12 +3,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::continuum::ContinuumAnswer;
 use crate::error::Error;
 use crate::fem::ElementKind;
 use crate::scene::{Answer, Model, Scene, Warning};
 use crate::study::{ModelSize, Status};
 use serde::Serialize;
+use signorini_guarantee::ContinuumAnswer;
 use signorini_qp as qp;
 use signorini_qp::{Settings, Solution};
 

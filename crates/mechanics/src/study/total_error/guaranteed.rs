@@ -7,13 +7,14 @@ use super::found::{
     Asked, Bound, Domain, Ended, Guarantee, JudgedMesh, LEAST, Level, LevelKind, MARKED, PER_UNKNOWN, TotalError,
     marked, shortage,
 };
-use crate::continuum::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use crate::error::Error;
 use crate::fem::ElementKind;
 use crate::fem::assembly::internal_force;
+use crate::scene::models::continuum;
 use crate::scene::{Answer, Scene, Warning};
 use crate::study::warnings::{check_motion, of_refined};
 use crate::study::{ModelSize, Status};
+use signorini_guarantee::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use signorini_qp as qp;
 use signorini_qp::{Method, Settings, Solution, dot, solve};
 
@@ -58,7 +59,7 @@ fn on_last_mesh(
     of_bound: &ContinuumAnswer,
     distance: f64,
 ) -> Result<((Answer, Solution), JudgedMesh), Error> {
-    let model = Arc::new(given.scene.on_last_mesh(given.model, of_bound)?);
+    let model = Arc::new(continuum::on_last_mesh(given.scene, given.model, of_bound)?);
     let solution = solve(model.problem(), given.settings)?;
     let answer = Answer::of_any_size(model, &solution)?;
     let [away, size] = compared(&answer, of_bound)?;
@@ -100,7 +101,8 @@ impl Search<'_> {
             self.settings.watch.step("mesh", now.levels.len());
             // The answer on the last mesh takes as long as its displacement.
             let settings = self.settings.clone().watched(&self.settings.watch.keeping(last_seconds));
-            let bracket = match Bracket::new(self.problem, &mesh, touching.as_deref(), &settings) {
+            let found = Bracket::new(self.problem, &mesh, touching.as_deref(), &settings);
+            let bracket = match found.map_err(Error::from) {
                 Ok(bracket) => bracket,
                 Err(Error::Qp(qp::Error::UnderHeld { .. })) if coarse < COARSE && !self.problem.has_circles() => {
                     coarse += 1;
@@ -363,7 +365,7 @@ impl Examined {
     /// Brackets on the mesh of a scene and on `levels` finer ones, from the first to the last.
     pub fn of(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
         let model = Arc::new(scene.build()?);
-        let (problem, mut mesh) = scene.continuum_problem(&model)?;
+        let (problem, mut mesh) = continuum::problem(scene, &model)?;
         let settings = Settings::with_method(Method::ActiveSet);
         let own = Answer::of_any_size(model.clone(), &solve(model.problem(), &settings)?)?;
         let mut found = Vec::with_capacity(levels + 1);
@@ -372,7 +374,7 @@ impl Examined {
             let judged = judged(&own, &bracket);
             let from_elements = || -> Result<f64, Error> {
                 let of_bound = bracket.answer();
-                let last = Arc::new(scene.on_last_mesh(&model, &of_bound)?);
+                let last = Arc::new(continuum::on_last_mesh(scene, &model, &of_bound)?);
                 let solution = solve(last.problem(), &settings)?;
                 Ok(compared(&Answer::of_any_size(last, &solution)?, &of_bound)?[0])
             };

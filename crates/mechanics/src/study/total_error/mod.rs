@@ -5,9 +5,9 @@ mod estimated;
 mod found;
 mod guaranteed;
 
-pub use crate::continuum::ContinuumAnswer;
 pub use found::{Bound, Domain, Ended, Guarantee, JudgedMesh, Level, LevelKind, TotalError, TotalErrorGoal};
 pub use guaranteed::Examined;
+pub use signorini_guarantee::ContinuumAnswer;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -15,7 +15,7 @@ use std::time::Instant;
 use signorini_qp::{Settings, Solution};
 
 use crate::error::Error;
-use crate::scene::models::continuum::{NoGuarantee, WhyNot};
+use crate::scene::models::continuum::{self, NoGuarantee, WhyNot};
 use crate::scene::{Answer, Model, Scene};
 use crate::study::Status;
 use found::Asked;
@@ -59,9 +59,9 @@ impl TotalError {
         keep: &dyn Fn(&TotalError),
     ) -> Result<Self, Error> {
         goal.check()?;
-        scene.check_continuum()?;
+        continuum::check(scene)?;
         let search = Asked { scene, model, goal, settings, keep, clock: Instant::now() };
-        let found = match scene.continuum_problem(model) {
+        let found = match continuum::problem(scene, model) {
             Ok((problem, mesh)) => guaranteed::total_error(&search, &problem, mesh),
             Err(WhyNot::NoGuarantee(NoGuarantee { path, message })) if goal.force_error.is_some() => {
                 let message = format!("{message}; without it the force has no bound: leave out --force-error");
@@ -72,7 +72,7 @@ impl TotalError {
         }?;
         let is_beyond = |last: &(Answer, Solution)| last.0.beyond_small_displacements().is_some();
         match &found.last {
-            Ok(last) if !model.is_linear() && is_beyond(last) => {
+            Ok(last) if !model.parts.scene.is_linear && is_beyond(last) => {
                 Ok(TotalError { status: Status::BeyondSmallDisplacements, ..found })
             }
             _ => Ok(found),

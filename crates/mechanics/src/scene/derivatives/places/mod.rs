@@ -41,7 +41,7 @@ use crate::scene::input::entry::boundary;
 use crate::scene::input::schema::tie::StiffnessOf;
 use crate::scene::input::schema::{Place, SupportSpec, TieSpec};
 use crate::scene::input::sum::Profile;
-use crate::scene::models::load::Acting;
+use crate::scene::models::load::{Acting, acting};
 use crate::scene::models::rows::ContactRow;
 
 fn said(error: impl ToString) -> String {
@@ -55,7 +55,7 @@ pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, St
     let (body, parts) = (model.body(), &model.parts);
     model.check_multiplier(pairing.forces).map_err(said)?;
     let motion = parts.unknowns.motion(pairing.adjoint).map_err(said)?;
-    let adjoint = parts.dofs.expand_motion(&motion).map_err(said)?;
+    let adjoint = parts.conditions.dofs.expand_motion(&motion).map_err(said)?;
     let mut gradient = vec![0.0; body.nodal_dofs()];
     internal_work_by_places(body, answer.displacement(), &adjoint, &mut gradient)?;
     gradient.iter_mut().for_each(|entry| *entry = 0.0 - *entry);
@@ -94,7 +94,7 @@ pub(crate) fn add_loads(
     gradient: &mut [f64],
 ) -> Result<(), Error> {
     for index in 0..scene.loads.len() {
-        match scene.acting(body, index)? {
+        match acting(scene, body, index)? {
             Acting::AtNodes(_) => {}
             Acting::BodyForce(force) => body_force_by_places(body, force, virtual_displacement, gradient),
             Acting::Gravity(acceleration) => gravity_by_places(body, acceleration, virtual_displacement, gradient)?,

@@ -117,7 +117,7 @@ impl<'a> Slopes<'a> {
     fn is_symmetric(&self, node: usize, axis: usize) -> bool {
         let (mesh, at) = (self.model.mesh(), self.model.mesh().nodes()[node]);
         let is_on_axis = self.model.body().formulation().is_axisymmetric() && at[0] <= ON_THE_AXIS * mesh.size();
-        self.model.axes_of_symmetry(&at)[axis] || (axis == 0 && is_on_axis)
+        self.model.parts.conditions.symmetry.axes_at(&at)[axis] || (axis == 0 && is_on_axis)
     }
 
     fn without_slope(&self, node: usize) -> String {
@@ -189,7 +189,7 @@ fn add_obstacle(
             continue;
         }
         of_area[row.node] += weight * facing;
-        let on_planes = model.axes_of_symmetry(&nodes[row.node]);
+        let on_planes = model.parts.conditions.symmetry.axes_at(&nodes[row.node]);
         let in_planes = |vector: [f64; 3]| [0, 1, 2].map(|axis| if on_planes[axis] { 0.0 } else { vector[axis] });
         let factor = weight * row.tributary_area / length(in_planes(sums[row.node]));
         let normal = in_planes(row.normal);
@@ -274,7 +274,7 @@ fn add_end(patch: &ContactPatch, cells: &[&StraightCell], factor: f64, gradient:
     let around = patch.cells_with(&own).flat_map(|cell| cell.nodes.iter().copied());
     let nodes: BTreeSet<usize> = own.iter().copied().chain(around).collect();
     for node in nodes {
-        let on_planes = model.axes_of_symmetry(&model.mesh().nodes()[node]);
+        let on_planes = model.parts.conditions.symmetry.axes_at(&model.mesh().nodes()[node]);
         for axis in (0..dimension).filter(|&axis| !on_planes[axis]) {
             let off = |by: f64| {
                 let mut way = [0.0; 3];

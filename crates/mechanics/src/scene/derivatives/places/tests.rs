@@ -5,6 +5,8 @@ use std::sync::Arc;
 use super::*;
 use crate::scene::derivatives::output::Output;
 use crate::scene::input::obstacle::{Obstacle, ObstacleRow};
+use crate::scene::models::build::model_of;
+use crate::scene::models::elastic::bodies;
 use crate::scene::{Answer, Model};
 use signorini_qp::{ContactSet, dot};
 
@@ -40,7 +42,7 @@ struct Moving<'a> {
 impl<'a> Moving<'a> {
     /// `may_move` chooses the nodes that leave the lattice, by their place.
     fn of(scene: &'a Scene, may_move: impl Fn([f64; 3]) -> bool) -> Self {
-        let bodies = scene.bodies().unwrap();
+        let bodies = bodies(scene).unwrap();
         let nodes = bodies.iter().flat_map(|body| body.mesh().nodes().iter().map(|node| (*node, body.dimension())));
         let off = nodes.flat_map(|(node, dimension)| vec![if may_move(node) { 0.03 } else { 0.0 }; dimension]);
         let off: Vec<f64> = off.collect();
@@ -50,7 +52,7 @@ impl<'a> Moving<'a> {
 
     fn model(&self, moved: Option<(usize, f64)>) -> Result<Model, Error> {
         let mut first = 0;
-        let bodies = self.scene.bodies()?.into_iter().map(|body| {
+        let bodies = bodies(self.scene)?.into_iter().map(|body| {
             let own = first..first + body.nodal_dofs();
             first = own.end;
             let off = own.clone().fold(body, |body, dof| body.moved(dof - own.start, self.off[dof]));
@@ -59,7 +61,7 @@ impl<'a> Moving<'a> {
                 _ => off,
             }
         });
-        self.scene.build_of(bodies.collect(), &self.further)
+        model_of(self.scene, bodies.collect(), &self.further)
     }
 
     /// The derivatives of `value` with respect to the coordinates for which the scene can be built.

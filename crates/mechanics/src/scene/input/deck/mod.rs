@@ -15,7 +15,6 @@ pub(crate) mod requests;
 pub(crate) mod rigid;
 mod supports;
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::warning::{NONLINEAR, Warning};
@@ -29,7 +28,6 @@ use keywords::SceneText;
 use loads::Loads;
 use materials::Sections;
 use references::References;
-use requests::Requests;
 use rigid::{Displacements, ReferenceNode, RigidBodies, Transforms};
 use supports::supports;
 
@@ -135,59 +133,12 @@ impl DeckScene {
     }
 }
 
-impl Scene {
-    /// Reads a deck of CalculiX as a scene, at the end of a step from 1, or of the last one; relative names of files
-    /// start in its folder. Files that it includes may lie outside its folder if `permits` has `outside`, and
-    /// friction is left out with a warning if it has `friction`.
-    ///
-    /// # Errors
-    /// [`File`](signorini_qp::LinearError::File) for a file that cannot be read;
-    /// [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for what is wrong, and for what changes the
-    /// answer and is not modelled.
-    pub fn read_deck(path: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Scene, Error> {
-        let path = path.as_ref();
-        let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let deck = DeckScene::read(path, &named, Reading { permits, step, earlier: &[] })?;
-        Ok(Scene::of_text(path, &named, deck)?.0)
-    }
-
-    fn of_text(path: &Path, named: &str, deck: DeckScene) -> Result<(Scene, Deck, Vec<ReferenceNode>), Error> {
-        let (scene, folder) = (Scene::from_json(&deck.text, named)?, path.parent().map(Path::to_path_buf));
-        Ok((Scene { folder, noted: deck.warnings, lines: deck.lines, ..scene }, deck.deck, deck.references))
-    }
-
-    /// Reads one step of a deck, from 1, as [`Scene::read_deck`] does, and what it asks for. `earlier` are the
-    /// displacements at the ends of the steps before it, in length and radians, of all nodes by their numbers, which a
-    /// card `*BOUNDARY, FIXED` holds
-    /// ([`Answer::displacements_of_deck`](crate::scene::Answer::displacements_of_deck)).
-    ///
-    /// # Errors
-    /// As [`Scene::read_deck`]; [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for results of a
-    /// set that does not exist.
-    pub fn read_step(
-        path: impl AsRef<Path>,
-        permits: &[&str],
-        step: usize,
-        earlier: &[HashMap<usize, [f64; 6]>],
-    ) -> Result<(Scene, Requests), Error> {
-        let path = path.as_ref();
-        let named = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let deck = DeckScene::read(path, &named, Reading { permits, step: Some(step), earlier })?;
-        let (scene, deck, references) = Scene::of_text(path, &named, deck)?;
-        Ok((scene, Requests::of(&deck, references)?))
-    }
-
-    /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is
-    /// not built.
-    pub fn text_of_deck(file: &Path, named: &str, permits: &[&str], step: Option<usize>) -> Result<String, Error> {
-        DeckScene::read(file, named, Reading { permits, step, earlier: &[] }).map(|scene| scene.text)
-    }
-
-    /// Returns `true` for the name of an input deck, which ends with `.inp`: such a file is read by
-    /// [`Scene::read_deck`].
-    pub fn is_deck(file: impl AsRef<Path>) -> bool {
-        is_deck(file.as_ref())
-    }
+/// The scene of a deck, with what it is read from.
+pub(crate) fn read(path: &Path, reading: Reading) -> Result<(Scene, Deck, Vec<ReferenceNode>), Error> {
+    let named = path.file_name().unwrap_or_default().to_string_lossy();
+    let deck = DeckScene::read(path, &named, reading)?;
+    let (scene, folder) = (Scene::from_json(&deck.text, &named)?, path.parent().map(Path::to_path_buf));
+    Ok((Scene { folder, noted: deck.warnings, lines: deck.lines, ..scene }, deck.deck, deck.references))
 }
 
 /// A file with a line, as `part.inp:12`.

@@ -76,7 +76,7 @@ const OTHERS: [&str; 4] = ["FACEPRINT", "SECTIONPRINT", "SECTIONFILE", "ENERGYPR
 
 impl Requests {
     /// What a deck asks for at the end of its step; `references` are its reference nodes.
-    pub(super) fn of(deck: &Deck, references: Vec<ReferenceNode>) -> Result<Self, Error> {
+    pub(crate) fn of(deck: &Deck, references: Vec<ReferenceNode>) -> Result<Self, Error> {
         let end = Temperatures::of(deck, &Amplitudes::of(deck)?)?.end;
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
         let transforms = Transforms::of(deck, &RigidBodies::of(deck)?)?;

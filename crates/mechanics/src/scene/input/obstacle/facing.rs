@@ -6,7 +6,6 @@ use std::collections::{HashMap, HashSet};
 use super::mortar;
 use super::order::{Between, Facing};
 use super::shape::{Geometry, ObstacleShape, Site};
-use crate::continuum::SAME_PLACE;
 use crate::error::Error;
 use crate::fem::assembly::{node_normals, outward};
 use crate::fem::geometry::{cross, distance, dot, length, minus, sorted, unit};
@@ -18,6 +17,7 @@ use crate::scene::input::entry::{PLACE_TOLERANCE, boundary, number, point, refus
 use crate::scene::input::schema::model::Rule;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use signorini_guarantee::SAME_PLACE;
 
 /// Allowed lateral offset of a partner, in units of its distance: at the end of a curved boundary only the facets on
 /// one side give the normal, which is wrong by half the angle of a facet.

@@ -5,11 +5,8 @@ mod surface;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::build::model_of;
 use super::rigid_face::{Motion, RigidFace};
-use crate::continuum::{
-    Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
-    RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
-};
 use crate::error::Error;
 use crate::fem::body::{ON_THE_AXIS, Phase};
 use crate::fem::geometry::{COORDINATES, dot};
@@ -20,6 +17,11 @@ use crate::scene::input::entry::wrong;
 use crate::scene::input::obstacle::{Between, PlacedObstacle};
 use crate::scene::input::schema::condition::LoadSpec;
 use crate::scene::input::schema::{Rule, Scene};
+use signorini_guarantee::{
+    Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
+    RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
+};
+pub(crate) use surface::{NoGuarantee, WhyNot, none};
 
 /// Times that facets partly within the reach of a pressed obstacle are refined.
 const MOST_ROUNDS: usize = 12;
@@ -27,149 +29,147 @@ const MOST_ROUNDS: usize = 12;
 /// Shares of a surface that differ by less are the same, as in the warning that surfaces are partly tied.
 const ALL_OF_IT: f64 = 1e-6;
 
-impl Scene {
-    /// Refuses a scene without an answer in the continuum.
-    pub(crate) fn check_continuum(&self) -> Result<(), Error> {
-        match self.loads.iter().position(LoadSpec::is_at_points) {
-            Some(index) if self.model.dimension() > 1 => {
-                let message = "a force at a point makes an infinite displacement in a continuum, so that there is \
-                               no total error; spread it over a boundary";
-                let field = if self.loads[index].is_at_point() { "force" } else { "nodal-forces" };
-                Err(wrong(format!("loads[{index}].{field}"), message))
-            }
-            _ => Ok(()),
+/// Refuses a scene without an answer in the continuum.
+pub(crate) fn check(scene: &Scene) -> Result<(), Error> {
+    match scene.loads.iter().position(LoadSpec::is_at_points) {
+        Some(index) if scene.model.dimension() > 1 => {
+            let message = "a force at a point makes an infinite displacement in a continuum, so that there is \
+                           no total error; spread it over a boundary";
+            let field = if scene.loads[index].is_at_point() { "force" } else { "nodal-forces" };
+            Err(wrong(format!("loads[{index}].{field}"), message))
         }
+        _ => Ok(()),
     }
+}
 
-    /// Asks for a guaranteed bound: the problem of the polygon or polyhedron that the mesh of `model` fills and the
-    /// initial simplices, or why not.
-    pub(crate) fn continuum_problem(&self, model: &Model) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
-        let body = model.body();
-        let formulation = *body.formulation();
-        let thickness = match formulation {
-            Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => thickness,
-            Formulation::Space => 1.0,
-            Formulation::Axisymmetric => TAU,
-            Formulation::Bar { .. } => {
-                let message = "a bar has no guaranteed bound: only plane bodies, bodies of revolution and those in space have one";
-                return Err(none("model", message));
-            }
-        };
-        let media = body.phases().iter().map(|phase| self.medium(phase, &formulation)).collect::<Result<_, _>>()?;
-        let dimension = model.mesh().dimension();
-        let mut problem = ContinuumProblem {
-            dimension,
-            is_axisymmetric: formulation.is_axisymmetric(),
-            media,
-            bodies: body.regions().iter().map(Region::elements).collect(),
-            medium_of: body.elements().map(|element| element.phase_number as usize).collect(),
-            thickness,
-            conditions: Vec::new(),
-            rigid_faces: model.parts.rigid_faces.iter().map(rigid_face).collect(),
-            obstacles: (0..model.obstacles().len()).map(|index| facing(model, index)).collect::<Result<_, _>>()?,
-            boundaries: model
-                .mesh()
-                .boundaries()
-                .iter()
-                .map(|boundary| (boundary.name.clone(), body.region_of(boundary).unwrap_or(0)))
-                .collect(),
-        };
-        let at_body = |error: fem::Error| match error {
-            fem::Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
-            other => Error::from(other).into(),
-        };
-        let mut pieces = Pieces::of(model.mesh()).map_err(at_body)?;
-        if problem.is_axisymmetric {
-            let near = ON_THE_AXIS * model.mesh().size();
-            pieces.nodes.iter_mut().filter(|node| node[0] <= near).for_each(|node| node[0] = 0.0);
+/// Asks for a guaranteed bound: the problem of the polygon or polyhedron that the mesh of `model` fills and the
+/// initial simplices, or why not.
+pub(crate) fn problem(scene: &Scene, model: &Model) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
+    let (body, formulation) = (model.body(), *model.body().formulation());
+    let thickness = match formulation {
+        Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => thickness,
+        Formulation::Space => 1.0,
+        Formulation::Axisymmetric => TAU,
+        Formulation::Bar { .. } => {
+            let message =
+                "a bar has no guaranteed bound: only plane bodies, bodies of revolution and those in space have one";
+            return Err(none("model", message));
         }
-        let unmatched = || {
-            let message = match dimension {
-                2 => "the triangles of the mesh do not meet in whole edges, so that there is no guaranteed bound",
-                _ => {
-                    "the cells of the mesh, cut into tetrahedra, do not meet in whole faces, so that there is no guaranteed bound"
-                }
-            };
-            none("body", message)
-        };
-        if !pieces.meet(model.mesh()) {
-            return Err(unmatched());
-        }
-        let surface = self.surface(model, &pieces, &mut problem.conditions)?;
-        let Pieces { nodes, cells, elements: origins, .. } = pieces;
-        let cells = Cells { nodes, cells, origins, surface };
-        let mesh = SimplexMesh::new(dimension, cells).ok_or_else(unmatched)?;
-        let (mesh, joined) = mesh.joined(&mut problem).map_err(|why| match why {
-            Unjoined::Layers(obstacle) => {
-                let message =
-                    "several layers of the bodies lie before each other, so that there is no guaranteed bound; give a smaller `reach`";
-                none(format!("obstacles[{obstacle}].shape.body"), message)
-            }
-            Unjoined::Unmatched => unmatched(),
-            Unjoined::Acting(tie) => {
-                let message = "a support, a load or an obstacle on a tied surface has no guaranteed bound";
-                none(format!("ties[{tie}]"), message)
-            }
-        })?;
-        for (tie, covered) in model.parts.ties.covered.iter().enumerate() {
-            let is_joined = |&(side, share): &(usize, f64)| {
-                joined.get(tie).is_some_and(|shares| (shares[side] - share).abs() <= ALL_OF_IT)
-            };
-            if !covered.as_ref().is_some_and(is_joined) {
-                let message = match dimension {
-                    2 => "surfaces that do not lie on each other have no guaranteed bound if they are tied",
-                    _ => "tied surfaces whose faces, cut into triangles, are not the same have no guaranteed bound",
-                };
-                return Err(none(format!("ties[{tie}]"), message));
-            }
-        }
-        within_reach(problem, mesh)
-    }
-
-    /// The scene on the last mesh of a guaranteed error, with the boundaries and parts of the first mesh.
-    pub(crate) fn on_last_mesh(&self, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
-        // Contacts that the program found are found again.
-        let found: Vec<&str> = first.obstacles()[self.obstacles.len()..]
+    };
+    let media = body.phases().iter().map(|phase| medium(scene, phase, &formulation)).collect::<Result<_, _>>()?;
+    let dimension = model.mesh().dimension();
+    let mut problem = ContinuumProblem {
+        dimension,
+        is_axisymmetric: formulation.is_axisymmetric(),
+        media,
+        bodies: body.regions().iter().map(Region::elements).collect(),
+        medium_of: body.elements().map(|element| element.phase_number as usize).collect(),
+        thickness,
+        conditions: Vec::new(),
+        rigid_faces: model.parts.conditions.rigid_faces.iter().map(rigid_face).collect(),
+        obstacles: (0..model.obstacles().len()).map(|index| facing(model, index)).collect::<Result<_, _>>()?,
+        boundaries: model
+            .mesh()
+            .boundaries()
             .iter()
-            .flat_map(|obstacle| [Some(obstacle.boundary()), obstacle.other_body().map(|other| other.0)])
-            .flatten()
-            .collect();
-        let mesh = last.mesh_with(|name| !found.contains(&name))?;
-        let body = first.body().on(mesh, &last.origins)?;
-        // The parts are boundaries of that mesh; to choose them again would move their ends.
-        Scene { parts: Vec::new(), ..self.clone() }.build_of(vec![body], &[])
+            .map(|boundary| (boundary.name.clone(), body.region_of(boundary).unwrap_or(0)))
+            .collect(),
+    };
+    let at_body = |error: fem::Error| match error {
+        fem::Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
+        other => Error::from(other).into(),
+    };
+    let mut pieces = Pieces::of(model.mesh()).map_err(at_body)?;
+    if problem.is_axisymmetric {
+        let near = ON_THE_AXIS * model.mesh().size();
+        pieces.nodes.iter_mut().filter(|node| node[0] <= near).for_each(|node| node[0] = 0.0);
     }
-
-    /// What fills the elements of a phase, under the body forces of the scene.
-    fn medium(&self, phase: &Phase, formulation: &Formulation) -> Result<Medium, WhyNot> {
-        if phase.law.turns() {
-            let message = "a stiffness with axes around a line has no guaranteed bound";
-            return Err(none("material.orthotropic.around", message));
-        }
-        let mut body_force = [0.0; 3];
-        for (index, load) in self.loads.iter().enumerate() {
-            let (force, density) = match load {
-                LoadSpec::BodyForce(force) => (force, 1.0),
-                // The model is built, so that the density exists.
-                LoadSpec::Gravity(acceleration) => (acceleration, phase.material().density().unwrap_or_default()),
-                LoadSpec::Centrifugal(_) => {
-                    let message = "a force that grows with the distance from an axis has no guaranteed bound: only a constant body \
-                                   force has one";
-                    return Err(none(format!("loads[{index}].centrifugal"), message));
-                }
-                _ => continue,
-            };
-            body_force.iter_mut().zip(force).for_each(|(sum, part)| *sum += density * part);
-        }
-        // In the plane the stress across it does no work.
-        let does_work = |entry: usize| entry != 2 || formulation.dimension() == 3 || formulation.is_axisymmetric();
-        let own = |entry: usize| match does_work(entry) {
-            true => Linear::of(|place| phase.own_stress(place).map_or(0.0, |stress| stress[entry])),
-            false => Linear::default(),
+    let unmatched = || {
+        let message = match dimension {
+            2 => "the triangles of the mesh do not meet in whole edges, so that there is no guaranteed bound",
+            _ => {
+                "the cells of the mesh, cut into tetrahedra, do not meet in whole faces, so that there is no guaranteed bound"
+            }
         };
-        let own_stress = phase.own.is_some().then(|| [0, 1, 2, 3, 4, 5].map(own));
-        Ok(Medium { stiffness: phase.law.stiffness.clone(), own_stress, body_force })
+        none("body", message)
+    };
+    if !pieces.meet(model.mesh()) {
+        return Err(unmatched());
     }
+    let surface = surface::conditions(scene, model, &pieces, &mut problem.conditions)?;
+    let Pieces { nodes, cells, elements: origins, .. } = pieces;
+    let cells = Cells { nodes, cells, origins, surface };
+    let mesh = SimplexMesh::new(dimension, cells).ok_or_else(unmatched)?;
+    let (mesh, joined) = mesh.joined(&mut problem).map_err(|why| match why {
+        Unjoined::Layers(obstacle) => {
+            let message =
+                "several layers of the bodies lie before each other, so that there is no guaranteed bound; give a smaller `reach`";
+            none(format!("obstacles[{obstacle}].shape.body"), message)
+        }
+        Unjoined::Unmatched => unmatched(),
+        Unjoined::Acting(tie) => {
+            let message = "a support, a load or an obstacle on a tied surface has no guaranteed bound";
+            none(format!("ties[{tie}]"), message)
+        }
+    })?;
+    for (tie, covered) in model.parts.ties.covered.iter().enumerate() {
+        let is_joined = |&(side, share): &(usize, f64)| {
+            joined.get(tie).is_some_and(|shares| (shares[side] - share).abs() <= ALL_OF_IT)
+        };
+        if !covered.as_ref().is_some_and(is_joined) {
+            let message = match dimension {
+                2 => "surfaces that do not lie on each other have no guaranteed bound if they are tied",
+                _ => "tied surfaces whose faces, cut into triangles, are not the same have no guaranteed bound",
+            };
+            return Err(none(format!("ties[{tie}]"), message));
+        }
+    }
+    within_reach(problem, mesh)
+}
+
+/// The scene on the last mesh of a guaranteed error, with the boundaries and parts of the first mesh.
+pub(crate) fn on_last_mesh(scene: &Scene, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
+    // Contacts that the program found are found again.
+    let found: Vec<&str> = first.obstacles()[scene.obstacles.len()..]
+        .iter()
+        .flat_map(|obstacle| [Some(obstacle.boundary()), obstacle.other_body().map(|other| other.0)])
+        .flatten()
+        .collect();
+    let mesh = last.mesh_with(|name| !found.contains(&name))?;
+    let body = first.body().on(mesh, &last.origins)?;
+    // The parts are boundaries of that mesh; to choose them again would move their ends.
+    model_of(&Scene { parts: Vec::new(), ..scene.clone() }, vec![body], &[])
+}
+
+/// What fills the elements of a phase, under the body forces of the scene.
+fn medium(scene: &Scene, phase: &Phase, formulation: &Formulation) -> Result<Medium, WhyNot> {
+    if phase.law.turns() {
+        let message = "a stiffness with axes around a line has no guaranteed bound";
+        return Err(none("material.orthotropic.around", message));
+    }
+    let mut body_force = [0.0; 3];
+    for (index, load) in scene.loads.iter().enumerate() {
+        let (force, density) = match load {
+            LoadSpec::BodyForce(force) => (force, 1.0),
+            // The model is built, so that the density exists.
+            LoadSpec::Gravity(acceleration) => (acceleration, phase.material().density().unwrap_or_default()),
+            LoadSpec::Centrifugal(_) => {
+                let message = "a force that grows with the distance from an axis has no guaranteed bound: only a constant body \
+                               force has one";
+                return Err(none(format!("loads[{index}].centrifugal"), message));
+            }
+            _ => continue,
+        };
+        body_force.iter_mut().zip(force).for_each(|(sum, part)| *sum += density * part);
+    }
+    // In the plane the stress across it does no work.
+    let does_work = |entry: usize| entry != 2 || formulation.dimension() == 3 || formulation.is_axisymmetric();
+    let own = |entry: usize| match does_work(entry) {
+        true => Linear::of(|place| phase.own_stress(place).map_or(0.0, |stress| stress[entry])),
+        false => Linear::default(),
+    };
+    let own_stress = phase.own.is_some().then(|| [0, 1, 2, 3, 4, 5].map(own));
+    Ok(Medium { stiffness: phase.law.stiffness.clone(), own_stress, body_force })
 }
 
 /// The problem with a mesh on which some facet lies all within the reach of each pressed obstacle; it is refined there
@@ -209,43 +209,6 @@ fn rigid_face(face: &RigidFace) -> Plate {
         (field(&|place| face.displacement(motion, place).map(|part| unit * part)), unit * motion.force)
     };
     Plate { prescribed: field(&|place| face.prescribed(place)), free: free.map(by_one).collect() }
-}
-
-/// What of a scene has no guaranteed bound, and what would have one.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct NoGuarantee {
-    /// JSON path of what has none.
-    pub path: String,
-    pub message: String,
-}
-
-/// Why there is no problem of the continuum: an answer to the question for a guarantee, or a failure, which answers
-/// nothing.
-#[derive(Debug)]
-pub(crate) enum WhyNot {
-    /// The scene has no guaranteed bound.
-    NoGuarantee(NoGuarantee),
-    /// The question has no answer.
-    Failed(Error),
-}
-
-impl From<Error> for WhyNot {
-    fn from(error: Error) -> Self {
-        WhyNot::Failed(error)
-    }
-}
-
-impl From<WhyNot> for Error {
-    fn from(why: WhyNot) -> Self {
-        match why {
-            WhyNot::NoGuarantee(NoGuarantee { path, message }) => Error::Scene { path, message },
-            WhyNot::Failed(error) => error,
-        }
-    }
-}
-
-pub(crate) fn none(path: impl Into<String>, message: impl Into<String>) -> WhyNot {
-    WhyNot::NoGuarantee(NoGuarantee { path: path.into(), message: message.into() })
 }
 
 /// The component of a unit vector normal to a coordinate axis below which it is rounding of the written components.

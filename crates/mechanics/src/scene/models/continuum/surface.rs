@@ -2,8 +2,6 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::{WhyNot, none};
-use crate::continuum::{Circle, Condition, Held, Linear, Point};
 use crate::error::Error;
 use crate::fem::Mesh;
 use crate::fem::assembly::turning_traction;
@@ -14,174 +12,167 @@ use crate::scene::input::entry::boundary;
 use crate::scene::input::schema::condition::{LoadSpec, PressureSpec, ProfileSpec, TractionSpec};
 use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
 use crate::scene::input::sum::Profile;
+use crate::scene::models::held::components;
 use crate::scene::models::load::spread;
+use signorini_guarantee::{Circle, Condition, Held, Linear, Point};
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
 const AT_A_CORNER: f64 = 1e-9;
 
-impl Scene {
-    /// The conditions, and the number of that of each facet with one, by its nodes.
-    pub(super) fn surface(
-        &self,
-        model: &Model,
-        pieces: &Pieces,
-        conditions: &mut Vec<Condition>,
-    ) -> Result<HashMap<Vec<usize>, usize>, WhyNot> {
-        let mut surface = Surface::of(model.mesh(), pieces);
-        self.add_supports(model, &mut surface)?;
-        surface.change_on_planes(|at| model.axes_of_symmetry(at));
-        for (index, face) in self.rigid_faces.iter().enumerate() {
-            let path = format!("rigid-faces[{index}]");
-            let Some(name) = &face.boundary else {
-                let message =
-                    "single nodes that move as a rigid body have no guaranteed bound: only a boundary has one";
-                return Err(none(format!("{path}.nodes"), message));
-            };
-            surface.change(name, |condition, _| {
-                condition.rigid_face = Some(index);
-                Ok(())
-            })?;
-        }
-        for (index, springs) in self.springs.iter().enumerate() {
-            let path = format!("springs[{index}]");
-            let Some(Place::Boundary(name)) = &springs.on else {
-                let message = "a spring at a point holds nothing in a continuum, so that there is no guaranteed bound; spread it \
-                               over a boundary";
-                return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
-            };
-            let of_boundary = boundary(model.mesh(), name, &format!("{path}.on.boundary"))?;
-            let (along, normal) = springs.per_area(&path, model.body(), of_boundary)?;
-            surface.change(name, |condition, _| {
-                (0..3).for_each(|axis| condition.springs.along[axis] += along[axis]);
-                condition.springs.normal += normal;
-                Ok(())
-            })?;
-        }
-        for (index, load) in self.loads.iter().enumerate() {
-            self.add_load_on_surface(model, index, load, &mut surface)?;
-        }
-        for (index, obstacle) in model.obstacles().iter().enumerate() {
-            let name = obstacle.boundary();
-            surface.change(name, |condition, facet| match facet.inner_normal {
-                None => {
-                    condition.obstacles.push(index);
-                    Ok(())
-                }
-                Some(_) => {
-                    let message = format!("`{name}` runs through the body, so that there is no guaranteed bound");
-                    Err(none(format!("obstacles[{index}].boundary"), message))
-                }
-            })?;
-            if let Some((other, _)) = obstacle.other_body() {
-                surface.change_known(other, |condition| condition.faces.push(index));
-            }
-        }
-        for (index, tie) in self.ties.iter().enumerate() {
-            let TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, .. }) = tie else {
-                let message = "only tied surfaces have a guaranteed bound, not equations of nodes and no preload";
-                return Err(none(format!("ties[{index}]"), message));
-            };
-            for (side, name) in [boundary, to].into_iter().enumerate() {
-                surface.change_known(name, |condition| condition.seams.push(2 * index + side));
-            }
-        }
-        for (index, boundary) in model.mesh().boundaries().iter().enumerate() {
-            surface.change_known(&boundary.name, |condition| condition.boundaries.push(index));
-        }
-        // Edges of two bodies that lie opposite to each other stay so only if they are straight.
-        let circles = if self.further_bodies.is_empty() { self.body.shape().circles() } else { Vec::new() };
-        for (name, centre, radius) in circles {
-            surface.change_known(name, |condition| {
-                let [x, y] = centre;
-                condition.circle = Some(Circle { centre: [x, y, 0.0], radius });
-            });
-        }
-        Ok(surface.numbered(conditions))
+/// The conditions, and the number of that of each facet with one, by its nodes.
+pub(super) fn conditions(
+    scene: &Scene,
+    model: &Model,
+    pieces: &Pieces,
+    conditions: &mut Vec<Condition>,
+) -> Result<HashMap<Vec<usize>, usize>, WhyNot> {
+    let mut surface = Surface::of(model.mesh(), pieces);
+    add_supports(scene, model, &mut surface)?;
+    surface.change_on_planes(|at| model.parts.conditions.symmetry.axes_at(at));
+    for (index, face) in scene.rigid_faces.iter().enumerate() {
+        let path = format!("rigid-faces[{index}]");
+        let Some(name) = &face.boundary else {
+            let message = "single nodes that move as a rigid body have no guaranteed bound: only a boundary has one";
+            return Err(none(format!("{path}.nodes"), message));
+        };
+        surface.change(name, |condition, _| {
+            condition.rigid_face = Some(index);
+            Ok(())
+        })?;
     }
-
-    fn add_supports(&self, model: &Model, surface: &mut Surface) -> Result<(), WhyNot> {
-        for (index, support) in self.supports.iter().enumerate() {
-            let Place::Boundary(name) = &support.on else {
-                let message = "a support at a point holds nothing in a continuum, so that there is no guaranteed bound; \
-                               hold a boundary";
-                return Err(none(format!("supports[{index}].on"), message));
-            };
-            let path = format!("supports[{index}].profile");
-            let profile = Factor { counts_radius: false, ..Factor::of(model, support.profile.as_ref(), path)? };
-            let components = self.components(index, support)?;
-            surface.change(name, |condition, facet| {
-                let factor = profile.on(facet)?;
-                condition.held.extend(
-                    components
-                        .iter()
-                        .map(|component| Held { direction: component.direction, value: factor.times(component.value) }),
-                );
-                Ok(())
-            })?;
-        }
-        Ok(())
+    for (index, springs) in scene.springs.iter().enumerate() {
+        let path = format!("springs[{index}]");
+        let Some(Place::Boundary(name)) = &springs.on else {
+            let message = "a spring at a point holds nothing in a continuum, so that there is no guaranteed bound; spread it \
+                           over a boundary";
+            return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
+        };
+        let of_boundary = boundary(model.mesh(), name, &format!("{path}.on.boundary"))?;
+        let (along, normal) = springs.per_area(&path, model.body(), of_boundary)?;
+        surface.change(name, |condition, _| {
+            (0..3).for_each(|axis| condition.springs.along[axis] += along[axis]);
+            condition.springs.normal += normal;
+            Ok(())
+        })?;
     }
-
-    /// Adds load number `index`, if it acts on facets.
-    fn add_load_on_surface(
-        &self,
-        model: &Model,
-        index: usize,
-        load: &LoadSpec,
-        surface: &mut Surface,
-    ) -> Result<(), WhyNot> {
-        let path = |field: &str| format!("loads[{index}].{field}");
-        let in_space = |value: &[f64]| [0, 1, 2].map(|axis| value.get(axis).copied().unwrap_or(0.0));
-        match load {
-            LoadSpec::Traction(TractionSpec { boundary, value, profile }) => {
-                let (factor, value) = (Factor::of(model, profile.as_ref(), path("traction.profile"))?, in_space(value));
-                surface.change(boundary, |condition, facet| {
-                    let factor = factor.on(facet)?;
-                    condition.pull_along(value.map(|component| factor.times(component)));
-                    Ok(())
-                })
+    for (index, load) in scene.loads.iter().enumerate() {
+        add_load_on_surface(model, index, load, &mut surface)?;
+    }
+    for (index, obstacle) in model.obstacles().iter().enumerate() {
+        let name = obstacle.boundary();
+        surface.change(name, |condition, facet| match facet.inner_normal {
+            None => {
+                condition.obstacles.push(index);
+                Ok(())
             }
-            LoadSpec::Pressure(PressureSpec { boundary, value, profile }) => {
-                let factor = Factor::of(model, profile.as_ref(), path("pressure.profile"))?;
-                surface.change(boundary, |condition, facet| {
-                    let pressure = factor.on(facet)?.times(*value);
-                    match facet.inner_normal {
-                        Some(normal) => condition.pull_along(normal.map(|part| pressure.times(-part))),
-                        None => condition.pressure = condition.pressure.plus(pressure),
-                    }
-                    Ok(())
-                })
+            Some(_) => {
+                let message = format!("`{name}` runs through the body, so that there is no guaranteed bound");
+                Err(none(format!("obstacles[{index}].boundary"), message))
             }
-            LoadSpec::Force(spec) => {
-                let (Some(name), path) = (&spec.boundary, path("force.boundary")) else { return Ok(()) };
-                let of_boundary = boundary(model.mesh(), name, &path)?;
-                let traction = spread(model.body(), of_boundary, in_space(&spec.value), &path)?;
-                surface.change(name, |condition, _| {
-                    condition.pull_along(traction.map(Linear::constant));
-                    Ok(())
-                })
-            }
-            LoadSpec::Moment(spec) => {
-                let Some(name) = &spec.boundary else { return Ok(()) };
-                let of_boundary = boundary(model.mesh(), name, &path("moment.boundary"))?;
-                let moment = match spec.value[..] {
-                    [about_z] => [0.0, 0.0, about_z],
-                    _ => in_space(&spec.value),
-                };
-                // The model is built, so that there is one.
-                let Some((omega, centre)) = turning_traction(model.body(), of_boundary, moment) else { return Ok(()) };
-                let along = |axis: usize| Linear::of(|place| cross(omega, minus(place, centre))[axis]);
-                surface.change(name, |condition, _| {
-                    condition.pull_along([0, 1, 2].map(along));
-                    Ok(())
-                })
-            }
-            LoadSpec::NodalForces(_) => Err(none(
-                path("nodal-forces"),
-                "a force on a node has no guaranteed bound: only loads on boundaries have one",
-            )),
-            LoadSpec::BodyForce(_) | LoadSpec::Gravity(_) | LoadSpec::Centrifugal(_) => Ok(()),
+        })?;
+        if let Some((other, _)) = obstacle.other_body() {
+            surface.change_known(other, |condition| condition.faces.push(index));
         }
+    }
+    for (index, tie) in scene.ties.iter().enumerate() {
+        let TieSpec::Surfaces(TiedSurfacesSpec { boundary, to, .. }) = tie else {
+            let message = "only tied surfaces have a guaranteed bound, not equations of nodes and no preload";
+            return Err(none(format!("ties[{index}]"), message));
+        };
+        for (side, name) in [boundary, to].into_iter().enumerate() {
+            surface.change_known(name, |condition| condition.seams.push(2 * index + side));
+        }
+    }
+    for (index, boundary) in model.mesh().boundaries().iter().enumerate() {
+        surface.change_known(&boundary.name, |condition| condition.boundaries.push(index));
+    }
+    // Edges of two bodies that lie opposite to each other stay so only if they are straight.
+    let circles = if scene.further_bodies.is_empty() { scene.body.shape().circles() } else { Vec::new() };
+    for (name, centre, radius) in circles {
+        surface.change_known(name, |condition| {
+            let [x, y] = centre;
+            condition.circle = Some(Circle { centre: [x, y, 0.0], radius });
+        });
+    }
+    Ok(surface.numbered(conditions))
+}
+
+fn add_supports(scene: &Scene, model: &Model, surface: &mut Surface) -> Result<(), WhyNot> {
+    for (index, support) in scene.supports.iter().enumerate() {
+        let Place::Boundary(name) = &support.on else {
+            let message = "a support at a point holds nothing in a continuum, so that there is no guaranteed bound; \
+                           hold a boundary";
+            return Err(none(format!("supports[{index}].on"), message));
+        };
+        let path = format!("supports[{index}].profile");
+        let profile = Factor { counts_radius: false, ..Factor::of(model, support.profile.as_ref(), path)? };
+        let components = components(scene, index, support)?;
+        surface.change(name, |condition, facet| {
+            let factor = profile.on(facet)?;
+            condition.held.extend(
+                components
+                    .iter()
+                    .map(|component| Held { direction: component.direction, value: factor.times(component.value) }),
+            );
+            Ok(())
+        })?;
+    }
+    Ok(())
+}
+
+/// Adds load number `index`, if it acts on facets.
+fn add_load_on_surface(model: &Model, index: usize, load: &LoadSpec, surface: &mut Surface) -> Result<(), WhyNot> {
+    let path = |field: &str| format!("loads[{index}].{field}");
+    let in_space = |value: &[f64]| [0, 1, 2].map(|axis| value.get(axis).copied().unwrap_or(0.0));
+    match load {
+        LoadSpec::Traction(TractionSpec { boundary, value, profile }) => {
+            let (factor, value) = (Factor::of(model, profile.as_ref(), path("traction.profile"))?, in_space(value));
+            surface.change(boundary, |condition, facet| {
+                let factor = factor.on(facet)?;
+                condition.pull_along(value.map(|component| factor.times(component)));
+                Ok(())
+            })
+        }
+        LoadSpec::Pressure(PressureSpec { boundary, value, profile }) => {
+            let factor = Factor::of(model, profile.as_ref(), path("pressure.profile"))?;
+            surface.change(boundary, |condition, facet| {
+                let pressure = factor.on(facet)?.times(*value);
+                match facet.inner_normal {
+                    Some(normal) => condition.pull_along(normal.map(|part| pressure.times(-part))),
+                    None => condition.pressure = condition.pressure.plus(pressure),
+                }
+                Ok(())
+            })
+        }
+        LoadSpec::Force(spec) => {
+            let (Some(name), path) = (&spec.boundary, path("force.boundary")) else { return Ok(()) };
+            let of_boundary = boundary(model.mesh(), name, &path)?;
+            let traction = spread(model.body(), of_boundary, in_space(&spec.value), &path)?;
+            surface.change(name, |condition, _| {
+                condition.pull_along(traction.map(Linear::constant));
+                Ok(())
+            })
+        }
+        LoadSpec::Moment(spec) => {
+            let Some(name) = &spec.boundary else { return Ok(()) };
+            let of_boundary = boundary(model.mesh(), name, &path("moment.boundary"))?;
+            let moment = match spec.value[..] {
+                [about_z] => [0.0, 0.0, about_z],
+                _ => in_space(&spec.value),
+            };
+            // The model is built, so that there is one.
+            let Some((omega, centre)) = turning_traction(model.body(), of_boundary, moment) else { return Ok(()) };
+            let along = |axis: usize| Linear::of(|place| cross(omega, minus(place, centre))[axis]);
+            surface.change(name, |condition, _| {
+                condition.pull_along([0, 1, 2].map(along));
+                Ok(())
+            })
+        }
+        LoadSpec::NodalForces(_) => Err(none(
+            path("nodal-forces"),
+            "a force on a node has no guaranteed bound: only loads on boundaries have one",
+        )),
+        LoadSpec::BodyForce(_) | LoadSpec::Gravity(_) | LoadSpec::Centrifugal(_) => Ok(()),
     }
 }
 
@@ -311,4 +302,41 @@ fn normal(corners: &[Point]) -> Point {
         [a, b, c, ..] => unit(cross(minus(b, a), minus(c, a))),
         _ => [0.0; 3],
     }
+}
+
+/// What of a scene has no guaranteed bound, and what would have one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct NoGuarantee {
+    /// JSON path of what has none.
+    pub path: String,
+    pub message: String,
+}
+
+/// Why there is no problem of the continuum: an answer to the question for a guarantee, or a failure, which answers
+/// nothing.
+#[derive(Debug)]
+pub(crate) enum WhyNot {
+    /// The scene has no guaranteed bound.
+    NoGuarantee(NoGuarantee),
+    /// The question has no answer.
+    Failed(Error),
+}
+
+impl From<Error> for WhyNot {
+    fn from(error: Error) -> Self {
+        WhyNot::Failed(error)
+    }
+}
+
+impl From<WhyNot> for Error {
+    fn from(why: WhyNot) -> Self {
+        match why {
+            WhyNot::NoGuarantee(NoGuarantee { path, message }) => Error::Scene { path, message },
+            WhyNot::Failed(error) => error,
+        }
+    }
+}
+
+pub(crate) fn none(path: impl Into<String>, message: impl Into<String>) -> WhyNot {
+    WhyNot::NoGuarantee(NoGuarantee { path: path.into(), message: message.into() })
 }

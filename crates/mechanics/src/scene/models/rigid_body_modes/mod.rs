@@ -70,7 +70,11 @@ impl RigidBodyModes {
     /// one.
     fn at_dof(&self, parts: &Parts, dof: usize) -> Components {
         let (node, axis) = (dof / self.dimension, dof % self.dimension);
-        self.along(node, parts.dofs.basis.place(parts.body.mesh().nodes(), node), parts.dofs.axes(node)[axis])
+        self.along(
+            node,
+            parts.conditions.dofs.basis.place(parts.body.mesh().nodes(), node),
+            parts.conditions.dofs.axes(node)[axis],
+        )
     }
 
     /// The components of unit motions along a contact row, positive towards closing.
@@ -118,7 +122,8 @@ impl RigidBodyModes {
 
     /// A motion in the unknowns of the model.
     fn in_unknowns(&self, parts: &Parts, motion: &[f64]) -> Vec<f64> {
-        let of_free = parts.dofs.free().iter().map(|&dof| component(&self.at_dof(parts, dof), motion)).collect();
+        let of_free =
+            parts.conditions.dofs.free().iter().map(|&dof| component(&self.at_dof(parts, dof), motion)).collect();
         let travels = self.travels(parts, motion);
         let travel = |obstacle: usize| {
             self.obstacles.iter().position(|&other| other == obstacle).map_or(0.0, |place| travels[place])
@@ -266,23 +271,25 @@ impl RigidBodyModes {
 /// surfaces at one place whatever their distance.
 fn resisted_firmly(parts: &Parts) -> Vec<Sum> {
     let (nodes, dimension) = (parts.body.mesh().nodes(), parts.body.dimension());
-    let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
+    let supported = (0..parts.conditions.dofs.nodal_count()).filter(|&dof| parts.conditions.dofs.number(dof).is_none());
     let of_support = |dof: usize| {
         let (node, axis) = (dof / dimension, dof % dimension);
-        vec![(node, nodes[node], parts.dofs.axes(node)[axis])]
+        vec![(node, nodes[node], parts.conditions.dofs.axes(node)[axis])]
     };
-    let springs = parts.springs.iter().flat_map(|springs| springs.resisted());
+    let springs = parts.conditions.springs.iter().flat_map(|springs| springs.resisted());
     let of_spring = |terms: Vec<(usize, [f64; 3])>| terms.into_iter().map(|(node, vector)| (node, nodes[node], vector));
     // Relative to its largest coefficient, whatever its scale is.
     let of_tie = |row: &TieRow| {
-        let place = |node: usize| row.at.unwrap_or_else(|| parts.dofs.basis.place(nodes, node));
+        let place = |node: usize| row.at.unwrap_or_else(|| parts.conditions.dofs.basis.place(nodes, node));
         let coefficients = row.terms.iter().flat_map(|term| term.1);
         let largest = coefficients.fold(0.0, |largest: f64, part| largest.max(part.abs()));
         let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
         row.terms.iter().map(|&(node, vector)| (node, place(node), vector.map(|part| scale * part))).collect()
     };
     let firm = supported.map(of_support).chain(springs.map(|terms| of_spring(terms).collect()));
-    firm.chain(parts.rigid_faces.iter().flat_map(prescribed)).chain(parts.ties.rows.iter().map(of_tie)).collect()
+    firm.chain(parts.conditions.rigid_faces.iter().flat_map(prescribed))
+        .chain(parts.ties.rows.iter().map(of_tie))
+        .collect()
 }
 
 /// The motions that a rigid face prescribes.
@@ -313,7 +320,7 @@ fn loads(parts: &Parts) -> Result<Sum, Error> {
     };
     let mut loads: Sum =
         parts.acting_load()?.into_iter().enumerate().filter(|(_, force)| *force != 0.0).map(of_dof).collect();
-    for face in &parts.rigid_faces {
+    for face in &parts.conditions.rigid_faces {
         for motion in &face.motions {
             let work = |(node, at, vector): (usize, [f64; 3], [f64; 3])| {
                 (node, at, vector.map(|part| motion.force * face.unit(motion) * part))

@@ -187,12 +187,12 @@ impl RigidBodyModes {
             (false, _) => "contact without friction does not hold it, add a guide",
         };
         let supports = self.supports_against(parts, rows, free);
-        let (advice, of) = match parts.origin {
+        let (advice, of) = match parts.origin() {
             Origin::Deck => (format!("{advice} by `*BOUNDARY`"), "deck has no `*BOUNDARY`"),
             _ if supports.is_empty() => (advice.to_string(), "scene has no supports"),
             _ => (format!("{advice}, such as {} in `supports`", supports.join(", ")), "scene has no supports"),
         };
-        let is_free = parts.supports == 0 && parts.springs.is_empty();
+        let is_free = parts.scene.supports.is_empty() && parts.conditions.springs.is_empty();
         let first = format!(". The {of}: first hold the side where the body is fixed");
         if is_free { advice + &first } else { advice }
     }

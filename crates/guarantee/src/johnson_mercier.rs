@@ -16,7 +16,7 @@ use super::normal::{Lower, add, null_space};
 use super::part_stress::{PartStress, QUADRATIC, add_traction, quadratic_factors};
 use super::problem::{ContinuumProblem, ElasticLaw, Medium};
 use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
-use crate::fem::material::engineering;
+use signorini_fem::material::engineering;
 use signorini_qp::dot;
 
 /// Stresses without divergence: those of the reference simplex, carried to this one, or those of a triangle about an
@@ -300,8 +300,8 @@ mod tests {
     use super::super::bodies::{any_simplex, filled};
     use super::super::simplex::{Tensor, less};
     use super::*;
-    use crate::fem::geometry::plus;
-    use crate::fem::material::Lame;
+    use signorini_fem::geometry::plus;
+    use signorini_fem::material::Lame;
 
     /// Rounding of stresses of order one.
     const ROUNDING: f64 = 1e-13;

@@ -23,8 +23,8 @@ use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, tra
 use super::stress::{Place, Stresses};
 use super::system::{Affine, Row};
 use crate::error::Error;
-use crate::fem::geometry::{dot, length, minus};
-use crate::fem::threads::each;
+use signorini_fem::geometry::{dot, length, minus};
+use signorini_fem::threads::each;
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, Solution, solve};
 

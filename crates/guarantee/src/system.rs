@@ -9,8 +9,8 @@ use super::mesh::{OuterFacet, SimplexMesh};
 use super::problem::{ContinuumProblem, Foundation};
 use super::simplex::Point;
 use crate::error::Error;
-use crate::fem::assembly::perpendicular;
-use crate::fem::geometry::{Around, COORDINATES, dot, length, unit};
+use signorini_fem::assembly::perpendicular;
+use signorini_fem::geometry::{Around, COORDINATES, dot, length, unit};
 use signorini_qp::{ContactProblem, NearNullSpace, SparseMatrix, SymmetricMatrix};
 
 /// A direction depends on others if the sine of its angle to their span is below this: the rounding of written

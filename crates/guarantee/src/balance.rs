@@ -13,7 +13,7 @@ use super::part_stress::PartStress;
 use super::simplex::Point;
 use super::stress::{Place, Stresses};
 use super::system::Affine;
-use crate::fem::geometry::{COORDINATES, minus};
+use signorini_fem::geometry::{COORDINATES, minus};
 use signorini_qp::dot;
 
 /// Rounds of balancing: the later ones take the rounding of the first.

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::fans::{Cut, CutEdge};
 use super::problem::{Condition, ContinuumProblem};
 use super::simplex::{Point, size_of_facet};
-use crate::fem::geometry::{distance, dot, minus, shifted, sorted, unit};
+use signorini_fem::geometry::{distance, dot, minus, shifted, sorted, unit};
 
 /// Points closer than this share of an edge are one: far above the rounding of coordinates.
 const ONE_PLACE: f64 = 1e-9;

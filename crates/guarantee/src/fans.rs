@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::mesh::{Cells, EdgePair, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Surface};
 use super::simplex::{Point, Simplex};
-use crate::fem::geometry::{distance, dot, key, minus, shifted};
+use signorini_fem::geometry::{distance, dot, key, minus, shifted};
 
 /// Height over length of a triangle of a fan below which the triangle is refined before the cut, if its own is not
 /// small too.
@@ -24,7 +24,7 @@ const ROUNDS: usize = 12;
 /// Lengths below this share of the shortest edge of the facets at a node are rounding of coordinates: seven digits, as
 /// in single precision, leave 5e-7 of the size of the bodies, which is below this share of a facet if at most 2000
 /// facets lie side by side. A place nearer to an edge of a facet than this share of the edge counts as on the edge.
-pub(crate) const SAME_PLACE: f64 = 1e-3;
+pub const SAME_PLACE: f64 = 1e-3;
 
 /// An edge on a contact, along a line across the direction of the rows, or an edge on a seam, along itself.
 #[derive(Clone, Debug)]

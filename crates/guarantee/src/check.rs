@@ -4,7 +4,7 @@ use super::bound::{Bracket, steepest};
 use super::problem::Surface;
 use super::simplex::{mixed, pairs, traction, weights_of_centre};
 use crate::error::Error;
-use crate::fem::geometry::plus;
+use signorini_fem::geometry::plus;
 use signorini_qp as qp;
 
 /// Rounding of jumps of tractions over the largest stress, and of forces of the wrong sign over the largest force:
@@ -181,7 +181,7 @@ mod tests {
     use super::super::simplex::{Point, Tensor, less, middle};
     use super::super::system::Row;
     use super::*;
-    use crate::continuum::answer::Strain;
+    use crate::answer::Strain;
 
     /// The message of the check of a bracket.
     fn refusal(bracket: &Bracket) -> String {

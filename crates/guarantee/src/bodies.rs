@@ -6,8 +6,8 @@ use super::bound::Bracket;
 use super::mesh::{Cells, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Surface};
 use super::simplex::{Point, Simplex, pairs};
-use crate::fem::geometry::{COORDINATES, midpoint};
-use crate::fem::material::{Lame, Stiffness};
+use signorini_fem::geometry::{COORDINATES, midpoint};
+use signorini_fem::material::{Lame, Stiffness};
 use signorini_qp::{Method, Settings};
 
 /// The surface at the height `1 - 0.02 + (x - 0.4)^2` in the plane, `1 - 0.1 + (x - 0.4)^2 + (y - 0.4)^2` in space.

@@ -8,10 +8,10 @@ use super::bound::Bracket;
 use super::integration::Sample;
 use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, less, middle, weights_of_centre};
 use crate::error::Error;
-use crate::fem::element::Tabulated;
-use crate::fem::geometry::{key, midpoint};
-use crate::fem::threads::each;
-use crate::fem::{Boundary, ElementKind, Mesh};
+use signorini_fem::element::Tabulated;
+use signorini_fem::geometry::{key, midpoint};
+use signorini_fem::threads::each;
+use signorini_fem::{Boundary, ElementKind, Mesh};
 
 /// The answer on a mesh of triangles of six nodes or of tetrahedra of ten, with straight sides.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ impl ContinuumAnswer {
     }
 
     /// The same with those boundaries whose names are kept.
-    pub(crate) fn mesh_with(&self, keeps: impl Fn(&str) -> bool) -> Result<Mesh, Error> {
+    pub fn mesh_with(&self, keeps: impl Fn(&str) -> bool) -> Result<Mesh, Error> {
         // As a part of itself, a boundary has its facets in the order in which they follow each other.
         let boundary = |(name, facets): &(String, Vec<Vec<usize>>)| {
             Boundary::new(name, self.kind.facet(), facets.concat()).part(name, |_| true)

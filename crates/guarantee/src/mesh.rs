@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::simplex::{MOST_CORNERS, Point, Simplex, pairs};
-use crate::fem::geometry::{distance, key, midpoint};
-use crate::fem::mesh::axis::Lattice;
-use crate::fem::mesh::bisection::Tetrahedra;
+use signorini_fem::geometry::{distance, key, midpoint};
+use signorini_fem::mesh::axis::Lattice;
+use signorini_fem::mesh::bisection::Tetrahedra;
 
 /// Corners of a facet in space.
 const OF_FACET: usize = MOST_CORNERS - 1;

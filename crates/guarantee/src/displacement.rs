@@ -10,8 +10,8 @@ use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_s
 use super::stress::Place;
 use super::system::{Affine, Block, CellNumbers, Row, add_springs};
 use crate::error::Error;
-use crate::fem::geometry::{COORDINATES, midpoint};
-use crate::fem::threads::each;
+use signorini_fem::geometry::{COORDINATES, midpoint};
+use signorini_fem::threads::each;
 use signorini_qp as qp;
 
 #[derive(Debug)]

@@ -21,8 +21,8 @@ use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
 use super::system::{Block, CellNumbers, Row};
 use crate::error::Error;
-use crate::fem::geometry::{midpoint, minus};
-use crate::fem::threads::{both, each};
+use signorini_fem::geometry::{midpoint, minus};
+use signorini_fem::threads::{both, each};
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, solve};
 

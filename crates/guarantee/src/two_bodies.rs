@@ -7,8 +7,8 @@ use super::bound::Bracket;
 use super::fans::Unjoined;
 use super::mesh::{Cells, SimplexMesh};
 use super::problem::{Condition, ContinuumProblem, Facing, Held, Linear, Medium, Surface};
-use crate::fem::geometry::{COORDINATES, key, length};
-use crate::fem::material::{Lame, Stiffness};
+use signorini_fem::geometry::{COORDINATES, key, length};
+use signorini_fem::material::{Lame, Stiffness};
 
 /// Relative rounding of the energies and forces of two columns.
 const ROUNDING: f64 = 1e-11;

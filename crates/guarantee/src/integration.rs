@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use super::problem::ContinuumProblem;
 use super::simplex::{Point, Simplex, Weights, mixed, size_of_facet};
-use crate::fem::element::gauss_legendre;
+use signorini_fem::element::gauss_legendre;
 
 /// Gauss points in each direction: exact for degree 15. P times a product of two quadratic functions has 13; on facets
 /// two quadratic functions and the radius have 5, P and two linear functions 11.

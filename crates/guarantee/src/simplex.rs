@@ -1,7 +1,7 @@
 //! A triangle in the plane or a tetrahedron in space, by its corners. The order of the corners does
 //! not matter: sizes are positive.
 
-use crate::fem::geometry::{Symmetric, cross, distance, dot, key, length, minus};
+use signorini_fem::geometry::{Symmetric, cross, distance, dot, key, length, minus};
 
 /// Coordinates or components `[x, y, z]`; in the plane z is zero.
 pub type Point = [f64; 3];
@@ -173,7 +173,7 @@ pub fn middle(a: Tensor, b: Tensor) -> Tensor {
 mod tests {
     use super::super::bodies::any_simplex;
     use super::*;
-    use crate::fem::geometry::shifted;
+    use signorini_fem::geometry::shifted;
 
     #[test]
     fn normals_point_outwards_and_close_the_surface_and_parts_fill_the_simplex() {

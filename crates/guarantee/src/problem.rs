@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::mesh::{OuterFacet, SimplexMesh};
 use super::simplex::{ENTRIES, Point, Tensor, pairs, work};
-use crate::fem::geometry::{COORDINATES, distance, dot, minus, plus};
-use crate::fem::material::{Lame, Matrix, Stiffness, engineering};
+use signorini_fem::geometry::{COORDINATES, distance, dot, minus, plus};
+use signorini_fem::material::{Lame, Matrix, Stiffness, engineering};
 
 /// Frictionless contact of elastic media that fill a polygon, in plane strain or plane stress, or a polyhedron.
 #[derive(Clone, Debug)]

@@ -13,9 +13,9 @@ use super::problem::{
 };
 use super::simplex::Point;
 use super::two_bodies::medium;
-use crate::fem::Formulation;
-use crate::fem::geometry::{COORDINATES, cross, dot};
-use crate::fem::material::{Lame, Material};
+use signorini_fem::Formulation;
+use signorini_fem::geometry::{COORDINATES, cross, dot};
+use signorini_fem::material::{Lame, Material};
 
 /// Relative rounding of the energies and forces of a column with these keys.
 const ROUNDING: f64 = 1e-11;

@@ -15,8 +15,8 @@ use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
 use super::system::{Affine, Block, CellNumbers, Row, add_springs};
 use crate::error::Error;
-use crate::fem::geometry::COORDINATES;
-use crate::fem::threads::each;
+use signorini_fem::geometry::COORDINATES;
+use signorini_fem::threads::each;
 use signorini_qp as qp;
 
 #[derive(Debug)]
