@@ -41,6 +41,11 @@ impl Effect {
 pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usize]) -> Result<Effect, Why> {
     let parts = &answer.model().parts;
     let of_load = |nodal: &[f64]| of_nodal_load(answer, nodal).map(Effect::of);
+    let nodal_load = |scene: &Scene, index: usize| -> Result<Vec<f64>, Why> {
+        let mut nodal = vec![0.0; parts.body.nodal_dofs()];
+        add_load(scene, &parts.body, index, &mut nodal).map_err(in_words)?;
+        Ok(nodal)
+    };
     match &parameter.kind {
         Kind::Gap | Kind::GapOf(_) | Kind::InShape(..) => of_rows(scene, parameter, answer, active),
         Kind::Force(obstacle) => {
@@ -50,24 +55,12 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
             }
             Ok(Effect::of(change))
         }
-        Kind::Load(index) => {
-            let mut nodal = vec![0.0; parts.body.nodal_dofs()];
-            add_load(scene, &parts.body, *index, &mut nodal).map_err(in_words)?;
-            of_load(&nodal)
-        }
+        Kind::Load(index) => of_load(&nodal_load(scene, *index)?),
         Kind::InLoad(index, _) if parameter.is_linear() => {
-            let mut nodal = vec![0.0; parts.body.nodal_dofs()];
-            let unit = parameter::unit_load(scene, parameter).map_err(in_words)?;
-            add_load(&unit, &parts.body, *index, &mut nodal).map_err(in_words)?;
-            of_load(&nodal)
+            of_load(&nodal_load(&parameter::unit_load(scene, parameter).map_err(in_words)?, *index)?)
         }
         Kind::InLoad(index, _) => {
-            let at = |by: f64| -> Result<Vec<f64>, Why> {
-                let mut nodal = vec![0.0; parts.body.nodal_dofs()];
-                let varied = parameter::varied(scene, parameter, by).map_err(in_words)?;
-                add_load(&varied, &parts.body, *index, &mut nodal).map_err(in_words)?;
-                Ok(nodal)
-            };
+            let at = |by: f64| nodal_load(&parameter::varied(scene, parameter, by).map_err(in_words)?, *index);
             let scale = if parameter.value == 0.0 { 1.0 } else { parameter.value.abs() };
             let nodal = derivative(at, scale)?.ok_or_else(|| corner(parameter))?;
             of_load(&nodal)
