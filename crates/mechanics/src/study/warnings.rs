@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, dot, plus};
 use crate::scene::answers::deformation;
-use crate::scene::input::warning::NONLINEAR;
 use crate::scene::models::overlap::Overlap;
 use crate::scene::models::parts::Origin;
 use crate::scene::models::rigid_body_modes::soft::SoftMotion;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
+use signorini_deck::NONLINEAR;
 use signorini_qp::{Certificate, ContactProblem, Solution, largest};
 
 /// Overlaps below this share of the size of the mesh are rounding of coordinates.

@@ -9,10 +9,10 @@ use super::rigid_face::{Given, motion_name, motions};
 use crate::error::Error;
 use crate::fem::assembly::Springs;
 use crate::fem::body::ElasticBody;
+use crate::fem::sum::{Component, Sum, following, mean};
 use crate::fem::tributary_areas;
 use crate::scene::input::entry::{boundary, finite, nodes_named_once, positive, vector, wrong};
 use crate::scene::input::schema::{CouplingSpec, Scene, TermPlace, TermSpec, TieSpec};
-use crate::scene::input::sum::{Component, Sum, following, mean};
 
 /// In the replaced components of a sum, an equation at points by its number: how much of it the sum has taken up. With
 /// the multipliers of what is left, these shares give the multiplier of every equation as it was.

@@ -10,11 +10,11 @@ use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
+use crate::fem::sum::Sum;
 use crate::scene::Warning;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, number, wrong};
 use crate::scene::input::obstacle::SideOrder;
 use crate::scene::input::schema::{EquationSpec, PreloadSpec, Scene, TieSpec, TiedSurfacesSpec};
-use crate::scene::input::sum::Sum;
 use signorini_qp::SparseMatrix;
 
 /// An equation of which less than this share is left by others follows from them: far above the rounding of integrals

@@ -38,9 +38,9 @@ use crate::fem::{Boundary, ElasticBody};
 use crate::scene::Scene;
 use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::boundary;
+use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::tie::StiffnessOf;
 use crate::scene::input::schema::{Place, SupportSpec, TieSpec};
-use crate::scene::input::sum::Profile;
 use crate::scene::models::load::{Acting, acting};
 use crate::scene::models::rows::ContactRow;
 
