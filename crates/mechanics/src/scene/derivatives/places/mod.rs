@@ -41,6 +41,7 @@ use crate::scene::input::schema::tie::StiffnessOf;
 use crate::scene::input::schema::{Place, SupportSpec, TieSpec};
 use crate::scene::input::sum::Profile;
 use crate::scene::models::load::{Acting, acting};
+use crate::scene::models::model::{check_multiplier, place};
 use crate::scene::models::rows::ContactRow;
 
 /// The change of R with the place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), per length.
@@ -49,7 +50,7 @@ pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, St
     let said = |error: Error| error.to_string();
     let (answer, model) = (pairing.answer, pairing.answer.model());
     let (body, parts) = (model.body(), &model.parts);
-    model.check_multiplier(pairing.forces).map_err(said)?;
+    check_multiplier(model, pairing.forces).map_err(said)?;
     let motion = parts.unknowns.motion(pairing.adjoint).map_err(said)?;
     let adjoint = parts.conditions.dofs.expand_motion(&motion).map_err(said)?;
     let mut gradient = vec![0.0; body.nodal_dofs()];
@@ -302,7 +303,7 @@ fn add_moment(answer: &Answer, obstacle: usize, axis: usize, gradient: &mut [f64
             add(node, of_place.map(|change| share * change));
         }
         if !slopes.has_fixed_normals() || row.is_mean {
-            let place = model.place(row.node);
+            let place = place(model, row.node);
             add(row.node, slopes.at(row.node)?.of_normal(COORDINATES.map(|force| moment(place, force))));
         }
     }
