@@ -37,7 +37,7 @@ use modes::modal_analysis;
 use motions::dynamics::dynamics;
 use signorini_qp::Settings;
 
-pub use answers::answer::{Answer, Forces};
+pub use answers::answer::Answer;
 pub use answers::segments::{ContactExtent, Segment};
 pub use derivatives::sensitivity::{ByParameter, Sensitivities, Sensitivity, outputs_of};
 pub use input::body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
@@ -49,7 +49,7 @@ pub use input::warning::Warning;
 pub use models::model::Model;
 pub use models::resultants::Resultant;
 pub use models::rows::ContactRow;
-pub use models::set_up::{HeldNode, Hold};
+pub use models::set_up::{Forces, HeldNode, Hold};
 pub use models::unknowns::Meaning;
 pub use modes::ModalAnalysis;
 pub use motions::dynamics::Dynamics;
@@ -101,8 +101,8 @@ impl Scene {
     /// pressed, and weak springs keep those that no support holds.
     ///
     /// # Errors
-    /// As [`GmshFile::read`] and [`GmshFile::mesh`]; [`Error::Mesh`] for a mesh of which no boundary can be held while
-    /// another is pressed.
+    /// As [`GmshFile::read`](crate::fem::GmshFile::read) and [`GmshFile::mesh`](crate::fem::GmshFile::mesh);
+    /// [`Error::Mesh`] for a mesh of which no boundary can be held while another is pressed.
     pub fn start(file: &Path, named: &str) -> Result<String, Error> {
         first_scene(file, named)
     }
@@ -224,10 +224,8 @@ impl Scene {
 
     /// The specification of the motion, if the scene has one.
     pub fn dynamic(&self) -> Option<&DynamicSpec> {
-        match &self.analysis {
-            Some(AnalysisSpec::Dynamic(spec)) => Some(spec),
-            _ => None,
-        }
+        let Some(AnalysisSpec::Dynamic(spec)) = &self.analysis else { return None };
+        Some(spec)
     }
 
     /// The motion of `model`, which this scene built; `None` for a static scene.
@@ -240,10 +238,8 @@ impl Scene {
 
     /// The request for modes, if the scene has one.
     pub fn modes(&self) -> Option<&ModesSpec> {
-        match &self.analysis {
-            Some(AnalysisSpec::Modes(spec)) => Some(spec),
-            _ => None,
-        }
+        let Some(AnalysisSpec::Modes(spec)) = &self.analysis else { return None };
+        Some(spec)
     }
 
     /// The `count` lowest natural vibrations of the scene about its equilibrium.

@@ -5,6 +5,7 @@ use crate::fem::geometry::{shifted, unit};
 use crate::fem::mesh::extent;
 use crate::fem::recovery::state::Deformation;
 use crate::scene::Model;
+use crate::scene::models::build::{node_in_words, place_in_words};
 use crate::scene::models::rows::ContactRow;
 
 /// Strains above this, and rotations above this in radians, are beyond small displacements: the answer is wrong by
@@ -28,7 +29,7 @@ pub(super) fn beyond_small_displacements(deformation: Deformation, model: &Model
             false => (format!("rotations reach {rotation:.2} rad"), turned),
         };
         let corner = model.body().elements().nth(element)?.nodes.first().copied()?;
-        let (place, cause) = (model.place_in_words(corner), likely_cause(deformation, model, moved));
+        let (place, cause) = (place_in_words(model, corner), likely_cause(deformation, model, moved));
         format!("{large}, in element {element} with a corner at {place}. {cause}")
     };
     Some(format!("small displacements do not describe this answer: {fact_and_cause}. `--linear` gives it all the same"))
@@ -67,20 +68,23 @@ fn too_deep(model: &Model) -> Option<String> {
             let thickness = skin.as_ref()?.thickness(start(row), inward(row))?;
             (depth > thickness).then_some((row.node, row.obstacle, depth, thickness))
         };
-        deep.into_iter().filter_map(of_row)
-    };
-    let regions = body.regions().iter().filter(|_| body.dimension() > 1);
-    let deep = regions.flat_map(of_body);
-    let (node, obstacle, depth, thickness) =
-        deep.max_by(|one, other| (one.2 / one.3).total_cmp(&(other.2 / other.3)))?;
-    let [depth, thickness] = [depth, thickness].map(|value| format!("{value:.3e} {}", model.units().length));
-    Some(format!(
-        "before contact {} lies {} inside obstacles[{obstacle}], and its body is {} thick there. Name the boundary that faces the \
-         obstacle, or correct `gap` and `approach`",
-        model.node_in_words(node),
-        depth.trim_end(),
-        thickness.trim_end()
-    ))
+        let regions = body.regions().iter().filter(|_| body.dimension() > 1);
+        let deep = regions.flat_map(of_body);
+        deep.max_by(|one, other| (one.depth / one.thickness).total_cmp(&(other.depth / other.thickness)))
+    }
+
+    fn in_words(&self, model: &Model) -> String {
+        let [depth, thickness] =
+            [self.depth, self.thickness].map(|value| format!("{value:.3e} {}", model.units().length));
+        format!(
+            "before contact {} lies {} inside obstacles[{}], and its body is {} thick there. Name the boundary that faces the \
+             obstacle, or correct `gap` and `approach`",
+            node_in_words(model, self.node),
+            depth.trim_end(),
+            self.obstacle,
+            thickness.trim_end()
+        )
+    }
 }
 
 /// How deep a contact row starts inside an obstacle that stands still, in length.

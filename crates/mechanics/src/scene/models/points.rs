@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::facing::TieRow;
 use super::preload::{bolt_of, point_named, terms_of};
-use super::rigid_face::{Given, motion_name, motions};
+use super::rigid_face::{Given, NAMES, motions};
 use crate::error::Error;
 use crate::fem::assembly::Springs;
 use crate::fem::body::ElasticBody;
@@ -246,7 +246,7 @@ impl Elimination {
         let (equations, springs) = (self.equations.iter().map(|one| &one.1), self.springs.values().map(|one| &one.0));
         let named = equations.chain(springs).flat_map(|sum| sum.terms.keys().copied());
         let joined: BTreeSet<Component> = named.filter(|component| component.0 >= nodes).collect();
-        let word = |(point, kind): Component| (&scene.points[point - nodes].name, motion_name(kind));
+        let word = |(point, kind): Component| (&scene.points[point - nodes].name, NAMES[kind]);
         let free = |component: Component, what: &str| {
             let (name, motion) = word(component);
             format!("the reference point `{name}` is free in `{motion}`; {what}")
