@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, dot, plus};
 use crate::scene::answers::deformation;
-use crate::scene::input::warning::NONLINEAR;
 use crate::scene::models::build::{node_in_words, place_in_words};
 use crate::scene::models::overlap::{Overlap, deepest_overlap};
 use crate::scene::models::parts::Origin;
@@ -144,7 +143,7 @@ fn softly_held(answer: &Answer) -> Vec<Warning> {
         .iter()
         .filter_map(|row| Some((model.rows().get(row)?, *answer.multiplier().get(row)?)))
         .collect();
-    let largest = displacement.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let largest = largest(displacement);
     let visible = RigidBodyModes::of_parts(&model.parts)
         .soft_motions(&model.parts, &closed, displacement)
         .unwrap_or_default()

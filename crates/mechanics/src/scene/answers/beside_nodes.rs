@@ -7,9 +7,8 @@ use super::answer::Answer;
 use crate::error::Error;
 use crate::fem::element::{Tabulated, TabulatedPoint};
 use crate::fem::geometry::cross;
-use crate::scene::input::deck::requests::Requests;
-use crate::scene::input::deck::rigid::{Of, ReferenceNode};
 use crate::scene::models::resultants::{Resultant, at_node};
+use signorini_deck::{Of, ReferenceNode, Requests};
 
 impl Answer {
     /// The displacement and the force of each reference node of the deck that this is an answer to, by its number:

@@ -68,23 +68,20 @@ fn too_deep(model: &Model) -> Option<String> {
             let thickness = skin.as_ref()?.thickness(start(row), inward(row))?;
             (depth > thickness).then_some((row.node, row.obstacle, depth, thickness))
         };
-        let regions = body.regions().iter().filter(|_| body.dimension() > 1);
-        let deep = regions.flat_map(of_body);
-        deep.max_by(|one, other| (one.depth / one.thickness).total_cmp(&(other.depth / other.thickness)))
-    }
-
-    fn in_words(&self, model: &Model) -> String {
-        let [depth, thickness] =
-            [self.depth, self.thickness].map(|value| format!("{value:.3e} {}", model.units().length));
-        format!(
-            "before contact {} lies {} inside obstacles[{}], and its body is {} thick there. Name the boundary that faces the \
-             obstacle, or correct `gap` and `approach`",
-            node_in_words(model, self.node),
-            depth.trim_end(),
-            self.obstacle,
-            thickness.trim_end()
-        )
-    }
+        deep.into_iter().filter_map(of_row)
+    };
+    let regions = body.regions().iter().filter(|_| body.dimension() > 1);
+    let deep = regions.flat_map(of_body);
+    let (node, obstacle, depth, thickness) =
+        deep.max_by(|one, other| (one.2 / one.3).total_cmp(&(other.2 / other.3)))?;
+    let [depth, thickness] = [depth, thickness].map(|value| format!("{value:.3e} {}", model.units().length));
+    Some(format!(
+        "before contact {} lies {} inside obstacles[{obstacle}], and its body is {} thick there. Name the boundary that faces the \
+         obstacle, or correct `gap` and `approach`",
+        node_in_words(model, node),
+        depth.trim_end(),
+        thickness.trim_end()
+    ))
 }
 
 /// How deep a contact row starts inside an obstacle that stands still, in length.

@@ -353,7 +353,7 @@ fn stress(answer: &Answer, place: [f64; 3], component: usize, blank: Smooth) -> 
     }
     let direct = Direct::Stress { element, at, component };
     let value = own.get(component).map_or_else(|| equivalent(&own), |&value| value);
-    Ok(Branch { value, by_displacement: of_nodal(model, &nodal)?, direct, ..blank })
+    Ok(Smooth { value, by_displacement: of_nodal(model, &nodal)?, direct, ..blank })
 }
 
 fn stress_in(body: &ElasticBody, displacement: &[f64], element: usize, at: [f64; 3]) -> Option<Symmetric> {

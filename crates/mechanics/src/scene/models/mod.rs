@@ -214,12 +214,12 @@ impl Model {
     /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs; supports have their
     /// prescribed values.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
-        self.parts.conditions.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
+        Ok(self.parts.conditions.dofs.expand(&self.parts.unknowns.displacement(displacement)?)?)
     }
 
     /// Nodal velocities, length `dim * n_nodes`, in length over time, from those of the unknowns; supports stand still.
     pub fn nodal_velocity(&self, velocity: &[f64]) -> Result<Vec<f64>, Error> {
-        self.parts.conditions.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)
+        Ok(self.parts.conditions.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)?)
     }
 
     /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these

@@ -71,7 +71,7 @@ impl Parts {
         let springs = &self.conditions.springs;
         match springs.is_empty() {
             true => Ok(of_body),
-            false => Springs::added_to(springs, &of_body, &self.conditions.dofs, self.body.dimension()),
+            false => Ok(Springs::added_to(springs, &of_body, &self.conditions.dofs, self.body.dimension())?),
         }
     }
 

@@ -295,7 +295,7 @@ pub(crate) fn force_of_faces(model: &Model, forces: &[f64], keeps: impl Fn(usize
     let mut on_face = vec![false; model.mesh().nodes().len()];
     faces.flat_map(|(_, face)| &face.nodes).for_each(|&node| on_face[node] = true);
     let dimension = model.body().dimension();
-    model.dofs().part(forces, |dof| on_face[dof / dimension])
+    Ok(model.dofs().part(forces, |dof| on_face[dof / dimension])?)
 }
 
 /// The resultants of the rigid faces on the body, in the order of the scene, with their motions.

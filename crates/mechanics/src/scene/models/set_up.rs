@@ -4,10 +4,10 @@ use super::model::{self, Model};
 use super::resultants::force_of_faces;
 use super::rigid_body_modes::RigidBodyModes;
 use crate::error::Error;
-use crate::fem::MassForm;
 use crate::fem::assembly::{free_mass, internal_force, nodal_mass};
 use crate::fem::geometry::unit;
 use crate::fem::recovery::state::State;
+use crate::fem::{self, MassForm};
 use crate::scene::input::entry::{located, wrong};
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
@@ -83,7 +83,7 @@ pub(crate) fn held_nodes(model: &Model) -> Vec<HeldNode> {
 pub(crate) fn mass_of_nodes(model: &Model, form: MassForm) -> Result<SparseMatrix, Error> {
     let contact_nodes: Vec<usize> = model.rows().iter().flat_map(|row| row.ends.iter().map(|end| end.0)).collect();
     nodal_mass(model.body(), form, &contact_nodes).map_err(|error| match error {
-        Error::Mesh { message } => wrong("body", message),
+        fem::Error::Mesh { message } => wrong("body", message),
         other => located(other, "material."),
     })
 }

@@ -18,6 +18,10 @@ use crate::scene::input::obstacle::{Between, PlacedObstacle};
 use crate::scene::input::schema::condition::LoadSpec;
 use crate::scene::input::schema::{Rule, Scene};
 use crate::scene::models::model::place;
+use signorini_guarantee::{
+    Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
+    RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
+};
 pub(crate) use surface::{NoGuarantee, WhyNot, none};
 
 /// Times that facets partly within the reach of a pressed obstacle are refined.
