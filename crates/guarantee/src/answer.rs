@@ -74,11 +74,8 @@ impl Bracket<'_> {
             [0, 1, 2].map(component)
         };
         let corners = (0..mesh.nodes.len()).map(of);
-        let middles = mesh
-            .edges
-            .iter()
-            .enumerate()
-            .map(|(edge, &[a, b])| midpoint(midpoint(of(a), of(b)), of(mesh.nodes.len() + edge)));
+        let middle = |(&[a, b], edge): (&[usize; 2], usize)| midpoint(midpoint(of(a), of(b)), of(edge));
+        let middles = mesh.edges.iter().zip(mesh.nodes.len()..).map(middle);
         let displacement: Vec<Point> = corners.chain(middles).collect();
         let places = self.displacements.places();
         // The nodes body by body; at a seam each body has its own.

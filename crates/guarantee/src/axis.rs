@@ -40,7 +40,7 @@ fn add_hoop(triangle: &Simplex, stress: &mut PartStress) {
     for k in 0..3 {
         let part = triangle.part(k);
         let (slopes, corners) = (part.slopes(), part.corners());
-        let values = &mut stress.values_mut()[k * QUADRATIC..(k + 1) * QUADRATIC];
+        let values = &mut stress.values[k * QUADRATIC..(k + 1) * QUADRATIC];
         let hoop = [0, 1, 2].map(|corner| {
             gradient(&slopes, corner, |place| values[place][0])[0]
                 + gradient(&slopes, corner, |place| values[place][3])[1]

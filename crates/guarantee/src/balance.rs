@@ -12,7 +12,7 @@ use super::normal::{Lower, add};
 use super::part_stress::PartStress;
 use super::simplex::Point;
 use super::stress::{Place, Stresses};
-use super::system::FreeUnknowns;
+use super::system::Affine;
 use signorini_fem::geometry::{COORDINATES, minus};
 use signorini_qp::dot;
 
@@ -128,7 +128,7 @@ pub struct ForcePaths {
 
 impl ForcePaths {
     /// `None` if the supports alone cannot carry every force and moment.
-    pub fn of(stresses: &Stresses, unknowns: &FreeUnknowns) -> Option<Self> {
+    pub fn of(stresses: &Stresses, unknowns: &Affine) -> Option<Self> {
         let (mesh, problem) = (stresses.mesh, stresses.problem);
         // What springs and rigid faces take, and where loads enter inside, follows from the solution.
         let is_plain =
@@ -170,7 +170,7 @@ impl ForcePaths {
     pub fn stress(
         &self,
         stresses: &Stresses,
-        (unknowns, displacement): (&FreeUnknowns, &[f64]),
+        (unknowns, displacement): (&Affine, &[f64]),
         places: &[Place],
         pulls: &[f64],
     ) -> Option<Vec<PartStress>> {

@@ -21,7 +21,7 @@ use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, ElasticLaw, Foundation};
 use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
 use super::stress::{Place, Stresses};
-use super::system::{FreeUnknowns, Row};
+use super::system::{Affine, Row};
 use crate::error::Error;
 use signorini_fem::geometry::{dot, length, minus};
 use signorini_fem::threads::each;
@@ -67,7 +67,7 @@ pub struct Bracket<'a> {
 /// One of the two problems with its answer.
 #[derive(Debug)]
 pub struct Half {
-    pub unknowns: FreeUnknowns,
+    pub unknowns: Affine,
     pub rows: Vec<Row>,
     pub solution: Solution,
     /// The problem, prepared for other gaps and loads, if it serves for the pairs of the force.
@@ -80,7 +80,7 @@ pub struct Half {
 
 impl Half {
     pub(super) fn solved(
-        unknowns: FreeUnknowns,
+        unknowns: Affine,
         rows: Vec<Row>,
         problem: &ContactProblem,
         start: Option<ContactSet>,
@@ -398,10 +398,8 @@ impl<'a> Bracket<'a> {
             self.sum(cell, |k, at| self.square_of_rest(cell, at, [0.0; 6], self.elastic_stress(cell, k, at.weights)))
         };
         let mut stored = each(self.mesh.count(), of_cell).iter().sum::<f64>();
-        stored += self
-            .on_springs(&self.primal.values, &self.dual.values)
-            .map(|on| (on.at.weight + on.at.extra) * on.product(on.balanced, on.balanced))
-            .sum::<f64>();
+        let springs = self.on_springs(&self.primal.values, &self.dual.values);
+        stored += springs.map(|on| (on.at.weight + on.at.extra) * on.product(on.balanced, on.balanced)).sum::<f64>();
         self.work_on_supports() + self.work_on_obstacles() - stored / 2.0
     }
 
@@ -425,7 +423,7 @@ impl<'a> Bracket<'a> {
     pub(super) fn work_of_reactions(&self, stress: &[PartStress], given: &[f64]) -> f64 {
         let [forces, _] = self.forces_on_facets(stress);
         let reactions = forces.iter().zip(given).map(|(force, given)| force - given);
-        reactions.zip(self.dual.unknowns.prescribed()).map(|(reaction, moved)| reaction * moved).sum()
+        reactions.zip(&self.dual.unknowns.prescribed).map(|(reaction, moved)| reaction * moved).sum()
     }
 
     /// The forces along the unknowns of the tractions of a stress on both sides of each facet: on the surface those

@@ -8,7 +8,7 @@ use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
 use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, work};
 use super::stress::Place;
-use super::system::{Block, CellNumbers, FreeUnknowns, Row, add_springs};
+use super::system::{Affine, Block, CellNumbers, Row, add_springs};
 use crate::error::Error;
 use signorini_fem::geometry::{COORDINATES, midpoint};
 use signorini_fem::threads::each;
@@ -31,7 +31,7 @@ impl<'a> Displacements<'a> {
         let along_axes = |function: usize| dimension * function..dimension * (function + 1);
         let numbers = (0..mesh.count()).flat_map(functions).flat_map(along_axes).collect();
         let of_cell = dimension * (dimension + 1) * (dimension + 2) / 2;
-        Displacements { problem, mesh, numbers: CellNumbers::new(of_cell, numbers) }
+        Displacements { problem, mesh, numbers: CellNumbers { of_cell, numbers } }
     }
 
     /// The places of the functions: a linear displacement has its values there as coefficients.
@@ -81,17 +81,17 @@ impl<'a> Displacements<'a> {
     }
 
     /// The unknown displacements: none is radial on the axis of revolution.
-    pub fn unknowns(&self) -> FreeUnknowns {
+    pub fn unknowns(&self) -> Affine {
         let places = self.places();
         // On the axis there is no radial displacement.
         let on_axis = (0..places.len()).filter(|&place| self.problem.is_on_axis(places[place]));
         let held = on_axis.map(|place| (place, COORDINATES[0]));
-        FreeUnknowns::new(self.problem, self.mesh, &places, held, |outer| self.on_facet(outer))
+        Affine::new(self.problem, self.mesh, &places, held, |outer| self.on_facet(outer))
     }
 
     /// The rows that keep a displacement out of the obstacles, each function and obstacle once: those with a free
     /// unknown, and then those that supports hold.
-    pub fn rows(&self, unknowns: &FreeUnknowns) -> Result<[Vec<Row>; 2], Error> {
+    pub fn rows(&self, unknowns: &Affine) -> Result<[Vec<Row>; 2], Error> {
         let mut gaps: BTreeMap<(usize, usize, Option<usize>), f64> = BTreeMap::new();
         let dimension = self.mesh.dimension;
         for (outer, number) in self.problem.facing(self.mesh) {

@@ -19,7 +19,7 @@ use super::bound::{Bracket, Half};
 use super::part_stress::PartStress;
 use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
-use super::system::{Block, CellNumbers};
+use super::system::{Block, CellNumbers, Row};
 use crate::error::Error;
 use signorini_fem::geometry::{midpoint, minus};
 use signorini_fem::threads::{both, each};
@@ -79,10 +79,8 @@ impl Bracket<'_> {
         if !self.problem.has_one_direction() || corners.len() != self.places.len() || self.is_at_rest() {
             return Ok(None);
         }
-        if [&self.primal, &self.dual]
-            .iter()
-            .any(|side| side.rows.iter().any(|row| side.unknowns.own_term(row).is_none()))
-        {
+        let has_own_terms = |side: &Half| side.rows.iter().all(|row| side.unknowns.own_term(row).is_some());
+        if !has_own_terms(&self.primal) || !has_own_terms(&self.dual) {
             return Ok(None);
         }
         let closed = &self.primal.solution.contact_set;
@@ -183,17 +181,12 @@ impl Bracket<'_> {
         );
         let (Some(displacement), Some((stress, facets, pulls))) = (displacement?, stress?) else { return Ok(None) };
         let (primal, values) = (&self.primal, &self.primal.values);
-        let mut of_rows: Vec<f64> = Vec::with_capacity(primal.rows.len());
-        for row in &primal.rows {
-            of_rows.push(over(1.0 + row.value(&displacement), row.gap - row.value(values)));
-        }
+        let of_row = |row: &Row| over(1.0 + row.value(&displacement), row.gap - row.value(values));
+        let mut of_rows: Vec<f64> = primal.rows.iter().map(of_row).collect();
         // Places that a support holds do not move in the test, and may be touched.
         of_rows.extend(self.held_rows.iter().map(|row| over(1.0, row.gap - row.value(values))));
-        let of_places = pulls
-            .iter()
-            .enumerate()
-            .map(|(row, &pull)| if pull < 0.0 { pull / self.pulls[row] } else { 0.0 })
-            .collect();
+        let of_place = |(pull, own): (&f64, &f64)| if *pull < 0.0 { pull / own } else { 0.0 };
+        let of_places = pulls.iter().zip(&self.pulls).map(of_place).collect();
         Ok(Some(Test { displacement, stress, facets, pulls, ratios: [of_rows, of_places] }))
     }
 
@@ -243,15 +236,13 @@ impl Bracket<'_> {
             let allowed = f64::max(self.allowed_sign() * largest, ROUNDING * unit);
             let wrong: Vec<usize> = (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > allowed).collect();
             if wrong.is_empty() {
-                pulls
-                    .iter_mut()
-                    .zip(pressed.iter())
-                    .for_each(|(pull, pressed)| *pull = if *pressed { pull.min(0.0) } else { 0.0 });
-                let of_balance = self
-                    .balance
-                    .as_ref()
-                    .and_then(|balance| balance.stress(stresses, (&self.dual.unknowns, &values), &self.places, &pulls));
-                return Ok(Some((of_balance.unwrap_or(stress), values, pulls)));
+                for (pull, pressed) in pulls.iter_mut().zip(pressed.iter()) {
+                    *pull = if *pressed { pull.min(0.0) } else { 0.0 };
+                }
+                let answer = (&self.dual.unknowns, &values[..]);
+                let balance = self.balance.as_ref();
+                let balanced = balance.and_then(|balance| balance.stress(stresses, answer, &self.places, &pulls));
+                return Ok(Some((balanced.unwrap_or(stress), values, pulls)));
             }
             wrong.into_iter().for_each(|row| pressed[row] = false);
         }

@@ -45,10 +45,10 @@ impl Basis {
     fn add_to(&self, stress: &mut PartStress, amounts: &[f64]) {
         match self {
             Basis::Carried(simplex) => {
-                let mut of_reference = PartStress::zero(1, stress.values().len());
+                let mut of_reference = PartStress::zero(1, stress.values.len());
                 let own = reference(simplex.dimension).iter().zip(amounts);
                 own.for_each(|(own, &amount)| of_reference.add(amount, own));
-                for (value, carried) in stress.values_mut().iter_mut().zip(of_reference.values()) {
+                for (value, carried) in stress.values.iter_mut().zip(&of_reference.values) {
                     add(value, 1.0, &simplex.carried(*carried));
                 }
             }
@@ -109,15 +109,7 @@ impl StressElement {
         factor.forward(&mut particular_energies);
         let particular_tractions = works(problem, simplex, &particular);
         let of_works = OnceLock::new();
-        Some(StressElement {
-            basis,
-            factor,
-            particular,
-            tractions,
-            particular_tractions,
-            particular_energies,
-            of_works,
-        })
+        Some(Self { basis, factor, particular, tractions, particular_tractions, particular_energies, of_works })
     }
 
     /// The particular stress and these amounts of the others.
@@ -212,9 +204,8 @@ fn products_over_radius(problem: &ContinuumProblem, part: &Simplex) -> Products 
 
 /// The complementary energies of a stress with each coefficient of another one.
 fn strains_of(law: &ElasticLaw, products: &[Products], stress: &PartStress) -> Vec<f64> {
-    let mut strains = PartStress::zero(products.len(), stress.of_part());
-    let parts =
-        strains.values_mut().chunks_exact_mut(stress.of_part()).zip(stress.values().chunks_exact(stress.of_part()));
+    let mut strains = PartStress::zero(products.len(), stress.of_part);
+    let parts = strains.values.chunks_exact_mut(stress.of_part).zip(stress.values.chunks_exact(stress.of_part));
     for ((strains, of_part), products) in parts.zip(products) {
         for (value, column) in of_part.iter().zip(products) {
             let strain = engineering(&law.compliance(*value));

@@ -40,15 +40,11 @@ pub struct SimplexMesh {
     pub dimension: usize,
     /// Coordinates of the vertices, in length.
     pub nodes: Vec<Point>,
-    /// The nodes of each simplex, increasing.
     cells: Vec<[usize; MOST_CORNERS]>,
     /// The two nodes of each edge, increasing.
     pub edges: Vec<[usize; 2]>,
-    /// The edges of each simplex, in the order of the pairs of its corners.
     edges_of: Vec<usize>,
-    /// The nodes of each facet, increasing.
     facets: Vec<[usize; OF_FACET]>,
-    /// The facets of each simplex.
     sides: Vec<usize>,
     /// For each simplex, the element of the first mesh that contains it.
     pub origins: Vec<usize>,
@@ -56,7 +52,6 @@ pub struct SimplexMesh {
     pub wholes: Vec<usize>,
     /// The number of the condition of each facet; most of those inside have none.
     pub conditions: Vec<Option<usize>>,
-    /// The facets with conditions, each at its first simplex.
     surface: Vec<OuterFacet>,
     /// The ends of the edge that each new node halves, for the last nodes; empty in a first mesh.
     parents: Vec<[usize; 2]>,

@@ -12,8 +12,9 @@ pub const QUADRATIC: usize = 6;
 /// centre.
 #[derive(Clone, Debug)]
 pub struct PartStress {
-    of_part: usize,
-    values: Vec<Tensor>,
+    /// Coefficients of each part.
+    pub of_part: usize,
+    pub values: Vec<Tensor>,
 }
 
 impl PartStress {
@@ -87,18 +88,6 @@ impl PartStress {
     /// The same with other values of the coefficients.
     pub fn map(&self, value: impl Fn(Tensor) -> Tensor) -> Self {
         PartStress { of_part: self.of_part, values: self.values.iter().map(|&old| value(old)).collect() }
-    }
-
-    pub fn of_part(&self) -> usize {
-        self.of_part
-    }
-
-    pub fn values(&self) -> &[Tensor] {
-        &self.values
-    }
-
-    pub fn values_mut(&mut self) -> &mut [Tensor] {
-        &mut self.values
     }
 
     pub fn entries(&self) -> &[f64] {

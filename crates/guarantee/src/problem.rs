@@ -356,7 +356,6 @@ impl ContinuumProblem {
         self.conditions[condition].pull(normal, place).map(|part| self.radius(place) * part)
     }
 
-    /// The medium of an element of the first mesh.
     pub fn medium(&self, origin: usize) -> &Medium {
         &self.media[self.medium_of[origin]]
     }
@@ -378,7 +377,6 @@ impl ContinuumProblem {
 }
 
 impl Medium {
-    /// The stress without strain at a place.
     pub fn own_stress(&self, place: Point) -> Tensor {
         self.own_stress.map_or([0.0; 6], |own| own.map(|component| component.at(place)))
     }
@@ -402,15 +400,8 @@ impl ElasticLaw<'_> {
                 return [xx, yy, zz, xy / 2.0, yz / 2.0, zx / 2.0];
             }
         };
-        let count = self.normals as f64;
-        let mean = stress.iter().take(self.normals).sum::<f64>() / count;
-        // The parts are kept separate: near incompressibility their sum would lose digits.
-        let volume = mean / (count * lambda + 2.0 * mu);
-        let of_entry = |entry: usize| match entry < self.normals {
-            true => volume + (stress[entry] - mean) / (2.0 * mu),
-            false => stress[entry] / (2.0 * mu),
-        };
-        std::array::from_fn(of_entry)
+        let volume = self.normals as f64 * lambda + 2.0 * mu;
+        self.split(stress, |mean| mean / volume, |rest| rest / (2.0 * mu))
     }
 
     pub fn stress(&self, strain: Tensor) -> Tensor {
@@ -418,14 +409,20 @@ impl ElasticLaw<'_> {
             Stiffness::Isotropic(lame) => lame,
             Stiffness::General(matrices) => return self.product(&matrices.stiffness, engineering(&strain)),
         };
-        let count = self.normals as f64;
-        let volume = strain.iter().take(self.normals).sum::<f64>() / count;
-        let mean = (count * lambda + 2.0 * mu) * volume;
-        let of_entry = |entry: usize| match entry < self.normals {
-            true => mean + 2.0 * mu * (strain[entry] - volume),
-            false => 2.0 * mu * strain[entry],
+        let volume = self.normals as f64 * lambda + 2.0 * mu;
+        self.split(strain, |mean| volume * mean, |rest| 2.0 * mu * rest)
+    }
+
+    /// The sum of functions of the mean of the diagonal and of the rest. The parts are kept separate: near
+    /// incompressibility their sum would lose digits.
+    fn split(&self, tensor: Tensor, of_mean: impl Fn(f64) -> f64, of_rest: impl Fn(f64) -> f64) -> Tensor {
+        let mean = tensor.iter().take(self.normals).sum::<f64>() / self.normals as f64;
+        let of_mean = of_mean(mean);
+        let entry = |entry: usize| match entry < self.normals {
+            true => of_mean + of_rest(tensor[entry] - mean),
+            false => of_rest(tensor[entry]),
         };
-        std::array::from_fn(of_entry)
+        std::array::from_fn(entry)
     }
 
     /// The stress of the strain around an axis, whose energy contains a power of a radius.

@@ -16,9 +16,6 @@ const ONE_PLACE: f64 = 1e-9;
 /// The nodes of each facet of a surface.
 type Facets = Vec<Vec<usize>>;
 
-/// Nodes of two bodies at the same place.
-type Pair = [usize; 2];
-
 impl Condition {
     /// Returns `true` if it holds, loads or bounds its facet.
     pub fn acts(&self) -> bool {
@@ -76,7 +73,7 @@ impl Cut {
     }
 
     /// Where edges lie on each other, cuts their triangles at the nodes of both, and returns the nodes that are one.
-    fn cut_at_each_other(&mut self, one: &Facets, other: &Facets) -> Vec<Pair> {
+    fn cut_at_each_other(&mut self, one: &Facets, other: &Facets) -> Vec<[usize; 2]> {
         let edge = |facet: &Vec<usize>, nodes: &[Point]| {
             let [from, to] = [facet[0], facet[1]];
             CutEdge { stops: vec![(0.0, from), (distance(nodes[from], nodes[to]), to)] }
@@ -110,7 +107,7 @@ impl Cut {
     }
 
     /// The nodes that are one where faces are the same.
-    fn nodes_of_same(&self, one: &Facets, other: &Facets) -> Vec<Pair> {
+    fn nodes_of_same(&self, one: &Facets, other: &Facets) -> Vec<[usize; 2]> {
         let at = |node: usize| self.cells.nodes[node];
         let sum = |face: &Vec<usize>| face.iter().map(|&node| at(node)[0]).sum::<f64>();
         let mut by_place: Vec<(f64, &Vec<usize>)> = other.iter().map(|face| (sum(face), face)).collect();
@@ -122,7 +119,7 @@ impl Cut {
             let first = by_place.partition_point(|entry| entry.0 < here - reach);
             for (_, facing) in by_place[first..].iter().take_while(|entry| entry.0 <= here + reach) {
                 let twin = |&node: &usize| facing.iter().find(|&&other| distance(at(node), at(other)) <= margin);
-                let twins: Option<Vec<Pair>> = face.iter().map(|node| Some([*node, *twin(node)?])).collect();
+                let twins: Option<Vec<[usize; 2]>> = face.iter().map(|node| Some([*node, *twin(node)?])).collect();
                 pairs.extend(twins.into_iter().flatten());
             }
         }
@@ -130,7 +127,7 @@ impl Cut {
     }
 
     /// Makes nodes one, and returns the facets that two facets became; `None` if one of these acts.
-    fn join(&mut self, pairs: &[Pair], conditions: &mut Vec<Condition>) -> Option<Facets> {
+    fn join(&mut self, pairs: &[[usize; 2]], conditions: &mut Vec<Condition>) -> Option<Facets> {
         let mut stands_for: Vec<usize> = (0..self.cells.nodes.len()).collect();
         let first = |stands_for: &[usize], mut node: usize| {
             while stands_for[node] != node {

@@ -161,12 +161,10 @@ pub fn work(stress: Tensor, strain: Tensor) -> f64 {
     product(0) + product(1) + product(2) + 2.0 * (product(3) + product(4) + product(5))
 }
 
-/// The difference of two tensors.
 pub fn less(a: Tensor, b: Tensor) -> Tensor {
     std::array::from_fn(|entry| a[entry] - b[entry])
 }
 
-/// The mean of two tensors.
 pub fn middle(a: Tensor, b: Tensor) -> Tensor {
     std::array::from_fn(|entry| (a[entry] + b[entry]) / 2.0)
 }

@@ -13,7 +13,7 @@ use super::mesh::{OuterFacet, SimplexMesh};
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
-use super::system::{Block, CellNumbers, FreeUnknowns, Row, add_springs};
+use super::system::{Affine, Block, CellNumbers, Row, add_springs};
 use crate::error::Error;
 use signorini_fem::geometry::COORDINATES;
 use signorini_fem::threads::each;
@@ -49,7 +49,7 @@ impl<'a> Stresses<'a> {
         // The corners of a side have the order of the nodes of the facet: both increase.
         let of_side = |&facet: &usize| of_facet * facet..of_facet * (facet + 1);
         let numbers = (0..mesh.count()).flat_map(|cell| mesh.sides(cell).iter().flat_map(of_side)).collect();
-        let numbers = CellNumbers::new((dimension + 1) * of_facet, numbers);
+        let numbers = CellNumbers { of_cell: (dimension + 1) * of_facet, numbers };
         let mut known: HashMap<Congruence, Arc<StressElement>> = HashMap::new();
         let element = |cell: usize| {
             let simplex = mesh.simplex(cell);
@@ -72,7 +72,6 @@ impl<'a> Stresses<'a> {
         Ok(Stresses { problem, mesh, numbers, elements })
     }
 
-    /// The number of the place at a corner of a facet.
     pub fn place(&self, facet: usize, corner: usize) -> usize {
         facet * self.mesh.dimension + corner
     }
@@ -94,7 +93,7 @@ impl<'a> Stresses<'a> {
     }
 
     /// The unknown displacements of facets: those on the axis of revolution are held.
-    pub fn unknowns(&self) -> FreeUnknowns {
+    pub fn unknowns(&self) -> Affine {
         // On the axis a stress times its radius does no work.
         let corners = (0..self.mesh.facet_count()).flat_map(|facet| {
             let corners = self.mesh.corners_of_facet(facet).into_iter().enumerate();
@@ -102,7 +101,7 @@ impl<'a> Stresses<'a> {
         });
         let on_axis = corners.filter(|&(_, at)| self.problem.is_on_axis(at));
         let held = on_axis.flat_map(|(place, _)| [0, 1].map(|axis| (place, COORDINATES[axis])));
-        FreeUnknowns::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
+        Affine::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
     }
 
     /// Number of places on all facets.
@@ -113,7 +112,7 @@ impl<'a> Stresses<'a> {
     /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on
     /// the weighted means of the distance. A row that `may_touch` does not hold for, given its place and gap, is left
     /// out: there the stress has no pressure, which keeps it in balance.
-    pub fn rows(&self, unknowns: &FreeUnknowns, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
+    pub fn rows(&self, unknowns: &Affine, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
         for (on, obstacle) in self.problem.facing(self.mesh) {
             let facing = &self.problem.obstacles[obstacle];
@@ -143,7 +142,6 @@ impl<'a> Stresses<'a> {
         Some((partner.on, partner.corners[place.corner]))
     }
 
-    /// The unknowns of each simplex, with its element.
     pub fn with_elements(&self) -> impl Iterator<Item = (&[usize], &StressElement)> + '_ {
         self.numbers.iter().zip(&self.elements).map(|(numbers, element)| (numbers, &**element))
     }

@@ -45,22 +45,16 @@ pub fn add_springs(
 /// The unknowns of the simplices, the same number for each.
 #[derive(Clone, Debug)]
 pub struct CellNumbers {
-    of_cell: usize,
-    numbers: Vec<usize>,
+    pub of_cell: usize,
+    /// Those of all simplices, one after another.
+    pub numbers: Vec<usize>,
 }
 
 impl CellNumbers {
-    /// The unknowns of all simplices one after another, `of_cell` of each.
-    pub fn new(of_cell: usize, numbers: Vec<usize>) -> Self {
-        CellNumbers { of_cell, numbers }
-    }
-
-    /// The unknowns of a simplex.
     pub fn of(&self, cell: usize) -> &[usize] {
         &self.numbers[cell * self.of_cell..(cell + 1) * self.of_cell]
     }
 
-    /// The unknowns of each simplex, in the order of the mesh.
     pub fn iter(&self) -> impl Iterator<Item = &[usize]> + Clone {
         self.numbers.chunks_exact(self.of_cell)
     }
@@ -113,7 +107,7 @@ fn along(place: usize, dimension: usize, vector: Point) -> impl Iterator<Item = 
 
 /// All unknowns as linear functions of the free ones.
 #[derive(Clone, Debug)]
-pub struct FreeUnknowns {
+pub struct Affine {
     /// How many are free.
     pub free: usize,
     /// How many of these, the first ones, belong to one place each.
@@ -123,7 +117,7 @@ pub struct FreeUnknowns {
     /// The orthonormal axes of the supports of each supported place.
     pub supports: BTreeMap<usize, Vec<Point>>,
     /// The prescribed part of each unknown, which no free unknown changes.
-    offset: Vec<f64>,
+    pub prescribed: Vec<f64>,
     /// The first term of each unknown, and the end.
     starts: Vec<u32>,
     /// Free unknowns with their coefficients.
@@ -166,7 +160,7 @@ impl Supported {
     }
 }
 
-impl FreeUnknowns {
+impl Affine {
     /// The unknowns of a mesh at these places; `fixed` are those of them that do not move along an axis, `on` gives the
     /// places on a facet.
     pub fn new(
@@ -209,12 +203,12 @@ impl FreeUnknowns {
         }));
         let free = own + problem.loads_of_motions().len();
         let count = dimension * places.len() + free - own;
-        let mut unknowns = FreeUnknowns {
+        let mut unknowns = Affine {
             free,
             own,
             moves_rigidly: !problem.is_axisymmetric && own == free,
             supports: BTreeMap::new(),
-            offset: Vec::with_capacity(count),
+            prescribed: Vec::with_capacity(count),
             starts: vec![0],
             terms: Vec::with_capacity(count),
         };
@@ -245,7 +239,7 @@ impl FreeUnknowns {
     }
 
     fn push(&mut self, offset: f64, terms: impl Iterator<Item = (usize, f64)>) {
-        self.offset.push(offset);
+        self.prescribed.push(offset);
         self.terms.extend(terms.filter(|term| term.1 != 0.0).map(|(free, coefficient)| (free as u32, coefficient)));
         self.starts.push(self.terms.len() as u32);
     }
@@ -255,20 +249,15 @@ impl FreeUnknowns {
         &self.terms[self.starts[unknown] as usize..self.starts[unknown + 1] as usize]
     }
 
-    /// The value of each unknown if the free ones are zero.
-    pub fn prescribed(&self) -> &[f64] {
-        &self.offset
-    }
-
     pub fn count(&self) -> usize {
-        self.offset.len()
+        self.prescribed.len()
     }
 
     /// The free unknowns of terms with their coefficients, and their prescribed part.
     pub fn of_terms(&self, of_all: &[(usize, f64)]) -> (Vec<(usize, f64)>, f64) {
         let (mut terms, mut prescribed) = (BTreeMap::new(), 0.0);
         for &(unknown, coefficient) in of_all {
-            prescribed += coefficient * self.offset[unknown];
+            prescribed += coefficient * self.prescribed[unknown];
             for &(free, part) in self.terms(unknown) {
                 *terms.entry(free as usize).or_insert(0.0) += coefficient * part;
             }
@@ -301,7 +290,7 @@ impl FreeUnknowns {
     pub fn expanded(&self, free: &[f64]) -> Vec<f64> {
         let value = |unknown: usize| {
             let terms = self.terms(unknown).iter().map(|&(free_unknown, part)| part * free[free_unknown as usize]);
-            terms.fold(self.offset[unknown], |sum, part| sum + part)
+            terms.fold(self.prescribed[unknown], |sum, part| sum + part)
         };
         (0..self.count()).map(value).collect()
     }
@@ -338,12 +327,12 @@ impl FreeUnknowns {
         if others().any(|other| held.contains_key(&other.0)) {
             return None;
         }
-        let mut unknowns = FreeUnknowns {
+        let mut unknowns = Affine {
             free: self.free - held.len(),
             own: self.own - held.len(),
             moves_rigidly: self.moves_rigidly && others().next().is_none(),
             supports: self.supports.clone(),
-            offset: Vec::with_capacity(self.count()),
+            prescribed: Vec::with_capacity(self.count()),
             starts: vec![0],
             terms: Vec::with_capacity(self.terms.len()),
         };
@@ -393,7 +382,7 @@ impl FreeUnknowns {
         for (unknowns, block) in numbers.iter().zip(blocks) {
             for (&unknown, line) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
                 for (&other, &value) in unknowns.iter().zip(line) {
-                    lifted[unknown] += value * self.offset[other];
+                    lifted[unknown] += value * self.prescribed[other];
                 }
                 for &(column, part) in self.terms(unknown) {
                     let of_column = starts[column as usize]..starts[column as usize + 1];

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SymmetricMatrix, dot};
 
 /// The description of a scheme.
-pub struct AboutScheme {
+pub struct Facts {
     /// Its name in scenes and reports.
     pub name: &'static str,
     /// Its parameter, if it has one.

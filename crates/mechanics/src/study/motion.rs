@@ -43,7 +43,7 @@ pub struct MotionContact {
     force_mean: MovingMean,
     /// The same over the time of a wave through a few cells, and over twice that time.
     peak: MovingMean,
-    wide: MovingMean,
+    pub(super) wide: MovingMean,
     /// Integral of the contact force over time, in force times time, `>= 0`.
     pub impulse: f64,
     /// The largest number of rows with a force in one step; 0 for all obstacles together.
@@ -102,11 +102,6 @@ impl MotionContact {
     /// Largest mean of the contact force over any window of [`MotionSummary::window_steps`] steps, in force.
     pub fn force_mean_max(&self) -> f64 {
         self.force_mean.largest
-    }
-
-    /// The largest mean of the contact force over twice as many steps, in force.
-    pub(super) fn wide_peak(&self) -> f64 {
-        self.wide.largest
     }
 
     /// The mean of the contact force over the last [`MotionSummary::peak_steps`] steps, in force, `>= 0`.

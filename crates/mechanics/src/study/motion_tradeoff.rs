@@ -74,7 +74,7 @@ impl MotionTradeoff {
         let of = |scheme, steps: usize| with(scene, &model, scheme, Some(steps));
         let reference = run(of(SchemeSpec::default(), SAMPLES * quarter * REFERENCE)?, settings)?;
         let (mut runs, impulse) = (Vec::new(), reference.summary.contact.impulse);
-        let follows = |scheme: &SchemeSpec| !own.has_moving_obstacles() || scheme.with(None).about().follows_obstacles;
+        let follows = |scheme: &SchemeSpec| own.obstacles.is_empty() || scheme.with(None).about().follows_obstacles;
         for scheme in SchemeSpec::ALL.into_iter().filter(follows) {
             let counts: Vec<usize> = if scheme.is_explicit() {
                 let fewest = with(scene, &model, scheme, None)?.steps.div_ceil(SAMPLES);
@@ -205,7 +205,7 @@ impl MotionError {
         let apart = |value: &dyn Fn(&MotionSummary) -> f64| {
             same.iter().chain(&finer).map(|other| (value(other) - value(summary)).abs()).sum::<f64>()
         };
-        let of_window = (summary.contact.peak_force() - summary.contact.wide_peak()).abs();
+        let of_window = (summary.contact.peak_force() - summary.contact.wide.largest).abs();
         let peak_force = apart(&|summary| summary.contact.peak_force()).max(of_window);
         let release = |summary: &MotionSummary| summary.contact.last.unwrap_or(f64::NAN);
         let release = Some(apart(&release)).filter(|apart| apart.is_finite());

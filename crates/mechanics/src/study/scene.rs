@@ -257,7 +257,11 @@ impl Sweep {
             return Ok(Sweep { points, ..Sweep::default() });
         }
         let Some(path) = between(&prepared, &at_first, last)? else { return Ok(Sweep { points, ..Sweep::default() }) };
-        let (events, corners) = (events(&path, &at_first), corners(&path, &at_first)?);
+        let events = path.path.events().iter().map(|event| {
+            let node = at_first.rows()[event.row].node;
+            SweepEvent { gap: path.gap(event.at), row: event.row, node, touches: event.touches }
+        });
+        let (events, corners) = (events.collect(), corners(&path, &at_first)?);
         let of_meshed_part: &[&str] = if model.parts_of_whole() > 1.0 { &["events"] } else { &[] };
         Ok(Sweep { points, events, corners, of_meshed_part, path: Some(path) })
     }
@@ -311,15 +315,6 @@ fn between(prepared: &Prepared, at_first: &Model, last: f64) -> Result<Option<Ex
         return Ok(None);
     }
     Ok(prepared.path(from, to).ok().map(|path| ExactPath::new(path, at_first.clone(), last)))
-}
-
-/// The rows that touch or release on an exact path.
-fn events(path: &ExactPath, model: &Model) -> Vec<SweepEvent> {
-    let found = path.path.events().iter().map(|event| {
-        let node = model.rows()[event.row].node;
-        SweepEvent { gap: path.gap(event.at), row: event.row, node, touches: event.touches }
-    });
-    found.collect()
 }
 
 /// Force, width and pressure at both ends of every stretch of an exact path.

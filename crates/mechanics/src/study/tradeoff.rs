@@ -173,8 +173,8 @@ impl Tradeoff {
             let peak = |solution: &Solution| -> Result<Option<f64>, Error> {
                 Ok(Some(model.pressure(&solution.multiplier)?.into_iter().fold(0.0, f64::max)))
             };
-            let measured = Measured { problem: model.problem(), peak: &peak, mesh: refinement };
-            let exact = measured.all(grid, watch, &mut result.points).map_err(|error| model.explain(error))?;
+            let measured = Measured { problem: model.problem(), peak: &peak, mesh: refinement, grid, watch };
+            let exact = measured.all(&mut result.points).map_err(|error| model.explain(error))?;
             let Some(exact) = exact else { break };
             check_approach(&model, &exact.multiplier)?;
             let discretisation_error = Some(Answer::of(model.clone(), &exact)?.discretisation_error()?);
@@ -198,7 +198,7 @@ impl Tradeoff {
     /// Solves a problem given as matrices by all methods: algebraic errors only.
     pub fn of_problem(problem: &ContactProblem, grid: &TradeoffGrid, watch: &Watch) -> Result<Self, Error> {
         let mut result = Tradeoff::new(grid);
-        Measured { problem, peak: &|_| Ok(None), mesh: 0 }.all(grid, watch, &mut result.points)?;
+        Measured { problem, peak: &|_| Ok(None), mesh: 0, grid, watch }.all(&mut result.points)?;
         result.meshes.push(TradeoffMesh::of(problem, 1));
         result.advised()
     }
@@ -216,7 +216,11 @@ impl Tradeoff {
             let of_mesh = self.meshes.get(point.mesh).and_then(|mesh| mesh.discretisation_error);
             point.total_error = of_mesh.map(|of_mesh| point.energy_error.hypot(of_mesh));
         }
-        mark_best(&mut self.points);
+        for of_mesh in self.points.chunk_by_mut(|a, b| a.mesh == b.mesh) {
+            let costs = of_mesh.iter().map(|point| [point.seconds, point.error_above_rounding()]);
+            let best = Tradeoff::on_front(&costs.collect::<Vec<_>>());
+            of_mesh.iter_mut().zip(best).for_each(|(point, best)| point.best = best);
+        }
         self.advice = advice(&self.points);
         if self.meshes.iter().any(|mesh| mesh.discretisation_error.is_some()) {
             self.advice.extend(advice_of_meshes(&self.points));
@@ -237,16 +241,14 @@ struct Measured<'a> {
     /// The largest pressure of an answer, if there are areas.
     peak: &'a dyn Fn(&Solution) -> Result<Option<f64>, Error>,
     mesh: usize,
+    grid: &'a TradeoffGrid,
+    watch: &'a Watch,
 }
 
 impl Measured<'_> {
     /// Adds the points of all ways; returns the exact answer, or `None` if `watch` was asked to stop before.
-    fn all(
-        &self,
-        grid: &TradeoffGrid,
-        watch: &Watch,
-        points: &mut Vec<TradeoffPoint>,
-    ) -> Result<Option<Solution>, Error> {
+    fn all(&self, points: &mut Vec<TradeoffPoint>) -> Result<Option<Solution>, Error> {
+        let (grid, watch) = (self.grid, self.watch);
         let watched = |settings: Settings| settings.watched(watch);
         let exact = match solve(self.problem, &watched(Settings::with_method(Method::ActiveSet))) {
             Err(_) if watch.acknowledge() => return Ok(None),
@@ -256,7 +258,12 @@ impl Measured<'_> {
         if self.problem.dofs() <= grid.most_full_dofs {
             ways.extend(self::ways(Condense::Never));
         }
-        ways.extend(multigrid_ways());
+        // Multigrid, on all dofs.
+        ways.extend(ACCURACIES.map(|accuracy| Trial {
+            method: Method::Mprgp.name(),
+            knob: Some(accuracy),
+            settings: Settings::with_method(Method::Mprgp).with_accuracy(accuracy).with_condensation(Condense::Never),
+        }));
         ways.iter_mut().for_each(|way| way.settings = watched(way.settings.clone()));
         for (way, timed) in ways.iter().zip(timed(self.problem, &ways, grid.runs.max(1), watch)?) {
             if let Some(timed) = timed {
@@ -333,16 +340,6 @@ fn ways(condense: Condense) -> Vec<Trial> {
     ways
 }
 
-/// Multigrid to each of its accuracies, on all dofs.
-fn multigrid_ways() -> Vec<Trial> {
-    let way = |accuracy| Trial {
-        method: Method::Mprgp.name(),
-        knob: Some(accuracy),
-        settings: Settings::with_method(Method::Mprgp).with_accuracy(accuracy).with_condensation(Condense::Never),
-    };
-    ACCURACIES.into_iter().map(way).collect()
-}
-
 /// An answer with the seconds of its two fastest runs, without certificate and proof.
 struct Timed {
     solution: Solution,
@@ -398,14 +395,6 @@ fn timed(problem: &ContactProblem, ways: &[Trial], runs: usize, watch: &Watch) -
 impl TradeoffPoint {
     fn error_above_rounding(&self) -> f64 {
         self.energy_error.max(ERROR_ROUNDING)
-    }
-}
-
-/// Marks the Pareto front of each mesh.
-fn mark_best(points: &mut [TradeoffPoint]) {
-    for of_mesh in points.chunk_by_mut(|a, b| a.mesh == b.mesh) {
-        let costs: Vec<[f64; 2]> = of_mesh.iter().map(|point| [point.seconds, point.error_above_rounding()]).collect();
-        of_mesh.iter_mut().zip(Tradeoff::on_front(&costs)).for_each(|(point, best)| point.best = best);
     }
 }
 

@@ -104,7 +104,6 @@ pub(super) fn opposite_sign(certificate: &Certificate, multiplier: &[f64], toler
     Some(Warning { code: "opposite-sign", message })
 }
 
-/// The warnings about an answer to a scene.
 pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment]) -> Vec<Warning> {
     let model = answer.model();
     let of_model = model.warnings().iter().map(|warning| of_model(answer, warning));
@@ -138,17 +137,11 @@ fn unbalanced_moment(answer: &Answer) -> Option<Warning> {
 /// rounding of the mesh, or the moment of loads.
 fn softly_held(answer: &Answer) -> Vec<Warning> {
     let (model, displacement) = (answer.model(), answer.displacement());
-    let closed: Vec<(&ContactRow, f64)> = answer
-        .contact_set()
-        .iter()
-        .filter_map(|row| Some((model.rows().get(row)?, *answer.multiplier().get(row)?)))
-        .collect();
+    let of_row = |row: usize| Some((model.rows().get(row)?, *answer.multiplier().get(row)?));
+    let closed: Vec<(&ContactRow, f64)> = answer.contact_set().iter().filter_map(of_row).collect();
     let largest = largest(displacement);
-    let visible = RigidBodyModes::of_parts(&model.parts)
-        .soft_motions(&model.parts, &closed, displacement)
-        .unwrap_or_default()
-        .into_iter()
-        .filter(|soft| soft.moved > VISIBLE * largest);
+    let soft = RigidBodyModes::of_parts(&model.parts).soft_motions(&model.parts, &closed, displacement);
+    let visible = soft.unwrap_or_default().into_iter().filter(|soft| soft.moved > VISIBLE * largest);
     let warning = |SoftMotion { name, moved, advice, is_driven }| {
         let (drive, follows) = match is_driven {
             true => ("under the loads", "so that its size depends on the rounding of the mesh"),
@@ -232,7 +225,6 @@ pub(super) fn point_support(answer: &Answer, resultants: &[Resultant]) -> Option
     Some(Warning { code: "point-support", message })
 }
 
-/// The rows that carry a force.
 fn loaded_rows<'a>(model: &'a Model, multiplier: &[f64]) -> Vec<&'a ContactRow> {
     let mut largest = vec![0.0_f64; model.obstacles().len()];
     let rows = || model.rows().iter().zip(multiplier);

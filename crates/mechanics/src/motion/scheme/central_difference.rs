@@ -19,12 +19,12 @@
 use super::newmark::TRAPEZOIDAL;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{AboutScheme, Advance, HalfStep, Parameter, Stepping, halfway, next, plus};
+use crate::motion::step::{Advance, Facts, HalfStep, Parameter, Stepping, halfway, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, SymmetricMatrix, largest};
 
-pub(super) static ABOUT: AboutScheme = AboutScheme {
+pub(super) static ABOUT: Facts = Facts {
     name: "central-difference",
     parameter: Some(Parameter {
         name: "restitution",

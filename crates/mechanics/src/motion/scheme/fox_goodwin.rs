@@ -32,7 +32,7 @@
 use super::newmark::TRAPEZOIDAL;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{AboutScheme, Advance, Found, HalfStep, Stepping, halfway, next, plus};
+use crate::motion::step::{Advance, Facts, Found, HalfStep, Stepping, halfway, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp::SparseMatrix;
 
@@ -50,7 +50,7 @@ const CLOSE: f64 = 1e-6;
 /// was kept, are rounding.
 const NEGLIGIBLE: f64 = 1e-9;
 
-pub(super) static ABOUT: AboutScheme = AboutScheme {
+pub(super) static ABOUT: Facts = Facts {
     name: "fox-goodwin",
     masses: &[MassForm::Averaged, MassForm::Lumped, MassForm::Consistent],
     gains_energy: false,

@@ -20,7 +20,7 @@
 use super::newmark::TRAPEZOIDAL;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{AboutScheme, Advance, Found, Stepping, next, plus};
+use crate::motion::step::{Advance, Facts, Found, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp::{ContactProblem, ContactSet, Settings, SparseMatrix, SymmetricMatrix, dot, largest};
 
@@ -36,7 +36,7 @@ const NEGLIGIBLE_FORCE: f64 = 1e-9;
 /// Largest number of trial shares of the correction.
 const TRIALS: usize = 8;
 
-pub(super) static ABOUT: AboutScheme = AboutScheme {
+pub(super) static ABOUT: Facts = Facts {
     name: "midpoint",
     masses: &[MassForm::Redistributed, MassForm::Consistent, MassForm::Lumped],
     gains_energy: false,
@@ -167,10 +167,8 @@ impl Midpoint {
         let changes = state.velocity.iter().zip(&found.change);
         let velocity: Vec<f64> = changes.map(|(v, w)| 4.0 / step * w - v).collect();
         let massless = self.massless.as_ref();
-        massless
-            .iter()
-            .flat_map(|massless| &massless.dofs)
-            .for_each(|&dof| displacement[dof] = state.displacement[dof]);
+        let dofs = massless.iter().flat_map(|massless| &massless.dofs);
+        dofs.for_each(|&dof| displacement[dof] = state.displacement[dof]);
         let contact = (found.multiplier.clone(), found.contact_set.clone());
         let mut end = next(problem, state, [displacement, velocity], contact);
         if let Some(massless) = massless {

@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_qp as qp;
 
-use super::step::{AboutScheme, Parameter};
+use super::step::{Facts, Parameter};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 
@@ -82,7 +82,7 @@ impl SchemeSpec {
         self.about().is_explicit
     }
 
-    fn about(self) -> &'static AboutScheme {
+    fn about(self) -> &'static Facts {
         match self {
             SchemeSpec::FoxGoodwin => &fox_goodwin::ABOUT,
             SchemeSpec::Midpoint => &midpoint::ABOUT,
@@ -239,7 +239,7 @@ impl Scheme {
     }
 
     /// What else is known of the scheme, and the function that prepares its steps.
-    pub(crate) fn about(self) -> &'static AboutScheme {
+    pub(crate) fn about(self) -> &'static Facts {
         self.spec().about()
     }
 }

@@ -12,7 +12,7 @@
 
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{AboutScheme, Advance, Found, Parameter, Stepping, next, plus};
+use crate::motion::step::{Advance, Facts, Found, Parameter, Stepping, next, plus};
 use crate::motion::{Balance, DynamicProblem, State};
 use signorini_qp as qp;
 use signorini_qp::{Method, Penalty, Settings, largest};
@@ -118,7 +118,7 @@ impl Advance for Newmark {
 
 // HHT-alpha: Newmark's rule with beta = (1 - alpha)^2/4 and gamma = 1/2 - alpha, which damps short waves.
 
-pub(super) static HHT: AboutScheme = AboutScheme {
+pub(super) static HHT: Facts = Facts {
     name: "hht",
     parameter: Some(Parameter {
         name: "alpha",
@@ -131,7 +131,7 @@ pub(super) static HHT: AboutScheme = AboutScheme {
 };
 
 /// The other rules name only what differs.
-pub(super) const TRAPEZOIDAL: AboutScheme = AboutScheme {
+pub(super) const TRAPEZOIDAL: Facts = Facts {
     name: "trapezoidal",
     parameter: None,
     masses: &[MassForm::Consistent, MassForm::Lumped],
@@ -157,7 +157,7 @@ pub(super) const TRAPEZOIDAL: AboutScheme = AboutScheme {
 // P. Deuflhard, R. Krause, S. Ertel, *A contact-stabilized Newmark method for dynamical contact problems*, Int. J.
 // Numer. Methods Eng. 73 (2008) 1274-1290.
 
-pub(super) static CONTACT_STABILISED: AboutScheme = AboutScheme {
+pub(super) static CONTACT_STABILISED: Facts = Facts {
     name: "contact-stabilised",
     gains_energy: false,
     load_times: &[0.5],
@@ -219,7 +219,7 @@ impl Advance for ContactStabilised {
 /// of double precision and the remaining penetration are equally large; larger penalties would only add noise.
 const PENALTIES: i32 = 9;
 
-pub(super) static PENALTY_LOOP: AboutScheme = AboutScheme {
+pub(super) static PENALTY_LOOP: Facts = Facts {
     name: "penalty-loop",
     parameter: Some(Parameter {
         name: "threshold",
@@ -283,7 +283,7 @@ impl Advance for PenaltyLoop {
 
 // The trapezoidal rule with springs of `penalty` times the local stiffness instead of closed rows.
 
-pub(super) static PENALTY: AboutScheme = AboutScheme {
+pub(super) static PENALTY: Facts = Facts {
     name: "penalty",
     parameter: Some(Parameter {
         name: "penalty",

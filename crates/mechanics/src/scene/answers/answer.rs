@@ -69,13 +69,11 @@ impl Answer {
         contact_set: &ContactSet,
     ) -> Result<Self, Error> {
         qp::LinearError::check_length("contact set", contact_set.rows(), model.rows().len(), "contact rows")?;
-        let (multiplier, of_ties) = model::split(&model, multiplier)?;
+        let ((multiplier, of_ties), obstacles) = (model::split(&model, multiplier)?, 0..model.obstacles().len());
         Ok(Answer {
             displacement: model.nodal_displacement(displacement)?,
             unknowns: displacement.to_vec(),
-            travel: (0..model.obstacles().len())
-                .map(|index| model.travel(displacement, index))
-                .collect::<Result<_, _>>()?,
+            travel: obstacles.map(|index| model.travel(displacement, index)).collect::<Result<_, _>>()?,
             pressure: model.pressure(multiplier)?,
             multiplier: multiplier.to_vec(),
             of_ties: of_ties.to_vec(),

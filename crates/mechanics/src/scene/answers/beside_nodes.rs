@@ -68,14 +68,7 @@ impl Answer {
         turns.iter().for_each(|&axis| force[3 + axis] -= about[axis]);
         [from(first, moved), from(first, force)]
     }
-}
 
-/// The values from this one on, and zeros.
-fn from(first: usize, all: [f64; 6]) -> [f64; 6] {
-    [0, 1, 2, 3, 4, 5].map(|kind| all.get(first + kind).copied().unwrap_or(0.0))
-}
-
-impl Answer {
     /// The depths at five points in each direction of every facet that may touch a rigid obstacle. Parts of an obstacle
     /// narrower than the distance of these points are missed.
     pub(crate) fn depths_between_nodes(&self) -> Result<Depths, Error> {
@@ -119,6 +112,11 @@ impl Answer {
         }
         [place, moved]
     }
+}
+
+/// The values from this one on, and zeros.
+fn from(first: usize, all: [f64; 6]) -> [f64; 6] {
+    [0, 1, 2, 3, 4, 5].map(|kind| all.get(first + kind).copied().unwrap_or(0.0))
 }
 
 /// Depths between nodes.

@@ -28,7 +28,6 @@ const ROUNDING_OF_NORMALS: f64 = 1e-12;
 
 /// A straight cell of a facet.
 pub(crate) struct StraightCell {
-    /// The nodes around it.
     pub nodes: Vec<usize>,
     /// The number of its facet in the boundary, from 0.
     pub facet: usize,
@@ -43,13 +42,12 @@ pub(crate) struct StraightCell {
 
 /// The boundary of an obstacle with its closed nodes.
 pub(crate) struct ContactPatch<'a> {
-    answer: &'a Answer,
-    /// The row of each closed node.
+    pub answer: &'a Answer,
     row_of: BTreeMap<usize, usize>,
     /// The nodes of a boundary with a row each, if the covered shares of its facets say where the contact ends.
     carrying: Option<BTreeSet<usize>>,
-    cells: Vec<StraightCell>,
-    /// The cells around each closed node.
+    /// Those of the boundary, facet by facet.
+    pub cells: Vec<StraightCell>,
     cells_of: BTreeMap<usize, Vec<usize>>,
     /// The closed nodes in the order of the boundary.
     closed: Vec<usize>,
@@ -63,10 +61,8 @@ impl<'a> ContactPatch<'a> {
         let model = answer.model();
         let boundary = model.mesh().boundary(model.obstacles()[obstacle].boundary())?;
         let rows = || model.rows().iter().enumerate().filter(|(_, row)| row.obstacle == obstacle);
-        let row_of: BTreeMap<usize, usize> = rows()
-            .filter(|&(index, _)| answer.contact_set().contains(index))
-            .map(|(index, row)| (row.node, index))
-            .collect();
+        let closed = rows().filter(|&(index, _)| answer.contact_set().contains(index));
+        let row_of: BTreeMap<usize, usize> = closed.map(|(index, row)| (row.node, index)).collect();
         if row_of.is_empty() {
             return None;
         }
@@ -85,13 +81,8 @@ impl<'a> ContactPatch<'a> {
                 |shares: &HashMap<Vec<usize>, f64>| shares.get(&sorted(nodes.iter().copied())).copied().unwrap_or(0.0);
             let share = shares.map_or(1.0, share_of);
             let (stretch, enlargement) = (share * ratio(extent, sum), share * ratio(area, area_sum));
-            patch.cells.extend(straight.into_iter().map(|nodes| StraightCell {
-                nodes,
-                facet,
-                share,
-                stretch,
-                enlargement,
-            }));
+            let cell = |nodes| StraightCell { nodes, facet, share, stretch, enlargement };
+            patch.cells.extend(straight.into_iter().map(cell));
         }
         for (index, cell) in patch.cells.iter().enumerate() {
             for &node in cell.nodes.iter().filter(|node| patch.row_of.contains_key(node)) {
@@ -104,15 +95,6 @@ impl<'a> ContactPatch<'a> {
     /// Moves one node from its place in the mesh, and all others back to theirs; the stretches of facets stay.
     pub fn set_moved(&self, node: usize, by: [f64; 3]) {
         self.moved.set(Some((node, by)));
-    }
-
-    pub fn answer(&self) -> &Answer {
-        self.answer
-    }
-
-    /// The cells of the boundary, facet by facet.
-    pub fn cells(&self) -> &[StraightCell] {
-        &self.cells
     }
 
     /// The cells with a closed node of these, and those of the same facets without a row, where the other body ends;
@@ -294,12 +276,9 @@ impl<'a> ContactPatch<'a> {
         };
         // The whole has mirror images of nodes around a node on a plane of symmetry.
         let images = |node: usize| self.images_around(closed, node).into_iter().map(move |at| (node, at));
-        let inner = self
-            .around(closed)
-            .filter(|&node| self.is_closed(node))
-            .flat_map(images)
-            .filter(|&(_, at)| ahead(at) > AHEAD)
-            .max_by(|&(_, a), &(_, b)| ahead(a).total_cmp(&ahead(b)));
+        let inner = self.around(closed).filter(|&node| self.is_closed(node)).flat_map(images);
+        let inner = inner.filter(|&(_, at)| ahead(at) > AHEAD);
+        let inner = inner.max_by(|&(_, a), &(_, b)| ahead(a).total_cmp(&ahead(b)));
         let reach = inner.map(|(inner, at)| {
             let (last, before) = (self.pressure(closed).powi(2), self.pressure(inner).powi(2));
             last / (before - last) * distance(from, at) / length(way)

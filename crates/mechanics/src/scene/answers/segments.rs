@@ -106,13 +106,13 @@ impl ContactExtent {
 
 /// A size with its uncertainty.
 #[derive(Clone, Copy, Debug, Default)]
-struct UncertainSize {
+struct Extent {
     inner: f64,
     estimate: f64,
     outer: f64,
 }
 
-impl UncertainSize {
+impl Extent {
     /// Adds a cell with only closed nodes, from which the surface may differ by a share `bend`.
     fn add_closed(&mut self, whole: f64, bend: f64) {
         self.inner += (1.0 - bend) * whole;
@@ -206,8 +206,8 @@ impl Answer {
 }
 
 /// The length or area of closed nodes, and the area with thickness, cross-section or circumference.
-fn extent_of(patch: &ContactPatch, nodes: &[usize]) -> (UncertainSize, UncertainSize) {
-    let (mut width, mut area) = (UncertainSize::default(), UncertainSize::default());
+fn extent_of(patch: &ContactPatch, nodes: &[usize]) -> (Extent, Extent) {
+    let (mut width, mut area) = (Extent::default(), Extent::default());
     for cell in patch.cells_with(nodes) {
         let whole = patch.sizes(cell, &patch.places(&cell.nodes));
         if patch.is_whole(cell) {

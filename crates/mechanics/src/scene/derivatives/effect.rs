@@ -110,7 +110,6 @@ fn derivative_of_body(scene: &Scene, parameter: &Parameter, body: &ElasticBody) 
         Kind::Poisson(_) => PhaseNumber::Poisson,
         _ => PhaseNumber::Temperature,
     };
-    let none = || format!("`{}` belongs to no element", parameter.name);
     let numbers: Vec<PhaseNumber> = match body.phases().len() {
         1 => vec![by],
         _ => {
@@ -126,7 +125,7 @@ fn derivative_of_body(scene: &Scene, parameter: &Parameter, body: &ElasticBody) 
         }
     };
     if numbers.iter().all(|number| *number == PhaseNumber::Nothing) {
-        return Err(none());
+        return Err(format!("`{}` belongs to no element", parameter.name));
     }
     body.derivative(&numbers).ok_or_else(|| format!("`{}` is not of an isotropic material", parameter.name))
 }

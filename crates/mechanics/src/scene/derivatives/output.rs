@@ -394,20 +394,20 @@ impl Smooth {
     /// The derivative at fixed displacement and multipliers.
     pub(super) fn direct(&self, answer: &Answer, effect: &Effect) -> Result<f64, Why> {
         let (model, lambda) = (answer.model(), answer.multiplier());
-        Ok(match &self.direct {
-            Direct::None => 0.0,
-            Direct::Moment(obstacle, axis) => {
-                let of_row = |(&row, normal): (&usize, &[f64; 3])| {
+        Ok(match (&self.direct, &effect.body) {
+            (Direct::None, _) | (Direct::Energy | Direct::Stress { .. }, None) => 0.0,
+            (Direct::Moment(obstacle, axis), _) => {
+                let of_row = |&(row, normal): &(usize, [f64; 3])| {
                     let own = &model.rows()[row];
                     if own.obstacle == *obstacle {
-                        lambda[row] * moment_of(model, *obstacle, place(model, own.node), *normal, *axis)
+                        lambda[row] * moment_of(model, *obstacle, place(model, own.node), normal, *axis)
                     } else {
                         0.0
                     }
                 };
-                sorted(&effect.normals).iter().map(|(row, normal)| of_row((row, normal))).sum()
+                sorted(&effect.normals).iter().map(of_row).sum()
             }
-            Direct::Pressure(_) | Direct::Width(_) => {
+            (Direct::Pressure(_) | Direct::Width(_), _) => {
                 // A pressure is a force over the area that faces the obstacle, which changes with the normal.
                 let of_row = |(row, normal): &(usize, [f64; 3])| {
                     let own = &model.rows()[*row];
@@ -417,21 +417,15 @@ impl Smooth {
                 };
                 sorted(&effect.normals).iter().map(of_row).sum()
             }
-            Direct::Energy => match &effect.body {
-                Some(body) => {
-                    let change = work_to(answer, body)? + own_energy_change(model.body(), body);
-                    model.parts_of_whole() * change
-                }
-                None => 0.0,
-            },
-            Direct::Stress { element, at, component } => match &effect.body {
-                Some(body) => {
-                    let own = stress_in(model.body(), answer.displacement(), *element, *at).unwrap_or_default();
-                    let change = stress_in(body, answer.displacement(), *element, *at).unwrap_or_default();
-                    by_component(&own, &change, *component)
-                }
-                None => 0.0,
-            },
+            (Direct::Energy, Some(body)) => {
+                let change = work_to(answer, body)? + own_energy_change(model.body(), body);
+                model.parts_of_whole() * change
+            }
+            (Direct::Stress { element, at, component }, Some(body)) => {
+                let own = stress_in(model.body(), answer.displacement(), *element, *at).unwrap_or_default();
+                let change = stress_in(body, answer.displacement(), *element, *at).unwrap_or_default();
+                by_component(&own, &change, *component)
+            }
         })
     }
 }

@@ -102,7 +102,6 @@ impl Sensitivities {
     }
 }
 
-/// The answer of a model, with a proof of its rows.
 pub(crate) fn proven(model: &Arc<Model>, settings: &Settings) -> Result<(Answer, Solution, Derivatives), Error> {
     let explain = |error: signorini_qp::Error| model.explain(error);
     let settings = settings.clone().with_proof();
@@ -167,18 +166,14 @@ impl At<'_> {
             }
         };
         let value = branches[0].value;
-        let adjoints: Vec<Derivative<Adjoint>> = branches
-            .iter()
-            .map(|branch| self.derivatives.adjoint(&branch.by_displacement, &branch.by_multiplier))
-            .collect::<Result<_, _>>()?;
+        let adjoint = |branch: &Smooth| self.derivatives.adjoint(&branch.by_displacement, &branch.by_multiplier);
+        let adjoints: Vec<Derivative<Adjoint>> = branches.iter().map(adjoint).collect::<Result<_, _>>()?;
         let mut by = Vec::with_capacity(parameters.len());
         for (parameter, effect) in parameters.iter().zip(effects) {
             by.push(match effect {
                 Some(Ok(effect)) => {
-                    let of_branches = branches.iter().zip(&adjoints);
-                    let found: Vec<Derivative<f64>> = of_branches
-                        .map(|(branch, adjoint)| self.along(branch, adjoint, effect))
-                        .collect::<Result<_, _>>()?;
+                    let along = |(branch, adjoint)| self.along(branch, adjoint, effect);
+                    let found: Vec<_> = branches.iter().zip(&adjoints).map(along).collect::<Result<_, _>>()?;
                     let share = parameter.value / value;
                     let derivative = joined(found, if parameter.value == 0.0 { 0.0 } else { 1.0 / share.abs() });
                     let has_share = share.is_finite() && parameter.value != 0.0;
@@ -201,7 +196,6 @@ impl At<'_> {
         Ok(Sensitivity { output, value, unit, by, notes })
     }
 
-    /// The derivative of a branch with respect to the places of all nodes.
     fn by_places(&self, branch: &Smooth, adjoint: &Derivative<Adjoint>) -> Derivative<Vec<f64>> {
         let rows = self.answer.model().rows().len();
         let of_piece = |adjoint: &Adjoint| -> Result<Vec<f64>, Why> {

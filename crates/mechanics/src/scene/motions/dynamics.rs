@@ -61,14 +61,14 @@ pub struct Dynamics {
     /// Points with output at every step.
     pub watched: Vec<WatchedPoint>,
     supports: MovingSupports,
-    obstacles: Vec<MovingObstacle>,
+    pub(crate) obstacles: Vec<MovingObstacle>,
     /// Warnings about the scene and the scheme of the motion.
     pub warnings: Vec<Warning>,
 }
 
 /// An obstacle that moves along its approach direction, by `shift` times the growth of its factor since the start.
 #[derive(Clone, Debug)]
-struct MovingObstacle {
+pub(crate) struct MovingObstacle {
     obstacle: usize,
     shift: f64,
     factor: TimeFunction,
@@ -267,10 +267,6 @@ impl Dynamics {
         }
         without_rounding(&mut all);
         Ok(all)
-    }
-
-    pub(crate) fn has_moving_obstacles(&self) -> bool {
-        !self.obstacles.is_empty()
     }
 
     /// The model with its obstacles where they are at time `time` of the motion.

@@ -14,7 +14,6 @@ use crate::scene::models::resultants::at_node;
 use crate::scene::models::rows::ContactRow;
 use crate::scene::{Answer, Model, Rule};
 
-/// The change of a row with places.
 pub(in crate::scene::derivatives) struct Slope {
     /// Nodes, each with the change of the gap along x, y and z, dimensionless.
     pub gap: Vec<(usize, [f64; 3])>,
@@ -226,7 +225,7 @@ pub(crate) fn add_width(answer: &Answer, obstacle: usize, factor: f64, gradient:
     let Some(boundary) = model.mesh().boundary(model.obstacles()[obstacle].boundary()) else { return Ok(()) };
     let Some(patch) = ContactPatch::new(answer, obstacle) else { return Ok(()) };
     let mut cells_of: BTreeMap<usize, Vec<&StraightCell>> = BTreeMap::new();
-    patch.cells().iter().for_each(|cell| cells_of.entry(cell.facet).or_default().push(cell));
+    patch.cells.iter().for_each(|cell| cells_of.entry(cell.facet).or_default().push(cell));
     let mut share_of: HashMap<&[usize], f64> = HashMap::new();
     for (facet, nodes) in boundary.facets().enumerate() {
         let cells = cells_of.get(&facet).map_or(&[][..], Vec::as_slice);
@@ -266,7 +265,7 @@ fn lengths(patch: &ContactPatch, cells: &[&StraightCell]) -> [f64; 2] {
 
 /// Adds `factor` L dc for a facet at an end of the contact.
 fn add_end(patch: &ContactPatch, cells: &[&StraightCell], factor: f64, gradient: &mut [f64]) -> Result<(), String> {
-    let model = patch.answer().model();
+    let model = patch.answer.model();
     let dimension = model.body().dimension();
     let [covered, whole] = lengths(patch, cells);
     let own: Vec<usize> = cells.iter().flat_map(|cell| cell.nodes.iter().copied()).collect();
@@ -322,7 +321,6 @@ pub(super) fn add(pairing: &Pairing, adjoint: &[f64], gradient: &mut [f64]) -> R
     Ok(())
 }
 
-/// Adds the change of the terms of one row.
 fn add_row(
     pairing: &Pairing,
     adjoint: &[f64],
@@ -348,11 +346,9 @@ fn add_row(
     }
     if nu != 0.0 {
         for (node, share) in shares_of_gap(pairing, row, slopes) {
-            slopes
-                .at(node)?
-                .gap
-                .into_iter()
-                .for_each(|(node, slope)| add_at(gradient, dimension, node, -nu * share, slope));
+            for (node, slope) in slopes.at(node)?.gap {
+                add_at(gradient, dimension, node, -nu * share, slope);
+            }
         }
     }
     Ok(())

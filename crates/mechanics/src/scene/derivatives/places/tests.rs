@@ -88,6 +88,12 @@ impl<'a> Moving<'a> {
         (answer, random(unknowns, 3), random(rows, 4))
     }
 
+    /// Checks the residual, and the areas of the rows.
+    fn check_with_areas(&self) {
+        self.check(0);
+        self.check_areas();
+    }
+
     fn check(&self, most_skipped: usize) {
         let (answer, adjoint, forces) = self.answer();
         let found = by_places(self.scene, &Pairing { answer: &answer, adjoint: &adjoint, forces: &forces }).unwrap();
@@ -213,11 +219,8 @@ fn the_strain_energy_changes_as_differences_say() {
     let warm = r#""temperature": [{"value": 0.5, "gradient": [0.3, 0.2]}], "initial-stress": [{"xx": 0.2, "xy": 0.1}]"#;
     for (model, element) in [("plane-strain", "q8"), ("plane-stress", "q4"), ("axisymmetric", "t6")] {
         let shape = obstacle("+y", "closest-point", r#"{"parabola": {"apex": [1.4, 1.1], "radius": 1.5}}"#);
-        Moving::of(&plane(model, element, &format!("{warm}, {shape}")), |_| true).check_output(
-            "strain-energy",
-            0..2,
-            0,
-        );
+        let scene = plane(model, element, &format!("{warm}, {shape}"));
+        Moving::of(&scene, |_| true).check_output("strain-energy", 0..2, 0);
     }
     let shape = obstacle("+z", "closest-point", r#"{"sphere": {"apex": [0.1, 0, 1.1], "radius": 1.5}}"#);
     let warm = r#""temperature": [{"value": 0.5, "gradient": [0.3, 0.2, 0.1]}]"#;
@@ -238,8 +241,7 @@ fn rows_against_rigid_obstacles_in_the_plane_change_as_differences_say() {
         for rule in ["approach", "closest-point"] {
             for model in ["plane-strain", "axisymmetric"] {
                 let scene = plane(model, "q4", &obstacle("+y", rule, shape));
-                Moving::of(&scene, |_| true).check(0);
-                Moving::of(&scene, |_| true).check_areas();
+                Moving::of(&scene, |_| true).check_with_areas();
             }
             Moving::of(&plane("plane-strain", "t6", &obstacle("+y", rule, shape)), |_| true).check_areas();
         }
@@ -258,8 +260,7 @@ fn rows_against_rigid_obstacles_in_space_change_as_differences_say() {
     for shape in shapes {
         for rule in ["approach", "closest-point"] {
             let scene = space("hex8", &obstacle("+z", rule, shape));
-            Moving::of(&scene, |_| true).check(0);
-            Moving::of(&scene, |_| true).check_areas();
+            Moving::of(&scene, |_| true).check_with_areas();
         }
     }
 }
@@ -291,11 +292,8 @@ fn widths_change_as_differences_say() {
 fn moments_change_as_differences_say() {
     for rule in ["approach", "closest-point"] {
         for element in ["q4", "t6"] {
-            let scene = plane(
-                "plane-strain",
-                element,
-                &obstacle("+y", rule, r#"{"circle": {"apex": [1.4, 1.1], "radius": 1.5}}"#),
-            );
+            let circle = r#"{"circle": {"apex": [1.4, 1.1], "radius": 1.5}}"#;
+            let scene = plane("plane-strain", element, &obstacle("+y", rule, circle));
             Moving::of(&scene, |_| true).check_output("obstacles[0].moment", 0..3, 0);
         }
         for element in ["hex8", "hex20"] {
@@ -318,8 +316,7 @@ fn rows_of_coefficients_change_as_differences_say() {
                 "supports": [{{"on": {{"boundary": "bottom"}}, "x": 0, "y": 0.01, "z": 0}}], {}}}"#,
             obstacle("+z", rule, &shape)
         ));
-        Moving::of(&scene, |_| true).check(0);
-        Moving::of(&scene, |_| true).check_areas();
+        Moving::of(&scene, |_| true).check_with_areas();
     }
 }
 
@@ -391,8 +388,7 @@ fn pairs_of_nodes_along_a_direction_change_as_differences_say() {
     for fit in ["", r#", "fit": {"interference": 0.02}"#] {
         let scene = of("approach", fit);
         // Nodes that face each other do not leave their pairs.
-        Moving::of(&scene, |at| at[1] < 0.5 || at[1] > 1.5).check(0);
-        Moving::of(&scene, |at| at[1] < 0.5 || at[1] > 1.5).check_areas();
+        Moving::of(&scene, |at| at[1] < 0.5 || at[1] > 1.5).check_with_areas();
     }
     let closest = of("closest-point", "");
     assert!(reason(&closest).contains("along the normals of both"), "{}", reason(&closest));
@@ -460,8 +456,7 @@ fn an_obstacle_of_a_user_takes_part() {
     let scene = plane("plane-stress", "q4", r#""gap": -0.02"#);
     let mut moving = Moving::of(&scene, |_| true);
     moving.further.push(("top", Arc::new(Bowl)));
-    moving.check(0);
-    moving.check_areas();
+    moving.check_with_areas();
 }
 
 #[test]
