@@ -59,6 +59,7 @@ fn each_dependency_stands_once_in_the_workspace_with_its_reason_above_it() {
         "crates/linear",
         "crates/qp",
         "crates/lcp",
+        "crates/deck",
         "crates/fem",
         "crates/guarantee",
         "crates/mechanics",

@@ -368,11 +368,14 @@ fn every_link_and_every_named_source_file_exists() {
 }
 
 #[test]
-fn the_flow_of_a_solve_is_the_function_that_the_architecture_prints() {
+fn the_flows_to_a_model_and_of_a_solve_are_the_functions_that_the_architecture_prints() {
     let page = read("ARCHITECTURE.md");
-    let printed = page.split_once("```rust\n").and_then(|(_, rest)| rest.split_once("```")).unwrap().0;
-    assert!(read("crates/qp/src/run/mod.rs").contains(printed), "{printed}");
-    assert!(printed.lines().count() <= 20);
+    let printed = page.split("```rust\n").skip(1).map(|rest| rest.split_once("```").unwrap().0);
+    let files = ["crates/mechanics/src/scene/models/build.rs", "crates/qp/src/run/mod.rs"].map(read);
+    assert!(printed.clone().count() == files.len());
+    for (printed, file) in printed.zip(files) {
+        assert!(file.contains(printed) && printed.lines().count() <= 20, "{printed}");
+    }
 }
 
 #[test]

@@ -25,6 +25,12 @@ impl Error {
     }
 }
 
+/// A number as a person writes it: plain for moderate sizes, with an exponent for extremes.
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+}
+
 /// Names longer than this are no spelling errors.
 const LONGEST_NAME: usize = 100;
 

@@ -42,6 +42,8 @@ pub mod norms;
 #[doc(hidden)]
 pub mod recovery;
 #[doc(hidden)]
+pub mod sum;
+#[doc(hidden)]
 pub mod surface;
 #[doc(hidden)]
 pub mod threads;
@@ -54,7 +56,7 @@ pub use body::{ElasticBody, Integration, Region};
 pub use element::{ElementKind, FacetKind, QuadraturePoint};
 pub use error::Error;
 #[doc(hidden)]
-pub use error::{nearest, nearly};
+pub use error::{nearest, nearly, number};
 pub use formulation::Formulation;
 pub use material::Material;
 pub use mesh::gmsh::GmshFile;

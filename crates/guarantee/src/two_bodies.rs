@@ -285,7 +285,7 @@ fn energies_and_forces_of_blocks_whose_meshes_do_not_match_meet() {
 
 /// The figures of the documents, and the bounds that a prototype reached on 32 and 43 cells.
 #[test]
-#[ignore = "a study: cargo test --release --package signorini-mechanics --lib blocks_of_many_cells -- --ignored --nocapture"]
+#[ignore = "a study: cargo test --release --package signorini-guarantee --lib blocks_of_many_cells -- --ignored --nocapture"]
 fn blocks_of_many_cells() {
     for (young, most) in [([1.0, 1.0], 0.013), ([1.0, 10.0], 0.015)] {
         for cells in [[8, 8], [8, 11], [16, 16], [16, 21], [32, 32], [32, 43], [32, 12]] {

@@ -28,7 +28,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use derivatives::parameter;
 use input::absent::absent;
-use input::deck::{self, DeckScene, Reading};
+use input::deck;
 use input::schema::{AnalysisSpec, DynamicSpec, ModesSpec};
 use input::{parse, size};
 use models::build;
@@ -37,11 +37,10 @@ use modes::modal_analysis;
 use motions::dynamics::dynamics;
 use signorini_qp::Settings;
 
-pub use answers::answer::{Answer, Forces};
+pub use answers::answer::Answer;
 pub use answers::segments::{ContactExtent, Segment};
 pub use derivatives::sensitivity::{ByParameter, Sensitivities, Sensitivity, outputs_of};
 pub use input::body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
-pub use input::deck::requests::{RequestedTable, Requests};
 pub(crate) use input::entry::refused;
 pub use input::obstacle::{Inertia, Obstacle, ObstacleRow, PlacedObstacle};
 pub use input::schema::{Rule, Scene, Units};
@@ -50,11 +49,13 @@ pub use input::warning::Warning;
 pub use models::model::Model;
 pub use models::resultants::Resultant;
 pub use models::rows::ContactRow;
-pub use models::set_up::{HeldNode, Hold};
+pub use models::set_up::{Forces, HeldNode, Hold};
 pub use models::unknowns::Meaning;
 pub use modes::ModalAnalysis;
 pub use motions::dynamics::Dynamics;
 pub use motions::moving_supports::WatchedPoint;
+use signorini_deck::{DeckScene, Reading};
+pub use signorini_deck::{RequestedTable, Requests};
 
 impl Scene {
     /// Reads a scene from JSON text, in which lines that begin with `//` are comments; errors begin with `source_name`.
@@ -100,8 +101,8 @@ impl Scene {
     /// pressed, and weak springs keep those that no support holds.
     ///
     /// # Errors
-    /// As [`GmshFile::read`] and [`GmshFile::mesh`]; [`Error::Mesh`] for a mesh of which no boundary can be held while
-    /// another is pressed.
+    /// As [`GmshFile::read`](crate::fem::GmshFile::read) and [`GmshFile::mesh`](crate::fem::GmshFile::mesh);
+    /// [`Error::Mesh`] for a mesh of which no boundary can be held while another is pressed.
     pub fn start(file: &Path, named: &str) -> Result<String, Error> {
         first_scene(file, named)
     }
@@ -139,13 +140,15 @@ impl Scene {
     /// The text of the scene of a deck, with comment lines; `named` is the name of the deck in the scene. The scene is
     /// not built.
     pub fn text_of_deck(file: &Path, named: &str, permits: &[&str], step: Option<usize>) -> Result<String, Error> {
-        DeckScene::read(file, named, Reading { permits, step, earlier: &[] }).map(|scene| scene.text)
+        DeckScene::read(file, named, Reading { permits, step, earlier: &[] })
+            .map(|scene| scene.text)
+            .map_err(Error::from)
     }
 
     /// Returns `true` for the name of an input deck, which ends with `.inp`: such a file is read by
     /// [`Scene::read_deck`].
     pub fn is_deck(file: impl AsRef<Path>) -> bool {
-        deck::is_deck(file.as_ref())
+        signorini_deck::is_deck(file.as_ref())
     }
 
     /// Estimates the size of the scene without building it; of a named file only the length is read.
@@ -221,10 +224,8 @@ impl Scene {
 
     /// The specification of the motion, if the scene has one.
     pub fn dynamic(&self) -> Option<&DynamicSpec> {
-        match &self.analysis {
-            Some(AnalysisSpec::Dynamic(spec)) => Some(spec),
-            _ => None,
-        }
+        let Some(AnalysisSpec::Dynamic(spec)) = &self.analysis else { return None };
+        Some(spec)
     }
 
     /// The motion of `model`, which this scene built; `None` for a static scene.
@@ -237,10 +238,8 @@ impl Scene {
 
     /// The request for modes, if the scene has one.
     pub fn modes(&self) -> Option<&ModesSpec> {
-        match &self.analysis {
-            Some(AnalysisSpec::Modes(spec)) => Some(spec),
-            _ => None,
-        }
+        let Some(AnalysisSpec::Modes(spec)) = &self.analysis else { return None };
+        Some(spec)
     }
 
     /// The `count` lowest natural vibrations of the scene about its equilibrium.

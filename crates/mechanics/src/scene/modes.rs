@@ -24,6 +24,7 @@ use crate::scene::input::schema::{AnalysisSpec, ModesSpec};
 use crate::scene::models::model::Model;
 use crate::scene::models::rigid_body_modes::RigidBodyModes;
 use crate::scene::models::rows::ContactRow;
+use crate::scene::models::set_up::mass_of_nodes;
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, Settings, Solution, SymmetricMatrix, dot};
 
@@ -208,7 +209,7 @@ impl<'a> Shapes<'a> {
     fn of(answer: &'a Answer, closed: &'a [usize]) -> Result<Self, Error> {
         let model = answer.model();
         let (problem, dimension) = (model.problem(), model.body().dimension());
-        let nodal = SymmetricMatrix::from_lower(model.nodal_mass(MassForm::Consistent)?)?;
+        let nodal = SymmetricMatrix::from_lower(mass_of_nodes(model, MassForm::Consistent)?)?;
         let of_nodes = nodal.mul(&vec![1.0; nodal.dim()]);
         let is_radial = |axis: usize| model.body().formulation().is_axisymmetric() && axis == 0;
         let axes =

@@ -10,6 +10,7 @@ use super::{ModelSize, Summary};
 use crate::bytes;
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
+use crate::scene::models::model::{pressed_by, touched};
 use crate::scene::models::rigid_body_modes::RigidBodyModes;
 use crate::scene::{Answer, ContactExtent, Model, Warning};
 use serde::Serialize;
@@ -281,11 +282,11 @@ impl Sweep {
             Prepared::new(model.problem(), settings).map_err(|error| model.explain(kept.explain(error.into())))?;
         let solved_at = |force: f64, known: Start| {
             let clock = Instant::now();
-            let model = model.pressed_by(force)?;
+            let model = pressed_by(model, force)?;
             let assemble_seconds = clock.elapsed().as_secs_f64();
             let solved = match force > 0.0 {
                 true => prepared.starting_from(known).solve_load(model.problem().load().to_vec()).map_err(Error::from),
-                false => model.touched(settings),
+                false => touched(&model, settings),
             };
             let solved = solved.map_err(|error| model.explain(kept.explain(error)));
             Ok(((model, assemble_seconds), solved))

@@ -2,6 +2,7 @@
 
 use super::warnings::{lost_digits, opposite_sign};
 use crate::fem::geometry::length;
+use crate::scene::models::resultants;
 use crate::scene::{Answer, ContactExtent, Resultant, Segment, Warning};
 use serde::Serialize;
 use signorini_qp::{Certificate, ContactProblem, Goal, Seconds, Solution};
@@ -408,8 +409,8 @@ fn between(answer: &Answer, index: usize) -> Option<BetweenBodies> {
         other: other.into(),
         rows: if covered.is_some() { "mortar" } else { "pairs" },
         covered,
-        moment_on_other: model.moment_on_other(index, answer.multiplier()),
-        moment_defect: model.moment_defect(index, answer.multiplier()),
+        moment_on_other: resultants::moment_on_other(model, index, answer.multiplier()),
+        moment_defect: resultants::moment_defect(model, index, answer.multiplier()),
         penetration: covered.map(|_| deepest),
     })
 }

@@ -5,11 +5,14 @@ use std::collections::BTreeMap;
 use crate::error::Error;
 use crate::fem::geometry::{along_axis, dot, plus};
 use crate::scene::answers::deformation;
-use crate::scene::input::warning::NONLINEAR;
-use crate::scene::models::overlap::Overlap;
+use crate::scene::models::build::{node_in_words, place_in_words};
+use crate::scene::models::overlap::{Overlap, deepest_overlap};
 use crate::scene::models::parts::Origin;
+use crate::scene::models::resultants::{at_node, moment_defect};
+use crate::scene::models::rigid_body_modes::RigidBodyModes;
 use crate::scene::models::rigid_body_modes::soft::SoftMotion;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
+use signorini_deck::NONLINEAR;
 use signorini_qp::{Certificate, ContactProblem, Solution, largest};
 
 /// Overlaps below this share of the size of the mesh are rounding of coordinates.
@@ -120,7 +123,7 @@ pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment
 /// Warns of means between curved surfaces whose forces turn both bodies together.
 fn unbalanced_moment(answer: &Answer) -> Option<Warning> {
     let model = answer.model();
-    let defect = |index: usize| Some((index, model.moment_defect(index, answer.multiplier())?));
+    let defect = |index: usize| Some((index, moment_defect(model, index, answer.multiplier())?));
     let defects = (0..model.obstacles().len()).filter_map(defect);
     let (index, defect) = defects.max_by(|one, other| one.1.total_cmp(&other.1))?;
     let message = format!(
@@ -137,8 +140,8 @@ fn softly_held(answer: &Answer) -> Vec<Warning> {
     let of_row = |row: usize| Some((model.rows().get(row)?, *answer.multiplier().get(row)?));
     let closed: Vec<(&ContactRow, f64)> = answer.contact_set().iter().filter_map(of_row).collect();
     let largest = largest(displacement);
-    let soft = model.soft_motions(displacement, &closed).unwrap_or_default().into_iter();
-    let visible = soft.filter(|soft| soft.moved > VISIBLE * largest);
+    let soft = RigidBodyModes::of_parts(&model.parts).soft_motions(&model.parts, &closed, displacement);
+    let visible = soft.unwrap_or_default().into_iter().filter(|soft| soft.moved > VISIBLE * largest);
     let warning = |SoftMotion { name, moved, advice, is_driven }| {
         let (drive, follows) = match is_driven {
             true => ("under the loads", "so that its size depends on the rounding of the mesh"),
@@ -159,7 +162,7 @@ fn softly_held(answer: &Answer) -> Vec<Warning> {
 /// Warns that two displaced bodies go through each other, with what helps.
 fn overlap(answer: &Answer) -> Option<Warning> {
     let model = answer.model();
-    let Overlap { node, depth, bodies, has_rows } = model.overlap(answer.displacement(), answer.unknowns())?;
+    let Overlap { node, depth, bodies, has_rows } = deepest_overlap(model, answer.displacement(), answer.unknowns())?;
     let name = |body: usize| match model.body().regions()[body].name() {
         "" => "body",
         name => name,
@@ -179,7 +182,7 @@ fn overlap(answer: &Answer) -> Option<Warning> {
         name(bodies[0]),
         name(bodies[1]),
         model.units().length,
-        model.node_in_words(node)
+        node_in_words(model, node)
     );
     Some(Warning { code: "bodies-overlap", message: message.replace("  ", " ") })
 }
@@ -243,7 +246,7 @@ fn across_approach(answer: &Answer) -> Option<Warning> {
     let message = format!(
         "at {} the direction into obstacles[{}] and the outward normal of the body make an angle of {:.0} degrees, and the node carries \
          force: the obstacle drags the boundary along itself; name the boundary that faces the obstacle, or turn `approach`",
-        answer.model().node_in_words(row.node),
+        node_in_words(answer.model(), row.node),
         row.obstacle,
         cosine.clamp(-1.0, 1.0).acos().to_degrees()
     );
@@ -254,7 +257,7 @@ fn across_approach(answer: &Answer) -> Option<Warning> {
 fn between_nodes(answer: &Answer) -> Option<Warning> {
     let model = answer.model();
     let (nodes, dimension) = (model.mesh().nodes(), model.mesh().dimension());
-    let moved = |node: usize| model.at_node(answer.displacement(), node);
+    let moved = |node: usize| at_node(model, answer.displacement(), node);
     let closed = answer.contact_set().iter().map(|row| &model.rows()[row]);
     let depth = closed.map(|row| dot(row.normal, moved(row.node)).abs()).fold(0.0, f64::max);
     let mut worst: Option<(f64, usize, [f64; 3])> = None;
@@ -348,7 +351,7 @@ fn leaning_normals(answer: &Answer) -> Option<Warning> {
         }
     }
     let (angle, node, index) = worst.filter(|(angle, ..)| *angle > LEANING)?;
-    let place = model.node_in_words(node);
+    let place = node_in_words(model, node);
     let message = format!(
         "the surface of obstacles[{index}] leans by {angle:.0} degrees from the approach direction at {place}, which carries force; rule \
          `approach` takes that force along the approach direction, and keeps the node from sliding along the surface. Take rule \
@@ -370,7 +373,7 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<Warning> {
     let mut reasons = Vec::new();
     let small = segments.iter().filter(is_small).count();
     if let Some(first) = segments.iter().find(is_small) {
-        let nodes: Vec<String> = first.nodes.iter().map(|&node| model.node_in_words(node)).collect();
+        let nodes: Vec<String> = first.nodes.iter().map(|&node| node_in_words(model, node)).collect();
         let nodes = nodes.join(" and ");
         reasons.push(match small {
             1 => format!("a contact of obstacles[{}] closes only {nodes}", first.obstacle),
@@ -387,7 +390,7 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<Warning> {
         (Some(node), _) => reasons.push(format!(
             "the peak pressure stands at the edge of the contact, {}: at an edge of the obstacle or of the body it grows with every \
              refinement, and has no uncertainty",
-            model.node_in_words(node)
+            node_in_words(model, node)
         )),
         (None, None) if !is_small(&peak) => reasons.push(format!(
             "every node of the contact of obstacles[{}] is next to an open one, and its peak pressure has no uncertainty",
@@ -413,7 +416,7 @@ pub(super) fn initial_overlap(model: &Model) -> Option<String> {
     let gaps = model.problem().inequalities_given().1.iter().copied().enumerate().filter(|&(row, _)| stands(row));
     let (row, gap) = gaps.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let (unit, row) = (&model.units().length, &model.rows()[row]);
-    let place = model.node_in_words(row.node);
+    let place = node_in_words(model, row.node);
     let sentence = format!("before contact {place} lies {:.3e} {unit} inside obstacles[{}]", -gap, row.obstacle);
     (gap < -ROUNDING_OF_PLACES * model.mesh().size()).then(|| sentence.replace("  ", " "))
 }
@@ -425,12 +428,12 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<Warning> {
     }
     let message = match nearest(model.problem(), solution) {
         Some((row, gap)) if gap.abs() <= ROUNDING_OF_PLACES * model.mesh().size() => {
-            let node = model.node_in_words(model.rows()[row].node);
+            let node = node_in_words(model, model.rows()[row].node);
             format!("nothing presses: an obstacle just touches {node}; a negative `gap` moves it into the body")
         }
         Some((row, gap)) => {
             let (row, unit) = (&model.rows()[row], &model.units().length);
-            let (gap, node) = (written(gap), model.node_in_words(row.node));
+            let (gap, node) = (written(gap), node_in_words(model, row.node));
             let nearest = format!("the smallest remaining gap is {gap} {unit} at {node}").replace("  ", " ");
             format!("nothing touches; {nearest}{}", behind(model, row))
         }
@@ -472,7 +475,7 @@ fn large_strain(answer: &Answer) -> Option<Warning> {
     if strain <= LARGE_STRAIN {
         return None;
     }
-    let corner = model.place_in_words(*body.elements().nth(element)?.nodes.first()?);
+    let corner = place_in_words(model, *body.elements().nth(element)?.nodes.first()?);
     let message = format!(
         "the largest strain is {:.0} %, in element {element} with a corner at {corner}: the equations hold for small strains, below about {:.0} %. Check the \
          gap, the loads and their units; bodies that overlap at the start are strained by that",
@@ -515,7 +518,7 @@ pub(super) fn check_approach(model: &Model, multiplier: &[f64]) -> Result<(), Er
     let message = format!(
         "the obstacle pulls the body: at {} the direction into the obstacle and the outward normal of `{}` make an angle of {:.0} \
          degrees, and the node carries force; turn `approach` around, or name the boundary that faces the obstacle",
-        model.node_in_words(row.node),
+        node_in_words(model, row.node),
         model.obstacles()[row.obstacle].boundary(),
         cosine.clamp(-1.0, 1.0).acos().to_degrees()
     );

@@ -5,20 +5,16 @@ use std::sync::{Arc, OnceLock};
 
 use super::deformation;
 use crate::error::Error;
-use crate::fem::assembly::internal_force;
 use crate::fem::geometry::dot;
 use crate::fem::recovery::state::{Deformation, State, at_points, nodal_strain, volume_and_energy};
 use crate::fem::recovery::{self, StressField};
 use crate::scene::Model;
-use crate::scene::models::resultants::{Resultant, without_rounding};
-use crate::scene::models::rigid_body_modes::RigidBodyModes;
+use crate::scene::models::model;
+use crate::scene::models::resultants::{self, Resultant, at_node, without_rounding};
 use crate::scene::models::rows::ContactRow;
+use crate::scene::models::set_up::{self, Forces};
 use signorini_qp as qp;
 use signorini_qp::{ContactSet, Solution};
-
-/// Reactions below this times the largest nodal force of temperatures and initial stresses are rounding of the solve:
-/// these forces cancel if the body is free.
-const OWN_ROUNDING: f64 = 1e-10;
 
 /// The sum of all forces is rounding below this share of the diagonal of the stiffness times the displacement.
 const ROUNDED: f64 = 16.0 * f64::EPSILON;
@@ -42,27 +38,6 @@ pub struct Answer {
     beyond: OnceLock<Option<String>>,
     forces: OnceLock<Forces>,
     resultants: OnceLock<Vec<Resultant>>,
-}
-
-/// The forces on all nodes of a model, sorted by their source.
-///
-/// Each array has length `dim * n_nodes`, order `[f_x0, f_y0, f_x1, ...]`, in force, along the positive axes on the
-/// body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Forces {
-    /// Contact forces on the body, length `dim * n_nodes`, in force, as [`Model::contact_forces`].
-    pub contact: Vec<f64>,
-    /// Reactions of supports on the body, length `dim * n_nodes`, in force, as [`Model::reactions`].
-    pub reactions: Vec<f64>,
-    /// Forces of springs on the body, length `dim * n_nodes`, in force.
-    pub springs: Vec<f64>,
-    /// Forces of rigid faces on the body, length `dim * n_nodes`, in force.
-    pub rigid_faces: Vec<f64>,
-    /// Forces of ties on the body, length `dim * n_nodes`, in force.
-    pub ties: Vec<f64>,
-    /// The imbalance of loads, reactions, springs, rigid faces, ties and contact forces, relative, as
-    /// [`Model::force_balance`].
-    pub balance: f64,
 }
 
 impl Answer {
@@ -94,7 +69,7 @@ impl Answer {
         contact_set: &ContactSet,
     ) -> Result<Self, Error> {
         qp::LinearError::check_length("contact set", contact_set.rows(), model.rows().len(), "contact rows")?;
-        let ((multiplier, of_ties), obstacles) = (model.split(multiplier)?, 0..model.obstacles().len());
+        let ((multiplier, of_ties), obstacles) = (model::split(&model, multiplier)?, 0..model.obstacles().len());
         Ok(Answer {
             displacement: model.nodal_displacement(displacement)?,
             unknowns: displacement.to_vec(),
@@ -133,7 +108,7 @@ impl Answer {
 
     /// What the elements tell; computed at the first call.
     fn state(&self) -> Result<&State, Error> {
-        once(&self.state, || self.model.state(&self.displacement))
+        once(&self.state, || set_up::state(&self.model, &self.displacement))
     }
 
     /// The answer without its stresses, which take more memory than all else; they are computed anew for who asks.
@@ -198,7 +173,7 @@ impl Answer {
     fn gaps_of(&self, rows: &[ContactRow]) -> Vec<f64> {
         let dofs = self.model.dofs();
         let moved = |row: &ContactRow| -> f64 {
-            let at = |node: usize| dot(self.model.at_node(&self.displacement, node), row.normal);
+            let at = |node: usize| dot(at_node(&self.model, &self.displacement, node), row.normal);
             // A mean is one of coefficients.
             let of_node =
                 |&(node, share): &(usize, f64)| share * if row.is_mean { dofs.coefficient(node, at) } else { at(node) };
@@ -228,12 +203,12 @@ impl Answer {
     /// Of each reference point the displacements and rotations, and the forces and moments from outside; see
     /// [`ReferencePoints::values`](crate::scene::models::points::ReferencePoints::values).
     pub(crate) fn values_of_points(&self) -> Vec<[[f64; 6]; 2]> {
-        let displacement = |node: usize| self.model.at_node(&self.displacement, node);
+        let displacement = |node: usize| at_node(&self.model, &self.displacement, node);
         let points = &self.model.parts.conditions.points;
         let mut all = points.values(displacement, &self.model.parts.ties.rows, &self.of_ties);
         for (point, [moved, force]) in points.all.iter().zip(&mut all) {
             if let Some(tie) = point.bolt {
-                [moved[0], force[0]] = self.model.of_bolt(tie, &self.of_ties, &self.unknowns);
+                [moved[0], force[0]] = resultants::of_bolt(&self.model, tie, &self.of_ties, &self.unknowns);
             }
         }
         all
@@ -283,7 +258,7 @@ impl Answer {
     /// The forces on all nodes by their source; computed at the first call.
     pub fn forces(&self) -> Result<&Forces, Error> {
         once(&self.forces, || {
-            self.model.forces(&self.displacement, &self.state()?.force, &self.multiplier, &self.of_ties)
+            set_up::forces(&self.model, &self.displacement, &self.state()?.force, &self.multiplier, &self.of_ties)
         })
     }
 
@@ -304,13 +279,13 @@ impl Answer {
             let mut all = self.model.contact_resultants(&self.multiplier)?;
             all.iter_mut().zip(&self.travel).for_each(|(resultant, travel)| resultant.travel = *travel);
             let reactions = &self.forces()?.reactions;
-            all.extend(self.model.support_resultants(|node| self.model.at_node(reactions, node)));
-            all.extend(self.model.spring_resultants(&self.displacement));
-            all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
-            let ties = self.model.tie_resultants(&self.displacement, &self.of_ties, &self.unknowns);
-            let points = self.model.point_resultants(&self.values_of_points(), &ties);
+            all.extend(resultants::support_resultants(&self.model, |node| at_node(&self.model, reactions, node)));
+            all.extend(resultants::spring_resultants(&self.model, &self.displacement));
+            all.extend(resultants::face_resultants(&self.model, &self.forces()?.rigid_faces, &self.unknowns)?);
+            let ties = resultants::tie_resultants(&self.model, &self.displacement, &self.of_ties, &self.unknowns);
+            let points = resultants::point_resultants(&self.model, &self.values_of_points(), &ties);
             all.extend(ties.into_iter().chain(points));
-            all.extend(self.model.load_resultant());
+            all.extend(resultants::load_resultant(&self.model));
             without_rounding(&mut all);
             Ok(all)
         });
@@ -344,81 +319,5 @@ fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> Result<T, Error>) -> Resul
             let found = find()?;
             Ok(cell.get_or_init(|| found))
         }
-    }
-}
-
-impl Model {
-    /// Nodal support reactions on the body, length `dim * n_nodes`, in force, along the positive axes; zero along free
-    /// dofs, so that a roller pushes along its normal. `multiplier` has one entry per contact row, in force, `<= 0`,
-    /// then one per equation of a tie.
-    ///
-    /// They are the internal forces at the supported dofs, minus load and contact force there. The multiplier enters
-    /// because a contact row may press on a supported dof.
-    pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
-        Ok(self.forces_at(displacement, multiplier)?.reactions)
-    }
-
-    /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works on
-    /// its unit rigid-body modes (the resultant forces, and the resultant moments over half its size), relative to the
-    /// sum of all force magnitudes. A body of revolution has one rigid-body mode, and its forces count along the axis.
-    /// `multiplier` is that of [`Model::reactions`].
-    pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
-        Ok(self.forces_at(displacement, multiplier)?.balance)
-    }
-
-    fn forces_at(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Forces, Error> {
-        let (multiplier, of_ties) = self.split(multiplier)?;
-        let displacement = self.nodal_displacement(displacement)?;
-        self.forces(&displacement, &internal_force(self.body(), &displacement)?, multiplier, of_ties)
-    }
-
-    /// The stress in the displaced body, per element and per node, in force per area, tension positive.
-    pub fn stress(&self, displacement: &[f64]) -> Result<StressField, Error> {
-        Ok(self.state(&self.nodal_displacement(displacement)?)?.stress)
-    }
-
-    fn state(&self, displacement: &[f64]) -> Result<State, Error> {
-        let nodes = self.mesh().nodes();
-        let State { stress, force, deformation } = State::of(self.body(), displacement)?;
-        let stress = stress.of_whole(self.body(), |node| self.parts.conditions.symmetry.axes_at(&nodes[node]));
-        Ok(State { stress, force, deformation })
-    }
-
-    /// The forces of a nodal displacement, which the forces `internal` hold.
-    fn forces(
-        &self,
-        displacement: &[f64],
-        internal: &[f64],
-        multiplier: &[f64],
-        of_ties: &[f64],
-    ) -> Result<Forces, Error> {
-        let contact = self.contact_forces(multiplier)?;
-        let ties = self.parts.tie_forces(of_ties);
-        let springs = self.parts.spring_forces(displacement);
-        let mut forces = internal.to_vec();
-        for acting in [self.nodal_load(), &contact, &springs, &ties] {
-            forces.iter_mut().zip(acting).for_each(|(force, acting)| *force -= acting);
-        }
-        let mut reactions = self.dofs().supported_part(&forces)?;
-        let rigid_faces = self.force_of_faces(&forces, |_| true)?;
-        let motions = RigidBodyModes::of(self.body());
-        let mut all = vec![self.nodal_load(), &contact, &springs, &rigid_faces, &ties];
-        let own;
-        if self.body().has_own_stress() {
-            own = internal_force(self.body(), &vec![0.0; displacement.len()])?;
-            // These forces balance each other: they are the scale of their rounding in a free body.
-            all.push(&own);
-            // Each body has its own scale.
-            let dimension = self.body().dimension();
-            for region in self.body().regions() {
-                let dofs = dimension * region.nodes().start..dimension * region.nodes().end;
-                let largest = own[dofs.clone()].iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
-                let is_rounding = |force: &&mut f64| force.abs() <= OWN_ROUNDING * largest;
-                reactions[dofs].iter_mut().filter(is_rounding).for_each(|force| *force = 0.0);
-            }
-        }
-        all.push(&reactions);
-        let balance = motions.imbalance(self.mesh().nodes(), &all);
-        Ok(Forces { contact, reactions, springs, rigid_faces, ties, balance })
     }
 }

@@ -7,9 +7,8 @@ use super::answer::Answer;
 use crate::error::Error;
 use crate::fem::element::{Tabulated, TabulatedPoint};
 use crate::fem::geometry::cross;
-use crate::scene::input::deck::requests::Requests;
-use crate::scene::input::deck::rigid::{Of, ReferenceNode};
-use crate::scene::models::resultants::Resultant;
+use crate::scene::models::resultants::{Resultant, at_node};
+use signorini_deck::{Of, ReferenceNode, Requests};
 
 impl Answer {
     /// The displacement and the force of each reference node of the deck that this is an answer to, by its number:
@@ -46,7 +45,7 @@ impl Answer {
     pub fn displacements_of_deck(&self, requests: &Requests) -> Result<HashMap<usize, [f64; 6]>, Error> {
         let numbers = self.model().mesh().node_numbers().unwrap_or_default();
         let of_node = |(node, number): (usize, usize)| {
-            let [x, y, z] = self.model().at_node(self.displacement(), node);
+            let [x, y, z] = at_node(self.model(), self.displacement(), node);
             (number, [x, y, z, 0.0, 0.0, 0.0])
         };
         let of_mesh = numbers.into_iter().enumerate().map(of_node);

@@ -5,6 +5,7 @@ use crate::fem::geometry::{shifted, unit};
 use crate::fem::mesh::extent;
 use crate::fem::recovery::state::Deformation;
 use crate::scene::Model;
+use crate::scene::models::build::{node_in_words, place_in_words};
 use crate::scene::models::rows::ContactRow;
 
 /// Strains above this, and rotations above this in radians, are beyond small displacements: the answer is wrong by
@@ -28,7 +29,7 @@ pub(super) fn beyond_small_displacements(deformation: Deformation, model: &Model
             false => (format!("rotations reach {rotation:.2} rad"), turned),
         };
         let corner = model.body().elements().nth(element)?.nodes.first().copied()?;
-        let (place, cause) = (model.place_in_words(corner), likely_cause(deformation, model, moved));
+        let (place, cause) = (place_in_words(model, corner), likely_cause(deformation, model, moved));
         format!("{large}, in element {element} with a corner at {place}. {cause}")
     };
     Some(format!("small displacements do not describe this answer: {fact_and_cause}. `--linear` gives it all the same"))
@@ -77,7 +78,7 @@ fn too_deep(model: &Model) -> Option<String> {
     Some(format!(
         "before contact {} lies {} inside obstacles[{obstacle}], and its body is {} thick there. Name the boundary that faces the \
          obstacle, or correct `gap` and `approach`",
-        model.node_in_words(node),
+        node_in_words(model, node),
         depth.trim_end(),
         thickness.trim_end()
     ))

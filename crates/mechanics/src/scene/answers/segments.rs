@@ -11,7 +11,8 @@ use super::patch::ContactPatch;
 use crate::fem::geometry::dot;
 use crate::fem::recovery::{Stress, stress_at};
 use crate::scene::Answer;
-use crate::scene::models::resultants::Sum;
+use crate::scene::models::model::place;
+use crate::scene::models::resultants::{Sum, at_node};
 
 /// A peak pressure at the end of a boundary is that of an edge if it is this many times the mean of the closed nodes
 /// around. The weakest edge of practice, a right angle on a flat body of the same material, has a pressure proportional
@@ -159,7 +160,7 @@ impl Answer {
             let row = patch.row(node)?;
             let facing = dot(row.normal, row.outward);
             let traction = dot(row.normal, stress.on(row.outward)) / if facing > 0.0 { facing } else { 1.0 };
-            let load = dot(row.normal, model.at_node(model.nodal_load(), node)) / row.projected_area();
+            let load = dot(row.normal, at_node(model, model.nodal_load(), node)) / row.projected_area();
             // The end of a quadratic edge on an axis of revolution has no area.
             Some((node, if load.is_finite() { load - traction } else { -traction }))
         };
@@ -181,7 +182,7 @@ impl Answer {
         let mut sum = Sum::default();
         for &node in nodes {
             let Some(row) = patch.row(node) else { continue };
-            sum.add(self.model().place(node), row.normal.map(|component| 0.0 + patch.multiplier(node) * component));
+            sum.add(place(self.model(), node), row.normal.map(|component| 0.0 + patch.multiplier(node) * component));
         }
         let written = |at: [f64; 3]| at[..dimension].to_vec();
         Segment {

@@ -11,7 +11,7 @@ use crate::fem::element::TabulatedPoint;
 use crate::fem::geometry::{Symmetric, distance, dot};
 use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::wrong;
-use crate::scene::models::model::Model;
+use crate::scene::models::model::{Model, place};
 use crate::scene::models::rows::ContactRow;
 
 /// Values that are this close, relative, tie for the largest: they differ by rounding.
@@ -215,7 +215,7 @@ impl Output {
                 of_rows(&|row| if row.obstacle == obstacle { -parts } else { 0.0 }, Direct::None)
             }
             Kind::Moment(obstacle, axis) => {
-                let arm = |row: &ContactRow| moment_of(model, obstacle, model.place(row.node), row.normal, axis);
+                let arm = |row: &ContactRow| moment_of(model, obstacle, place(model, row.node), row.normal, axis);
                 let coefficient = |row: &ContactRow| if row.obstacle == obstacle { arm(row) } else { 0.0 };
                 of_rows(&coefficient, Direct::Moment(obstacle, axis))
             }
@@ -352,7 +352,8 @@ fn stress(answer: &Answer, place: [f64; 3], component: usize, blank: Smooth) -> 
         }
     }
     let direct = Direct::Stress { element, at, component };
-    Ok(Smooth { value: of_component(&own, component), by_displacement: of_nodal(model, &nodal)?, direct, ..blank })
+    let value = own.get(component).map_or_else(|| equivalent(&own), |&value| value);
+    Ok(Smooth { value, by_displacement: of_nodal(model, &nodal)?, direct, ..blank })
 }
 
 fn stress_in(body: &ElasticBody, displacement: &[f64], element: usize, at: [f64; 3]) -> Option<Symmetric> {
@@ -363,13 +364,6 @@ fn stress_in(body: &ElasticBody, displacement: &[f64], element: usize, at: [f64;
 pub(super) fn stress_of(body: &ElasticBody, displacement: &[f64], element: &BodyElement, at: [f64; 3]) -> Symmetric {
     let point = TabulatedPoint::new(element.kind.reference(), at, 0.0);
     body.strained(&body.tabulated(), displacement, element).at(&point).1
-}
-
-fn of_component(stress: &Symmetric, component: usize) -> f64 {
-    match stress.get(component) {
-        Some(&value) => value,
-        None => equivalent(stress),
-    }
 }
 
 /// The derivative of a component along a change of the stress.
@@ -406,7 +400,7 @@ impl Smooth {
                 let of_row = |&(row, normal): &(usize, [f64; 3])| {
                     let own = &model.rows()[row];
                     if own.obstacle == *obstacle {
-                        lambda[row] * moment_of(model, *obstacle, model.place(own.node), normal, *axis)
+                        lambda[row] * moment_of(model, *obstacle, place(model, own.node), normal, *axis)
                     } else {
                         0.0
                     }

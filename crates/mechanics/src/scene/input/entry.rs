@@ -12,6 +12,7 @@ use crate::fem::GmshFile;
 use crate::fem::geometry::{distance, unit};
 use crate::fem::mesh::deck::Deck;
 use crate::fem::mesh::{Boundary, Mesh};
+pub(crate) use crate::fem::number;
 use signorini_qp as qp;
 
 /// Tolerance, in units of the body's size, for a point on a node and for a table that reaches a candidate: above the
@@ -58,12 +59,6 @@ pub(crate) fn table(path: &str, (name, places): (&str, &[f64]), factors: &[f64])
         finite(format!("{path}.factors[{index}]"), factors[index])?;
     }
     Ok(())
-}
-
-/// A number as a person writes it: plain for moderate sizes, with an exponent for extremes.
-pub(crate) fn number(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
 }
 
 /// A point as a person writes it, with all of its entries.

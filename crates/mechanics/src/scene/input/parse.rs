@@ -4,13 +4,13 @@ use std::io;
 use std::path::Path;
 
 use super::absent::other_format;
-use super::deck::is_deck;
 use super::entry::{Files, Named};
 use super::json::{Typed, line_and_column, parsed, plain, start_of};
 use crate::error::Error;
 use crate::scene::Scene;
 use serde::Deserialize;
 use serde_json::Value;
+use signorini_deck::is_deck;
 use signorini_qp as qp;
 use signorini_qp::file::read_text_capped;
 

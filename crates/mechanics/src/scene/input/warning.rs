@@ -13,9 +13,6 @@ pub struct Warning {
     pub message: String,
 }
 
-/// The code of the warning that a deck asks for large displacements.
-pub(crate) const NONLINEAR: &str = "nonlinear";
-
 impl Warning {
     pub(crate) fn new(code: &'static str, message: impl Into<String>) -> Self {
         Warning { code, message: message.into() }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::elastic::{bodies, joined};
-use super::held::{held, may_be_part};
+use super::held::held;
 use super::load::load;
 use super::model::{Model, assembled, check_held, matrices};
 use super::overlap::with_contacts;
@@ -12,9 +12,8 @@ use super::part::with_parts;
 use super::parts::{Conditions, Parts};
 use super::points::reference_points;
 use super::rigid_body_modes::RigidBodyModes;
-use super::rigid_body_modes::soft::SoftMotion;
 use super::rigid_face::rigid_faces;
-use super::rows::{self, ContactRow};
+use super::rows;
 use super::springs::springs;
 use super::suspect::suspect;
 use super::symmetry::planes_of_symmetry;
@@ -64,10 +63,9 @@ fn conditions(scene: &Scene, body: &ElasticBody, further: &[Further]) -> Result<
     symmetry.hold(body, &mut held);
     let rigid_faces = rigid_faces(scene, body, &mut held)?;
     let dofs = with_contact_faces(scene, held.dofs(body.mesh())?, body, further);
-    let is_part = may_be_part(scene, body)?;
     let mut load = load(scene, body)?;
     points.add_load(&mut load, body.dimension());
-    Ok(Conditions { dofs, held, is_part, load, springs, symmetry, rigid_faces, points })
+    Ok(Conditions { dofs, held, load, springs, symmetry, rigid_faces, points })
 }
 
 fn check_pressed(scene: &Scene, obstacles: &[PlacedObstacle], unknowns: &Unknowns) -> Result<(), Error> {
@@ -132,98 +130,76 @@ fn with_contact_faces(scene: &Scene, dofs: DofMap, body: &ElasticBody, further: 
 /// More nodes than this are counted, not listed.
 const LISTED_NODES: usize = 3;
 
-impl Model {
-    /// Rewrites an error of a solver into the words of this scene; other errors are returned unchanged.
-    ///
-    /// [`qp::Error::Unbounded`] and [`qp::Error::UnderHeld`] name the rigid-body mode; [`qp::Error::Infeasible`] names
-    /// nodes, coordinates and obstacles.
-    pub fn explain(&self, error: impl Into<Error>) -> Error {
-        match error.into() {
-            Error::Qp(qp::Error::Unbounded { mode, direction }) => {
-                let mode = self.named(&direction).map_or(mode, |(name, _)| name);
-                qp::Error::Unbounded { mode, direction }.into()
-            }
-            Error::Qp(qp::Error::UnderHeld { mode, direction }) => {
-                let mode = self.named(&direction).map_or(mode, |(name, advice)| format!("{name}: {advice}"));
-                qp::Error::UnderHeld { mode, direction }.into()
-            }
-            Error::Qp(qp::Error::Infeasible { reason, rows, weights, overlap }) => {
-                let length = &self.units().length;
-                let by =
-                    if overlap > 0.0 { format!("; they overlap by {overlap:.3e} {length}") } else { String::new() };
-                let reason = self.describe_rows(&rows).map_or(reason, |rows| format!("{rows}{}", by.trim_end()));
-                qp::Error::Infeasible { reason, rows, weights, overlap }.into()
-            }
-            other => other,
+pub(crate) fn explain(model: &Model, error: Error) -> Error {
+    match error {
+        Error::Qp(qp::Error::Unbounded { mode, direction }) => {
+            let mode = named(model, &direction).map_or(mode, |(name, _)| name);
+            qp::Error::Unbounded { mode, direction }.into()
+        }
+        Error::Qp(qp::Error::UnderHeld { mode, direction }) => {
+            let mode = named(model, &direction).map_or(mode, |(name, advice)| format!("{name}: {advice}"));
+            qp::Error::UnderHeld { mode, direction }.into()
+        }
+        Error::Qp(qp::Error::Infeasible { reason, rows, weights, overlap }) => {
+            let length = &model.units().length;
+            let by = if overlap > 0.0 { format!("; they overlap by {overlap:.3e} {length}") } else { String::new() };
+            let reason = describe_rows(model, &rows).map_or(reason, |rows| format!("{rows}{}", by.trim_end()));
+            qp::Error::Infeasible { reason, rows, weights, overlap }.into()
+        }
+        other => other,
+    }
+}
+
+/// A node with its coordinates, as `node 5 at (0.25, 1)`.
+pub(crate) fn node_in_words(model: &Model, node: usize) -> String {
+    format!("node {node}{} at {}", model.of_part(), place_in_words(model, node))
+}
+
+/// The coordinates of a node to six digits; those of rounding are 0.
+pub(crate) fn place_in_words(model: &Model, node: usize) -> String {
+    let rounding = COORDINATE_ROUNDING * model.mesh().size();
+    let at = model.mesh().nodes()[node].map(|value| if value.abs() <= rounding { 0.0 } else { six_digits(value) });
+    point(&at[..model.mesh().dimension()])
+}
+
+/// The name of a rigid-body motion, and the advice against it.
+fn named(model: &Model, direction: &[f64]) -> Option<(String, String)> {
+    let parts = &model.parts;
+    let motion = parts.conditions.dofs.expand_motion(&parts.unknowns.motion(direction).ok()?).ok()?;
+    let modes = RigidBodyModes::of(&parts.body);
+    let amplitudes = modes.closest(parts.body.mesh().nodes(), &motion)?;
+    Some((modes.name_of(&amplitudes), modes.advice(parts, model.rows(), &[amplitudes])))
+}
+
+fn describe_rows(model: &Model, rows: &[usize]) -> Option<String> {
+    let mut by_node: Vec<(usize, Vec<usize>)> = Vec::new();
+    for &row in rows {
+        let node = model.rows().get(row)?.node;
+        match by_node.iter_mut().find(|entry| entry.0 == node) {
+            Some(entry) => entry.1.push(row),
+            None => by_node.push((node, vec![row])),
         }
     }
-
-    /// The rigid motions of an answer that contact without friction hardly resists, from its nodal displacement and its
-    /// closed rows with their forces.
-    pub(crate) fn soft_motions(
-        &self,
-        displacement: &[f64],
-        closed: &[(&ContactRow, f64)],
-    ) -> Result<Vec<SoftMotion>, Error> {
-        RigidBodyModes::of_parts(&self.parts).soft_motions(&self.parts, closed, displacement)
+    let mut parts: Vec<String> =
+        by_node.iter().take(LISTED_NODES).map(|(node, rows)| describe_node(model, *node, rows)).collect();
+    if by_node.len() > LISTED_NODES {
+        parts.push(format!("{} more nodes", by_node.len() - LISTED_NODES));
     }
+    (!parts.is_empty()).then(|| parts.join("; "))
+}
 
-    /// A node with its coordinates, as `node 5 at (0.25, 1)`.
-    pub(crate) fn node_in_words(&self, node: usize) -> String {
-        format!("node {node}{} at {}", self.of_part(), self.place_in_words(node))
-    }
-
-    /// The words behind numbers of the meshed part; empty without planes of symmetry.
-    pub fn of_part(&self) -> &'static str {
-        if self.parts_of_whole() > 1.0 { " of the meshed part" } else { "" }
-    }
-
-    /// The coordinates of a node to six digits; those of rounding are 0.
-    pub(crate) fn place_in_words(&self, node: usize) -> String {
-        let rounding = COORDINATE_ROUNDING * self.mesh().size();
-        let at = self.mesh().nodes()[node].map(|value| if value.abs() <= rounding { 0.0 } else { six_digits(value) });
-        point(&at[..self.mesh().dimension()])
-    }
-
-    /// The name of a rigid-body motion, and the advice against it.
-    fn named(&self, direction: &[f64]) -> Option<(String, String)> {
-        let parts = &self.parts;
-        let motion = parts.conditions.dofs.expand_motion(&parts.unknowns.motion(direction).ok()?).ok()?;
-        let modes = RigidBodyModes::of(&parts.body);
-        let amplitudes = modes.closest(parts.body.mesh().nodes(), &motion)?;
-        Some((modes.name_of(&amplitudes), modes.advice(parts, self.rows(), &[amplitudes])))
-    }
-
-    fn describe_rows(&self, rows: &[usize]) -> Option<String> {
-        let mut by_node: Vec<(usize, Vec<usize>)> = Vec::new();
-        for &row in rows {
-            let node = self.rows().get(row)?.node;
-            match by_node.iter_mut().find(|entry| entry.0 == node) {
-                Some(entry) => entry.1.push(row),
-                None => by_node.push((node, vec![row])),
-            }
-        }
-        let mut parts: Vec<String> =
-            by_node.iter().take(LISTED_NODES).map(|(node, rows)| self.describe_node(*node, rows)).collect();
-        if by_node.len() > LISTED_NODES {
-            parts.push(format!("{} more nodes", by_node.len() - LISTED_NODES));
-        }
-        (!parts.is_empty()).then(|| parts.join("; "))
-    }
-
-    fn describe_node(&self, node: usize, rows: &[usize]) -> String {
-        let obstacle = |row: &usize| {
-            let row = &self.rows()[*row];
-            format!("obstacles[{}] (gap {})", row.obstacle, number(row.gap))
-        };
-        let dimension = self.mesh().dimension();
-        let node_at = self.node_in_words(node);
-        let names: Vec<String> = rows.iter().map(obstacle).collect();
-        let supported = (0..dimension).all(|axis| self.parts.conditions.dofs.number(dimension * node + axis).is_none());
-        match names.as_slice() {
-            [one] if supported => format!("{node_at} is supported inside {one}"),
-            [one] => format!("{node_at} cannot leave {one}"),
-            _ => format!("{node_at} has no room between {}", names.join(" and ")),
-        }
+fn describe_node(model: &Model, node: usize, rows: &[usize]) -> String {
+    let obstacle = |row: &usize| {
+        let row = &model.rows()[*row];
+        format!("obstacles[{}] (gap {})", row.obstacle, number(row.gap))
+    };
+    let dimension = model.mesh().dimension();
+    let node_at = node_in_words(model, node);
+    let names: Vec<String> = rows.iter().map(obstacle).collect();
+    let supported = (0..dimension).all(|axis| model.parts.conditions.dofs.number(dimension * node + axis).is_none());
+    match names.as_slice() {
+        [one] if supported => format!("{node_at} is supported inside {one}"),
+        [one] => format!("{node_at} cannot leave {one}"),
+        _ => format!("{node_at} has no room between {}", names.join(" and ")),
     }
 }

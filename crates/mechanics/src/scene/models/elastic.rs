@@ -8,7 +8,7 @@ use crate::scene::Warning;
 use crate::scene::input::body::{BodySpec, Site};
 use crate::scene::input::entry::{MeshFiles, finite, located, point, vector, wrong};
 use crate::scene::input::parse::files;
-use crate::scene::input::schema::{DynamicSpec, InitialStressSpec, ModelSpec, Scene, TemperatureSpec, Units};
+use crate::scene::input::schema::{InitialStressSpec, ModelSpec, Scene, TemperatureSpec, Units};
 use signorini_qp as qp;
 
 /// Poisson's ratios above which elements lock: linear elements noticeably above the first; measured, quadratic elements
@@ -38,9 +38,8 @@ struct DescribedBody<'a> {
     scene: &'a Scene,
     spec: &'a BodySpec,
     materials: BodyMaterials<'a>,
-    unstrained: Unstrained<'a>,
-    /// The prefix of its JSON paths.
-    place: String,
+    temperature: &'a [TemperatureSpec],
+    stress: &'a [InitialStressSpec],
 }
 
 pub(crate) fn bodies(scene: &Scene) -> Result<Vec<ElasticBody>, Error> {
@@ -59,7 +58,7 @@ pub(crate) fn joined(scene: &Scene, bodies: Vec<ElasticBody>) -> Result<ElasticB
         let name = &spec.name;
         if name.is_empty() || scene.further_bodies[..index].iter().any(|other| other.name == *name) {
             let message = format!("`{name}` is not allowed: every further body needs a name of its own");
-            return Err(wrong(format!("{}name", described.place), message));
+            return Err(wrong(format!("{}name", described.materials.place), message));
         }
         joined = joined.beside(&body, name).map_err(|error| described.at_body(error))?;
     }
@@ -68,32 +67,29 @@ pub(crate) fn joined(scene: &Scene, bodies: Vec<ElasticBody>) -> Result<ElasticB
 
 fn described(scene: &Scene) -> impl Iterator<Item = DescribedBody<'_>> {
     let (model, has_mass) = (scene.model, scene.analysis.is_some());
-    let of_body = move |material, parts, place: &str| {
-        let place = place.into();
-        BodyMaterials { material, parts, place, model, has_mass }
-    };
-    let materials = of_body(scene.material.as_ref(), &scene.materials, "");
-    let unstrained = Unstrained { temperature: &scene.temperature, stress: &scene.initial_stress };
-    let first = DescribedBody { scene, spec: &scene.body, materials, unstrained, place: String::new() };
+    let of_body = move |material, parts, place| BodyMaterials { material, parts, place, model, has_mass };
+    let materials = of_body(scene.material.as_ref(), &scene.materials, String::new());
+    let (temperature, stress) = (&*scene.temperature, &*scene.initial_stress);
+    let first = DescribedBody { scene, spec: &scene.body, materials, temperature, stress };
     let further = scene.further_bodies.iter().enumerate().map(move |(index, further)| {
         let place = format!("further-bodies[{index}].");
-        let materials = of_body(further.material.as_ref(), &further.materials, &place);
-        let unstrained = Unstrained { temperature: &further.temperature, stress: &further.initial_stress };
-        DescribedBody { scene, spec: &further.body, materials, unstrained, place }
+        let materials = of_body(further.material.as_ref(), &further.materials, place);
+        let (temperature, stress) = (&*further.temperature, &*further.initial_stress);
+        DescribedBody { scene, spec: &further.body, materials, temperature, stress }
     });
     std::iter::once(first).chain(further)
 }
 
 impl DescribedBody<'_> {
     fn path(&self, field: &str) -> String {
-        format!("{}body.{}{field}", self.place, self.spec.about().name)
+        format!("{}body.{}{field}", self.materials.place, self.spec.about().name)
     }
 
     /// Returns `true` if groups of elements are named.
     fn names_groups(&self) -> bool {
         let materials = self.materials.parts.iter().map(|part| &part.group);
-        let temperature = self.unstrained.temperature.iter().map(|entry| &entry.group);
-        let stress = self.unstrained.stress.iter().map(|entry| &entry.group);
+        let temperature = self.temperature.iter().map(|entry| &entry.group);
+        let stress = self.stress.iter().map(|entry| &entry.group);
         materials.chain(temperature).chain(stress).any(Option::is_some)
     }
 
@@ -137,6 +133,24 @@ impl DescribedBody<'_> {
         Ok(formulation)
     }
 
+    /// The body with its temperatures and initial stresses.
+    fn with_own_stress(&self, mut body: ElasticBody) -> Result<ElasticBody, Error> {
+        let place = &self.materials.place;
+        for (name, count) in [("temperature", self.temperature.len()), ("initial-stress", self.stress.len())] {
+            if self.scene.dynamic().is_some() && count > 0 {
+                let message = format!("a dynamic analysis has no `{name}`: only an equilibrium has; leave it out");
+                return Err(wrong(format!("{place}{name}"), message));
+            }
+        }
+        for (index, spec) in self.temperature.iter().enumerate() {
+            body = warmed(body, spec, &format!("{place}temperature[{index}]"))?;
+        }
+        for (index, spec) in self.stress.iter().enumerate() {
+            body = stressed(body, spec, &format!("{place}initial-stress[{index}]"))?;
+        }
+        Ok(body)
+    }
+
     fn elastic_body(&self, read: &MeshFiles) -> Result<ElasticBody, Error> {
         let first = self.materials.first()?;
         let formulation = self.formulation()?;
@@ -147,7 +161,7 @@ impl DescribedBody<'_> {
             other => self.at_body(other),
         };
         let body = ElasticBody::new(self.mesh(read)?, first, formulation).map_err(at_body)?;
-        let body = self.unstrained.placed(self.materials.placed(body)?, &self.place, self.scene.dynamic())?;
+        let body = self.with_own_stress(self.materials.placed(body)?)?;
         body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
             fem::Error::Mesh { message } => wrong(self.path(".integration"), message),
             other => other.into(),
@@ -209,36 +223,6 @@ pub(crate) fn unit_of_young(body: &ElasticBody, units: &Units) -> Option<Warning
 
 /// The names of the components of a stress, in their order.
 const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
-
-/// Temperatures and initial stresses as a scene describes them.
-pub(crate) struct Unstrained<'a> {
-    pub temperature: &'a [TemperatureSpec],
-    pub stress: &'a [InitialStressSpec],
-}
-
-impl Unstrained<'_> {
-    /// The body with them; `place` is the prefix of its JSON paths.
-    pub fn placed(
-        &self,
-        mut body: ElasticBody,
-        place: &str,
-        motion: Option<&DynamicSpec>,
-    ) -> Result<ElasticBody, Error> {
-        for (name, count) in [("temperature", self.temperature.len()), ("initial-stress", self.stress.len())] {
-            if motion.is_some() && count > 0 {
-                let message = format!("a dynamic analysis has no `{name}`: only an equilibrium has; leave it out");
-                return Err(wrong(format!("{place}{name}"), message));
-            }
-        }
-        for (index, spec) in self.temperature.iter().enumerate() {
-            body = warmed(body, spec, &format!("{place}temperature[{index}]"))?;
-        }
-        for (index, spec) in self.stress.iter().enumerate() {
-            body = stressed(body, spec, &format!("{place}initial-stress[{index}]"))?;
-        }
-        Ok(body)
-    }
-}
 
 /// The body with the temperature at the JSON path `path`.
 fn warmed(body: ElasticBody, spec: &TemperatureSpec, path: &str) -> Result<ElasticBody, Error> {

@@ -9,12 +9,12 @@ use crate::fem::Boundary;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::fem::mortar::{Found, MortarRow};
+use crate::fem::sum::Component;
 use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, number, positive, wrong};
 use crate::scene::input::obstacle::SideOrder;
 use crate::scene::input::obstacle::mortar::{COVERED, ends, means};
 use crate::scene::input::obstacle::order::facet_size;
-use crate::scene::input::sum::Component;
 
 /// Surfaces farther apart than this share of a facet are apart: far above what straight facets miss of a curve.
 const APART: f64 = 0.1;

@@ -8,8 +8,8 @@ use crate::fem::body::{ElasticBody, ON_THE_AXIS};
 use crate::fem::geometry::{COORDINATES, dot, minus};
 use crate::fem::mesh::Mesh;
 use crate::scene::input::entry::{boundary, finite, node_at, nodes_named_once, number, point, vector, wrong};
+use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::{Place, Scene, SupportSpec};
-use crate::scene::input::sum::Profile;
 
 /// A normal depends on the earlier ones if the sine of its angle to their span is below this: the rounding of written
 /// components.

@@ -11,11 +11,11 @@ use crate::fem::{Boundary, ElasticBody, Region};
 use crate::scene::input::entry::{
     COORDINATE_ROUNDING, boundary, direction, finite, node_at, nodes_named, vector, wrong,
 };
+use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::condition::{
     CentrifugalSpec, ForceSpec, LoadSpec, MomentSpec, PressureSpec, ProfileSpec, TractionSpec,
 };
 use crate::scene::input::schema::{ModelSpec, Scene};
-use crate::scene::input::sum::Profile;
 
 /// A load of a scene, checked.
 pub(crate) enum Acting<'a> {

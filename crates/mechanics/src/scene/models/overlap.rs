@@ -13,7 +13,7 @@ use crate::fem::geometry::{distance, length};
 use crate::fem::mesh::extent;
 use crate::fem::mortar::{Seen, Skin};
 use crate::fem::surface::Tree;
-use crate::fem::{Boundary, ElasticBody, Mesh, Mortar, Region};
+use crate::fem::{ElasticBody, Mesh, Mortar, Region};
 use crate::scene::input::obstacle::ShapeSpec;
 use crate::scene::input::schema::{ObstacleSpec, Rule, Scene};
 use crate::scene::{ContactRow, Model};
@@ -110,90 +110,88 @@ impl Solid {
     }
 }
 
-impl Model {
-    /// The deepest overlap of two displaced bodies at a node or in the middle of a facet, beyond what contact rows
-    /// between the two leave, and beyond the shortening of a bolt between them; `None` without one. `displacement` has
-    /// `dim` entries a node.
-    pub(crate) fn overlap(&self, displacement: &[f64], unknowns: &[f64]) -> Option<Overlap> {
-        let (mesh, regions, dimension) = (self.mesh(), self.body().regions(), self.body().dimension());
-        if regions.len() < 2 || dimension < 2 {
-            return None;
-        }
-        let moved = |(node, at): (usize, &[f64; 3])| {
-            let mut at = *at;
-            (0..dimension).for_each(|axis| at[axis] += displacement[dimension * node + axis]);
-            at
-        };
-        let nodes: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(moved).collect();
-        let (allowed, drawn) = (self.depths_that_rows_leave(), self.drawn_together(unknowns));
-        let solids: Vec<OnceCell<Solid>> = (0..regions.len()).map(|_| OnceCell::new()).collect();
-        let solid = |region: usize| solids[region].get_or_init(|| Solid::of(self, region, &nodes));
-        let boxes: Vec<_> = regions.iter().map(|region| extent(&nodes[region.nodes()])).collect();
-        let mut deepest: Option<Overlap> = None;
-        for (own, other) in (0..regions.len()).flat_map(|own| (0..regions.len()).map(move |other| (own, other))) {
-            let [(low, high), (least, most)] = [boxes[own], boxes[other]];
-            let of_node = |node: usize| allowed.get(&(node, own)).copied().unwrap_or(0.0);
-            // Only a point in the box of a body can be inside it.
-            let is_near = |at: &[f64; 3]| (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&at[axis]));
-            let boxes_meet = (0..dimension).all(|axis| least[axis] <= high[axis] && low[axis] <= most[axis]);
-            if own == other || !boxes_meet {
-                continue;
-            }
-            let (body, of_nodes) = (solid(own), solid(other));
-            let drawn = drawn.get(&[own.min(other), own.max(other)]).copied().unwrap_or(0.0);
-            let rounding = ROUNDING * mesh.size();
-            let points = of_nodes.points(&nodes, of_node).into_iter().filter(|point| is_near(&point.at));
-            for point in points.filter(|point| body.contains(mesh, &nodes, point.at)) {
-                let (depth, facet) = body.skin.nearest(point.at);
-                let length = facet_length(&nodes, body.skin.surface.facet(facet));
-                let left = rounding + drawn + point.sag + body.sags[facet] + point.allowed * length;
-                if depth > left && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
-                    let has_rows = point.allowed == KEPT_APART;
-                    deepest = Some(Overlap { node: point.node, depth, bodies: [other, own], has_rows });
-                }
-            }
-        }
-        deepest
+/// The deepest overlap of two displaced bodies at a node or in the middle of a facet, beyond what contact rows
+/// between the two leave, and beyond the shortening of a bolt between them; `None` without one. `displacement` has
+/// `dim` entries a node.
+pub(crate) fn deepest_overlap(model: &Model, displacement: &[f64], unknowns: &[f64]) -> Option<Overlap> {
+    let (mesh, regions, dimension) = (model.mesh(), model.body().regions(), model.body().dimension());
+    if regions.len() < 2 || dimension < 2 {
+        return None;
     }
+    let moved = |(node, at): (usize, &[f64; 3])| {
+        let mut at = *at;
+        (0..dimension).for_each(|axis| at[axis] += displacement[dimension * node + axis]);
+        at
+    };
+    let nodes: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(moved).collect();
+    let (allowed, drawn) = (depths_that_rows_leave(model), drawn_together(model, unknowns));
+    let solids: Vec<OnceCell<Solid>> = (0..regions.len()).map(|_| OnceCell::new()).collect();
+    let solid = |region: usize| solids[region].get_or_init(|| Solid::of(model, region, &nodes));
+    let boxes: Vec<_> = regions.iter().map(|region| extent(&nodes[region.nodes()])).collect();
+    let mut deepest: Option<Overlap> = None;
+    for (own, other) in (0..regions.len()).flat_map(|own| (0..regions.len()).map(move |other| (own, other))) {
+        let [(low, high), (least, most)] = [boxes[own], boxes[other]];
+        let of_node = |node: usize| allowed.get(&(node, own)).copied().unwrap_or(0.0);
+        // Only a point in the box of a body can be inside it.
+        let is_near = |at: &[f64; 3]| (0..dimension).all(|axis| (low[axis]..=high[axis]).contains(&at[axis]));
+        let boxes_meet = (0..dimension).all(|axis| least[axis] <= high[axis] && low[axis] <= most[axis]);
+        if own == other || !boxes_meet {
+            continue;
+        }
+        let (body, of_nodes) = (solid(own), solid(other));
+        let drawn = drawn.get(&[own.min(other), own.max(other)]).copied().unwrap_or(0.0);
+        let rounding = ROUNDING * mesh.size();
+        let points = of_nodes.points(&nodes, of_node).into_iter().filter(|point| is_near(&point.at));
+        for point in points.filter(|point| body.contains(mesh, &nodes, point.at)) {
+            let (depth, facet) = body.skin.nearest(point.at);
+            let length = facet_length(&nodes, body.skin.surface.facet(facet));
+            let left = rounding + drawn + point.sag + body.sags[facet] + point.allowed * length;
+            if depth > left && deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
+                let has_rows = point.allowed == KEPT_APART;
+                deepest = Some(Overlap { node: point.node, depth, bodies: [other, own], has_rows });
+            }
+        }
+    }
+    deepest
+}
 
-    /// How far bolts draw two bodies into each other, by the numbers of the bodies in increasing order: the meshes
-    /// have the length of a bolt before it is shortened.
-    fn drawn_together(&self, unknowns: &[f64]) -> HashMap<[usize; 2], f64> {
-        let (mut drawn, places) = (HashMap::new(), (self.dofs(), &self.parts.unknowns));
-        for one in &self.parts.ties.shortenings {
-            let ends = [one.terms.first(), one.terms.last()].map(|term| self.body().region_at(term?.0));
-            if let [Some(own), Some(other)] = ends {
-                let shortening = one.sense * one.value(places, self.body().dimension(), unknowns);
-                let known = drawn.entry([own.min(other), own.max(other)]).or_insert(0.0_f64);
-                *known = known.max((1.0 + KEPT_APART) * shortening);
-            }
+/// How far bolts draw two bodies into each other, by the numbers of the bodies in increasing order: the meshes
+/// have the length of a bolt before it is shortened.
+fn drawn_together(model: &Model, unknowns: &[f64]) -> HashMap<[usize; 2], f64> {
+    let (mut drawn, places) = (HashMap::new(), (model.dofs(), &model.parts.unknowns));
+    for one in &model.parts.ties.shortenings {
+        let ends = [one.terms.first(), one.terms.last()].map(|term| model.body().region_at(term?.0));
+        if let [Some(own), Some(other)] = ends {
+            let shortening = one.sense * one.value(places, model.body().dimension(), unknowns);
+            let known = drawn.entry([own.min(other), own.max(other)]).or_insert(0.0_f64);
+            *known = known.max((1.0 + KEPT_APART) * shortening);
         }
-        drawn
     }
+    drawn
+}
 
-    /// How deep nodes may lie in a body, in lengths of a facet, because contact rows keep the two apart: nodes that
-    /// carry a row or lie opposite to one, and nodes that take part in the means of others. By node and body.
-    fn depths_that_rows_leave(&self) -> HashMap<(usize, usize), f64> {
-        let region_of = |node: usize| self.body().region_at(node).unwrap_or(0);
-        let [mut kept_apart, mut taking_part] = [HashMap::new(), HashMap::new()];
-        let rows = self.rows().iter().chain(self.rows_across());
-        for ContactRow { node, ends, .. } in rows {
-            let own = region_of(*node);
-            let Some(other) = ends.iter().map(|end| region_of(end.0)).find(|&region| region != own) else { continue };
-            kept_apart.insert((*node, other), KEPT_APART);
-            let facing = ends.iter().map(|end| (end.0, if region_of(end.0) == own { other } else { own }));
-            taking_part.extend(facing.map(|node| (node, TAKING_PART)));
-        }
-        // The other node of a pair is held by the same row.
-        let pairs = self.rows().iter().filter_map(|row| Some((row.partner()?, region_of(row.node))));
-        kept_apart.extend(pairs.map(|pair| (pair, KEPT_APART)));
-        let ties = self.parts.ties.rows.iter().filter(|row| row.at.is_some());
-        for (node, other) in ties.flat_map(|row| row.sides()) {
-            kept_apart.insert((node, region_of(other)), KEPT_APART);
-        }
-        taking_part.extend(kept_apart);
-        taking_part
+/// How deep nodes may lie in a body, in lengths of a facet, because contact rows keep the two apart: nodes that
+/// carry a row or lie opposite to one, and nodes that take part in the means of others. By node and body.
+fn depths_that_rows_leave(model: &Model) -> HashMap<(usize, usize), f64> {
+    let region_of = |node: usize| model.body().region_at(node).unwrap_or(0);
+    let [mut kept_apart, mut taking_part] = [HashMap::new(), HashMap::new()];
+    let rows = model.rows().iter().chain(model.rows_across());
+    for ContactRow { node, ends, .. } in rows {
+        let own = region_of(*node);
+        let Some(other) = ends.iter().map(|end| region_of(end.0)).find(|&region| region != own) else { continue };
+        kept_apart.insert((*node, other), KEPT_APART);
+        let facing = ends.iter().map(|end| (end.0, if region_of(end.0) == own { other } else { own }));
+        taking_part.extend(facing.map(|node| (node, TAKING_PART)));
     }
+    // The other node of a pair is held by the same row.
+    let pairs = model.rows().iter().filter_map(|row| Some((row.partner()?, region_of(row.node))));
+    kept_apart.extend(pairs.map(|pair| (pair, KEPT_APART)));
+    let ties = model.parts.ties.rows.iter().filter(|row| row.at.is_some());
+    for (node, other) in ties.flat_map(|row| row.sides()) {
+        kept_apart.insert((node, region_of(other)), KEPT_APART);
+    }
+    taking_part.extend(kept_apart);
+    taking_part
 }
 
 /// How far contacts are looked for, in sizes of the smaller body.
@@ -213,7 +211,8 @@ pub(crate) fn with_contacts(scene: &Scene, mut body: ElasticBody) -> Result<(Cow
     let named = named_pairs(scene, &body);
     let skins = Arc::clone(body.skins());
     let boxes: Vec<[[f64; 3]; 2]> = regions.iter().map(|region| body.mesh().extent_of(region.nodes()).into()).collect();
-    let facets: Vec<f64> = skins.iter().map(|skin| largest_facet(&nodes, &skin.surface)).collect();
+    let lengths = |skin: &Skin| skin.surface.facets().map(|facet| facet_length(&nodes, facet)).fold(0.0, f64::max);
+    let facets: Vec<f64> = skins.iter().map(lengths).collect();
     let prescribed = scene.supports.iter().flat_map(|support| [support.x, support.y, support.z, support.value]);
     let travel = prescribed.flatten().fold(0.0, |largest: f64, part| largest.max(part.abs()));
     let mut scene = scene.clone();
@@ -287,10 +286,6 @@ fn named_pairs(scene: &Scene, body: &ElasticBody) -> Vec<[Option<usize>; 2]> {
 /// The distance of two boxes.
 fn apart([low, high]: [[f64; 3]; 2], [other_low, other_high]: [[f64; 3]; 2]) -> f64 {
     length([0, 1, 2].map(|axis| (low[axis] - other_high[axis]).max(other_low[axis] - high[axis]).max(0.0)))
-}
-
-fn largest_facet(nodes: &[[f64; 3]], surface: &Boundary) -> f64 {
-    surface.facets().map(|facet| facet_length(nodes, facet)).fold(0.0, f64::max)
 }
 
 /// The largest distance of two nodes of a facet.

@@ -33,8 +33,6 @@ pub(crate) struct Conditions {
     pub dofs: DofMap,
     /// The prescribed components of the nodes.
     pub held: Held,
-    /// `true` if a support may replace the other half of a symmetric body.
-    pub is_part: bool,
     /// External load at all nodes, length `dim * n_nodes`.
     pub load: Vec<f64>,
     /// Springs, in the order of the scene.
@@ -70,10 +68,10 @@ impl Parts {
 
     /// The stiffness of the free dofs of the bodies, with all springs of the scene added to it.
     pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        let Conditions { springs, dofs, .. } = &self.conditions;
+        let springs = &self.conditions.springs;
         match springs.is_empty() {
             true => Ok(of_body),
-            false => Ok(Springs::added_to(springs, &of_body, dofs, self.body.dimension())?),
+            false => Ok(Springs::added_to(springs, &of_body, &self.conditions.dofs, self.body.dimension())?),
         }
     }
 

@@ -5,14 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::facing::TieRow;
 use super::preload::{bolt_of, point_named, terms_of};
-use super::rigid_face::{Given, motion_name, motions};
+use super::rigid_face::{Given, NAMES, motions};
 use crate::error::Error;
 use crate::fem::assembly::Springs;
 use crate::fem::body::ElasticBody;
+use crate::fem::sum::{Component, Sum, following, mean};
 use crate::fem::tributary_areas;
 use crate::scene::input::entry::{boundary, finite, nodes_named_once, positive, vector, wrong};
 use crate::scene::input::schema::{CouplingSpec, Scene, TermPlace, TermSpec, TieSpec};
-use crate::scene::input::sum::{Component, Sum, following, mean};
 
 /// In the replaced components of a sum, an equation at points by its number: how much of it the sum has taken up. With
 /// the multipliers of what is left, these shares give the multiplier of every equation as it was.
@@ -246,7 +246,7 @@ impl Elimination {
         let (equations, springs) = (self.equations.iter().map(|one| &one.1), self.springs.values().map(|one| &one.0));
         let named = equations.chain(springs).flat_map(|sum| sum.terms.keys().copied());
         let joined: BTreeSet<Component> = named.filter(|component| component.0 >= nodes).collect();
-        let word = |(point, kind): Component| (&scene.points[point - nodes].name, motion_name(kind));
+        let word = |(point, kind): Component| (&scene.points[point - nodes].name, NAMES[kind]);
         let free = |component: Component, what: &str| {
             let (name, motion) = word(component);
             format!("the reference point `{name}` is free in `{motion}`; {what}")

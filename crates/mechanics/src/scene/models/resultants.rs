@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::held::Holder;
+use super::held::{Holder, may_be_part};
+use super::model::{check_multiplier, place};
 use super::points::{ForcesAt, ReferencePoint};
 use super::rigid_face::Motion;
 use crate::error::Error;
@@ -149,295 +150,275 @@ pub(crate) fn without_rounding(all: &mut [Resultant]) {
         .for_each(|resultant| resultant.centre = None);
 }
 
-impl Model {
-    /// The resultants of the contact forces, obstacle by obstacle, from the multipliers of all rows (one entry per
-    /// contact row, in force, `<= 0`).
-    pub fn contact_resultants(&self, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
-        self.check_multiplier(multiplier)?;
-        let mut sums = vec![Sum::default(); self.obstacles().len()];
-        for (row, &lambda) in self.rows().iter().zip(multiplier) {
-            let force = row.normal.map(|component| 0.0 + lambda * component);
-            // A plane of symmetry normal to its approach direction gives an obstacle a mirror image, whose force does
-            // not count here.
-            let approach = self.obstacles()[row.obstacle].approach();
-            self.add_images(&mut sums[row.obstacle], self.place(row.node), force, |axis| approach[axis] == 0.0);
-        }
-        let names = self.obstacle_names();
-        let resultant = |(index, sum): (usize, &Sum)| {
-            let (obstacle, of) = (&self.obstacles()[index], names[index].clone());
-            let first = obstacle.candidates().first().map(|&(node, _)| node);
-            Resultant { on: self.name_of_body(first), rule: obstacle.rule(), ..sum.resultant(self, of) }
-        };
-        Ok(sums.iter().enumerate().map(resultant).collect())
+pub(crate) fn contact_resultants(model: &Model, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
+    check_multiplier(model, multiplier)?;
+    let mut sums = vec![Sum::default(); model.obstacles().len()];
+    for (row, &lambda) in model.rows().iter().zip(multiplier) {
+        let force = row.normal.map(|component| 0.0 + lambda * component);
+        // A plane of symmetry normal to its approach direction gives an obstacle a mirror image, whose force does
+        // not count here.
+        let approach = model.obstacles()[row.obstacle].approach();
+        add_images(model, &mut sums[row.obstacle], place(model, row.node), force, |axis| approach[axis] == 0.0);
     }
+    let names = model.obstacle_names();
+    let resultant = |(index, sum): (usize, &Sum)| {
+        let (obstacle, of) = (&model.obstacles()[index], names[index].clone());
+        let first = obstacle.candidates().first().map(|&(node, _)| node);
+        Resultant { on: name_of_body(model, first), rule: obstacle.rule(), ..sum.resultant(model, of) }
+    };
+    Ok(sums.iter().enumerate().map(resultant).collect())
+}
 
-    /// The moment about the origin of the contact forces on the other body of an obstacle, as [`Resultant::moment`],
-    /// from the multipliers of all rows.
-    pub(crate) fn moment_on_other(&self, obstacle: usize, multiplier: &[f64]) -> Vec<f64> {
-        let mut sum = Sum::default();
-        for (row, &lambda) in self.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
-            let own = self.body().region_at(row.node);
-            for &(node, share) in &row.ends {
-                if self.body().region_at(node) != own {
-                    sum.add(self.place(node), row.normal.map(|component| 0.0 + share * lambda * component));
-                }
+/// The moment about the origin of the contact forces on the other body of an obstacle, as [`Resultant::moment`],
+/// from the multipliers of all rows.
+pub(crate) fn moment_on_other(model: &Model, obstacle: usize, multiplier: &[f64]) -> Vec<f64> {
+    let mut sum = Sum::default();
+    for (row, &lambda) in model.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
+        let own = model.body().region_at(row.node);
+        for &(node, share) in &row.ends {
+            if model.body().region_at(node) != own {
+                sum.add(place(model, node), row.normal.map(|component| 0.0 + share * lambda * component));
             }
         }
-        sum.resultant(self, String::new()).moment
     }
+    sum.resultant(model, String::new()).moment
+}
 
-    /// The moment that the contact forces of an obstacle have on both bodies together, over the sum of these forces
-    /// and the size of the mesh, in the meshed part: 0 if the forces of each row lie on one line. Means over curved
-    /// surfaces are not exactly so. `None` for rows that are no means, and about an axis of revolution, where forces
-    /// have no moment.
-    pub(crate) fn moment_defect(&self, obstacle: usize, multiplier: &[f64]) -> Option<f64> {
-        self.obstacles()[obstacle].other_body()?.1.filter(|_| !self.body().formulation().is_axisymmetric())?;
-        let (mut moment, mut force, nodes) = ([0.0; 3], 0.0, self.mesh().nodes());
-        for (row, &lambda) in self.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
-            force -= lambda;
-            for &(node, share) in &row.ends {
-                let lever = minus(self.parts.conditions.dofs.basis.place(nodes, node), nodes[row.node]);
-                let of_end = cross(lever, row.normal.map(|part| share * lambda * part));
-                moment = plus(moment, of_end);
+/// The moment that the contact forces of an obstacle have on both bodies together, over the sum of these forces
+/// and the size of the mesh, in the meshed part: 0 if the forces of each row lie on one line. Means over curved
+/// surfaces are not exactly so. `None` for rows that are no means, and about an axis of revolution, where forces
+/// have no moment.
+pub(crate) fn moment_defect(model: &Model, obstacle: usize, multiplier: &[f64]) -> Option<f64> {
+    model.obstacles()[obstacle].other_body()?.1.filter(|_| !model.body().formulation().is_axisymmetric())?;
+    let (mut moment, mut force, nodes) = ([0.0; 3], 0.0, model.mesh().nodes());
+    for (row, &lambda) in model.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
+        force -= lambda;
+        for &(node, share) in &row.ends {
+            let lever = minus(model.parts.conditions.dofs.basis.place(nodes, node), nodes[row.node]);
+            let of_end = cross(lever, row.normal.map(|part| share * lambda * part));
+            moment = plus(moment, of_end);
+        }
+    }
+    Some(if force > 0.0 { length(moment) / (force * model.mesh().size()) } else { 0.0 })
+}
+
+pub(crate) fn obstacle_names(model: &Model) -> Vec<String> {
+    let mut pairs = 0..;
+    let name = |(index, obstacle): (usize, &PlacedObstacle)| match obstacle.rigid() {
+        Some(_) => format!("obstacles[{index}]"),
+        None => format!("pair[{}]", pairs.next().unwrap_or_default()),
+    };
+    model.obstacles().iter().enumerate().map(name).collect()
+}
+
+/// The resultants of the support reactions, support by support, from the force on each held node; its part along
+/// free dofs is left out.
+pub(crate) fn support_resultants(model: &Model, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
+    let nodes = model.mesh().nodes();
+    let mut supports = vec![Sum::default(); model.parts.scene.supports.len()];
+    let mut held: Vec<Option<usize>> = vec![None; supports.len()];
+    for (node, shares) in model.parts.conditions.held.shares(reaction) {
+        // A support may hold a node in several directions.
+        let mut of_node = BTreeMap::<usize, [f64; 3]>::new();
+        for (by, force) in shares {
+            if let Holder::Support { index, .. } = by {
+                let sum = of_node.entry(index).or_default();
+                *sum = plus(*sum, force);
             }
         }
-        Some(if force > 0.0 { length(moment) / (force * self.mesh().size()) } else { 0.0 })
-    }
-
-    /// The names of the obstacles in reports: `obstacles[i]`, and `pair[k]` for the k-th obstacle that is another body.
-    pub fn obstacle_names(&self) -> Vec<String> {
-        let mut pairs = 0..;
-        let name = |(index, obstacle): (usize, &PlacedObstacle)| match obstacle.rigid() {
-            Some(_) => format!("obstacles[{index}]"),
-            None => format!("pair[{}]", pairs.next().unwrap_or_default()),
-        };
-        self.obstacles().iter().enumerate().map(name).collect()
-    }
-
-    /// The names of the supports in reports: `supports[i]`.
-    pub fn support_names(&self) -> impl Iterator<Item = String> {
-        (0..self.parts.scene.supports.len()).map(|index| format!("supports[{index}]"))
-    }
-
-    /// The names of the springs in reports: `springs[i]`.
-    pub fn spring_names(&self) -> impl Iterator<Item = String> {
-        (0..self.parts.conditions.springs.len()).map(|index| format!("springs[{index}]"))
-    }
-
-    /// The resultants of the support reactions, support by support, from the force on each held node; its part along
-    /// free dofs is left out.
-    pub(crate) fn support_resultants(&self, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
-        let nodes = self.mesh().nodes();
-        let mut supports = vec![Sum::default(); self.parts.scene.supports.len()];
-        let mut held: Vec<Option<usize>> = vec![None; supports.len()];
-        for (node, shares) in self.parts.conditions.held.shares(reaction) {
-            // A support may hold a node in several directions.
-            let mut of_node = BTreeMap::<usize, [f64; 3]>::new();
-            for (by, force) in shares {
-                if let Holder::Support { index, .. } = by {
-                    let sum = of_node.entry(index).or_default();
-                    *sum = plus(*sum, force);
-                }
-            }
-            for (index, force) in of_node {
-                held[index] = held[index].or(Some(node));
-                self.add_images(&mut supports[index], nodes[node], force, |_| true);
-            }
+        for (index, force) in of_node {
+            held[index] = held[index].or(Some(node));
+            add_images(model, &mut supports[index], nodes[node], force, |_| true);
         }
-        let of_support = |((sum, held), name): ((&Sum, Option<usize>), String)| Resultant {
-            on: self.name_of_body(held),
-            ..sum.resultant(self, name)
-        };
-        supports.iter().zip(held).zip(self.support_names()).map(of_support).collect()
     }
+    let of_support = |((sum, held), name): ((&Sum, Option<usize>), String)| Resultant {
+        on: name_of_body(model, held),
+        ..sum.resultant(model, name)
+    };
+    supports.iter().zip(held).zip(model.support_names()).map(of_support).collect()
+}
 
-    /// Adds a force on the modelled part with its mirror images in those planes of symmetry for whose axis `across` is
-    /// `true`.
-    fn add_images(&self, sum: &mut Sum, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) {
-        self.parts.conditions.symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
+/// Adds a force on the modelled part with its mirror images in those planes of symmetry for whose axis `across` is
+/// `true`.
+fn add_images(model: &Model, sum: &mut Sum, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) {
+    model.parts.conditions.symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
+}
+
+/// The sum of nodal forces on the whole body.
+fn sum_of(model: &Model, forces: impl IntoIterator<Item = (usize, [f64; 3])>) -> Sum {
+    let mut sum = Sum::default();
+    for (node, force) in forces {
+        add_images(model, &mut sum, model.mesh().nodes()[node], force, |_| true);
     }
+    sum
+}
 
-    /// The sum of nodal forces on the whole body.
-    fn sum_of(&self, forces: impl IntoIterator<Item = (usize, [f64; 3])>) -> Sum {
-        let mut sum = Sum::default();
-        for (node, force) in forces {
-            self.add_images(&mut sum, self.mesh().nodes()[node], force, |_| true);
+/// Forces on all nodes (length `dim * n_nodes`), node by node.
+fn by_node(model: &Model, forces: &[f64]) -> impl Iterator<Item = (usize, [f64; 3])> {
+    (0..model.mesh().nodes().len()).map(|node| (node, at_node(model, forces, node)))
+}
+
+/// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
+pub(crate) fn spring_resultants(model: &Model, displacement: &[f64]) -> Vec<Resultant> {
+    let at_points = model.parts.conditions.points.forces_of_springs(|node| at_node(model, displacement, node));
+    let of_springs = |((index, springs), name): ((usize, &Springs), String)| match at_points.get(&index) {
+        Some(forces) => resultant_at(model, forces, name),
+        None => sum_of(model, springs.forces(displacement, model.body().dimension())).resultant(model, name),
+    };
+    model.parts.conditions.springs.iter().enumerate().zip(model.spring_names()).map(of_springs).collect()
+}
+
+/// The resultant of forces and moments on nodes and reference points.
+fn resultant_at(model: &Model, forces: &ForcesAt, of: String) -> Resultant {
+    let (mut sum, mut nodes, size) = (Sum::default(), 0, model.mesh().size());
+    for (&place, force) in forces {
+        let at = model.parts.conditions.points.at(place).map_or_else(|| model.mesh().nodes()[place], |point| point.at);
+        let before = sum.forces.len();
+        add_images(model, &mut sum, at, [force[0], force[1], force[2]], |_| true);
+        nodes += sum.forces.len() - before;
+        // A moment is a pair of forces.
+        for axis in (0..3).filter(|&axis| force[3 + axis] != 0.0) {
+            let [arm, across] = [COORDINATES[(axis + 1) % 3], COORDINATES[(axis + 2) % 3]];
+            let pair = across.map(|part| force[3 + axis] / size * part);
+            let beside = shifted(at, size, arm);
+            add_images(model, &mut sum, beside, pair, |_| true);
+            add_images(model, &mut sum, at, pair.map(|part| 0.0 - part), |_| true);
         }
-        sum
     }
+    Resultant { nodes, ..sum.resultant(model, of) }
+}
 
-    /// Forces on all nodes (length `dim * n_nodes`), node by node.
-    fn by_node(&self, forces: &[f64]) -> impl Iterator<Item = (usize, [f64; 3])> {
-        (0..self.mesh().nodes().len()).map(|node| (node, self.at_node(forces, node)))
-    }
+/// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the
+/// body.
+pub(crate) fn force_of_faces(model: &Model, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
+    let faces = model.parts.conditions.rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
+    let mut on_face = vec![false; model.mesh().nodes().len()];
+    faces.flat_map(|(_, face)| &face.nodes).for_each(|&node| on_face[node] = true);
+    let dimension = model.body().dimension();
+    Ok(model.dofs().part(forces, |dof| on_face[dof / dimension])?)
+}
 
-    /// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
-    pub(crate) fn spring_resultants(&self, displacement: &[f64]) -> Vec<Resultant> {
-        let at_points = self.parts.conditions.points.forces_of_springs(|node| self.at_node(displacement, node));
-        let of_springs = |((index, springs), name): ((usize, &Springs), String)| match at_points.get(&index) {
-            Some(forces) => self.resultant_at(forces, name),
-            None => self.sum_of(springs.forces(displacement, self.body().dimension())).resultant(self, name),
+/// The resultants of the rigid faces on the body, in the order of the scene, with their motions.
+pub(crate) fn face_resultants(model: &Model, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
+    let mut all = Vec::with_capacity(model.parts.conditions.rigid_faces.len());
+    for (index, face) in model.parts.conditions.rigid_faces.iter().enumerate() {
+        let sum = sum_of(model, by_node(model, &force_of_faces(model, forces, |other| other == index)?));
+        let found = model.parts.unknowns.motions(unknowns, index);
+        let amount = |(motion, unknown): (&Motion, Option<f64>)| {
+            let by_unknown = unknown.map(|unknown| unknown * face.unit(motion));
+            (motion.kind, by_unknown.or(motion.prescribed).unwrap_or(0.0))
         };
-        self.parts.conditions.springs.iter().enumerate().zip(self.spring_names()).map(of_springs).collect()
+        let moved: Vec<(usize, f64)> = face.motions.iter().zip(found).map(amount).collect();
+        let of = |kinds: Range<usize>| {
+            moved.iter().filter(|entry| kinds.contains(&entry.0)).map(|entry| entry.1).collect::<Vec<f64>>()
+        };
+        let motion = FaceMotion { displacement: of(0..3), rotation: of(3..6) };
+        let on = name_of_body(model, face.nodes.first().copied());
+        all.push(Resultant { on, motion: Some(motion), ..sum.resultant(model, format!("rigid-faces[{index}]")) });
     }
+    Ok(all)
+}
 
-    /// The resultant of forces and moments on nodes and reference points.
-    fn resultant_at(&self, forces: &ForcesAt, of: String) -> Resultant {
-        let (mut sum, mut nodes, size) = (Sum::default(), 0, self.mesh().size());
-        for (&place, force) in forces {
-            let at =
-                self.parts.conditions.points.at(place).map_or_else(|| self.mesh().nodes()[place], |point| point.at);
-            let before = sum.forces.len();
-            self.add_images(&mut sum, at, [force[0], force[1], force[2]], |_| true);
-            nodes += sum.forces.len() - before;
-            // A moment is a pair of forces.
-            for axis in (0..3).filter(|&axis| force[3 + axis] != 0.0) {
-                let [arm, across] = [COORDINATES[(axis + 1) % 3], COORDINATES[(axis + 2) % 3]];
-                let pair = across.map(|part| force[3 + axis] / size * part);
-                let beside = shifted(at, size, arm);
-                self.add_images(&mut sum, beside, pair, |_| true);
-                self.add_images(&mut sum, at, pair.map(|part| 0.0 - part), |_| true);
-            }
+/// The resultants of the ties on their first sides, in the order of the scene, from the nodal displacement, the
+/// multipliers of all equations, and the values of the unknowns.
+pub(crate) fn tie_resultants(model: &Model, displacement: &[f64], of_ties: &[f64], unknowns: &[f64]) -> Vec<Resultant> {
+    let (ties, points) = (&model.parts.ties, &model.parts.conditions.points);
+    let at_points = points.forces_of_ties(|node| at_node(model, displacement, node), &ties.rows, of_ties);
+    let of_tie = |(index, rows): (usize, &Range<usize>)| {
+        let of = format!("ties[{index}]");
+        if let Some(forces) = at_points.get(&index) {
+            let first = forces.keys().next().copied();
+            let point = first.and_then(|place| points.at(place)).map(|point| format!("`{}`", point.name));
+            return Resultant { on: point.or_else(|| name_of_body(model, first)), ..resultant_at(model, forces, of) };
         }
-        Resultant { nodes, ..sum.resultant(self, of) }
-    }
+        let first = ties.rows[rows.clone()].first().and_then(|row| Some(row.terms.first()?.0));
+        let sum = sum_of(model, model.parts.forces_of_ties(of_ties, Some(index)));
+        let on = name_of_body(model, first);
+        let shortening = ties.shortenings.iter().find(|one| one.tie == index);
+        let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
+        let places = (model.dofs(), &model.parts.unknowns);
+        let shortening = shortening.map(|one| one.sense * one.value(places, model.body().dimension(), unknowns));
+        Resultant { on, shortening, tension, ..sum.resultant(model, of) }
+    };
+    ties.of_tie.iter().enumerate().map(of_tie).collect()
+}
 
-    /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the
-    /// body.
-    pub(crate) fn force_of_faces(&self, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
-        let faces = self.parts.conditions.rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
-        let mut on_face = vec![false; self.mesh().nodes().len()];
-        faces.flat_map(|(_, face)| &face.nodes).for_each(|&node| on_face[node] = true);
-        let dimension = self.body().dimension();
-        Ok(self.dofs().part(forces, |dof| on_face[dof / dimension])?)
-    }
+/// The value and the force along the direction of the scene of a bolt, of the modelled part: positive if it draws
+/// the parts together along this direction.
+pub(crate) fn of_bolt(model: &Model, tie: usize, of_ties: &[f64], unknowns: &[f64]) -> [f64; 2] {
+    let ties = &model.parts.ties;
+    let Some(one) = ties.shortenings.iter().find(|one| one.tie == tie) else { return [0.0; 2] };
+    let (forces, towards) = (model.parts.forces_of_ties(of_ties, Some(tie)), one.towards());
+    let force = forces.into_values().map(|force| dot(force, towards)).sum();
+    [one.value((model.dofs(), &model.parts.unknowns), model.body().dimension(), unknowns), force]
+}
 
-    /// The resultants of the rigid faces on the body, in the order of the scene, with their motions.
-    pub(crate) fn face_resultants(&self, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
-        let mut all = Vec::with_capacity(self.parts.conditions.rigid_faces.len());
-        for (index, face) in self.parts.conditions.rigid_faces.iter().enumerate() {
-            let sum = self.sum_of(self.by_node(&self.force_of_faces(forces, |other| other == index)?));
-            let found = self.parts.unknowns.motions(unknowns, index);
-            let amount = |(motion, unknown): (&Motion, Option<f64>)| {
-                let by_unknown = unknown.map(|unknown| unknown * face.unit(motion));
-                (motion.kind, by_unknown.or(motion.prescribed).unwrap_or(0.0))
-            };
-            let moved: Vec<(usize, f64)> = face.motions.iter().zip(found).map(amount).collect();
-            let of = |kinds: Range<usize>| {
-                moved.iter().filter(|entry| kinds.contains(&entry.0)).map(|entry| entry.1).collect::<Vec<f64>>()
-            };
-            let motion = FaceMotion { displacement: of(0..3), rotation: of(3..6) };
-            let on = self.name_of_body(face.nodes.first().copied());
-            all.push(Resultant { on, motion: Some(motion), ..sum.resultant(self, format!("rigid-faces[{index}]")) });
+/// The forces from outside on the reference points, with their motions, in the order of the scene; of a point that
+/// stands for a bolt the tension of its tie among `ties`, without a moment.
+pub(crate) fn point_resultants(model: &Model, values: &[[[f64; 6]; 2]], ties: &[Resultant]) -> Vec<Resultant> {
+    let (first, dimension, turns) = (model.mesh().nodes().len(), model.body().dimension(), model.body().turns());
+    let of_point = |(index, (point, [moved, force])): (usize, (&ReferencePoint, &[[f64; 6]; 2]))| {
+        let forces = ForcesAt::from([(first + index, *force)]);
+        let rotation = turns.iter().map(|&axis| moved[3 + axis]).collect();
+        let motion = Some(FaceMotion { displacement: moved[..dimension].to_vec(), rotation });
+        let on = Some(format!("`{}`", point.name));
+        let of = format!("points[{index}]");
+        let mut found = Resultant { on, nodes: 1, motion, ..resultant_at(model, &forces, of) };
+        if let Some(tension) = point.bolt.and_then(|tie| ties[tie].tension) {
+            found.force[0] = tension.abs().copysign(force[0]);
+            found.moment.fill(0.0);
+            found.centre = None;
         }
-        Ok(all)
-    }
+        found
+    };
+    model.parts.conditions.points.all.iter().zip(values).enumerate().map(of_point).collect()
+}
 
-    /// The resultants of the ties on their first sides, in the order of the scene, from the nodal displacement, the
-    /// multipliers of all equations, and the values of the unknowns.
-    pub(crate) fn tie_resultants(&self, displacement: &[f64], of_ties: &[f64], unknowns: &[f64]) -> Vec<Resultant> {
-        let (ties, points) = (&self.parts.ties, &self.parts.conditions.points);
-        let at_points = points.forces_of_ties(|node| self.at_node(displacement, node), &ties.rows, of_ties);
-        let of_tie = |(index, rows): (usize, &Range<usize>)| {
-            let of = format!("ties[{index}]");
-            if let Some(forces) = at_points.get(&index) {
-                let first = forces.keys().next().copied();
-                let point = first.and_then(|place| points.at(place)).map(|point| format!("`{}`", point.name));
-                return Resultant { on: point.or_else(|| self.name_of_body(first)), ..self.resultant_at(forces, of) };
-            }
-            let first = ties.rows[rows.clone()].first().and_then(|row| Some(row.terms.first()?.0));
-            let sum = self.sum_of(self.parts.forces_of_ties(of_ties, Some(index)));
-            let on = self.name_of_body(first);
-            let shortening = ties.shortenings.iter().find(|one| one.tie == index);
-            let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
-            let places = (self.dofs(), &self.parts.unknowns);
-            let shortening = shortening.map(|one| one.sense * one.value(places, self.body().dimension(), unknowns));
-            Resultant { on, shortening, tension, ..sum.resultant(self, of) }
-        };
-        ties.of_tie.iter().enumerate().map(of_tie).collect()
-    }
+/// The resultant of the loads but those on reference points, if there are any.
+pub(crate) fn load_resultant(model: &Model) -> Option<Resultant> {
+    let mut on_points = vec![0.0; model.nodal_load().len()];
+    model.parts.conditions.points.add_load(&mut on_points, model.body().dimension());
+    let loads: Vec<f64> = model.nodal_load().iter().zip(on_points).map(|(load, on_point)| load - on_point).collect();
+    let loads = sum_of(model, by_node(model, &loads));
+    (!loads.forces.is_empty()).then(|| loads.resultant(model, "loads".into()))
+}
 
-    /// The value and the force along the direction of the scene of a bolt, of the modelled part: positive if it draws
-    /// the parts together along this direction.
-    pub(crate) fn of_bolt(&self, tie: usize, of_ties: &[f64], unknowns: &[f64]) -> [f64; 2] {
-        let ties = &self.parts.ties;
-        let Some(one) = ties.shortenings.iter().find(|one| one.tie == tie) else { return [0.0; 2] };
-        let (forces, towards) = (self.parts.forces_of_ties(of_ties, Some(tie)), one.towards());
-        let force = forces.into_values().map(|force| dot(force, towards)).sum();
-        [one.value((self.dofs(), &self.parts.unknowns), self.body().dimension(), unknowns), force]
-    }
+/// The force or the displacement of a node among those of all nodes (length `dim * n_nodes`).
+pub(crate) fn at_node(model: &Model, forces: &[f64], node: usize) -> [f64; 3] {
+    let dimension = model.body().dimension();
+    let of_node = &forces[dimension * node..dimension * (node + 1)];
+    [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
+}
 
-    /// The forces from outside on the reference points, with their motions, in the order of the scene; of a point that
-    /// stands for a bolt the tension of its tie among `ties`, without a moment.
-    pub(crate) fn point_resultants(&self, values: &[[[f64; 6]; 2]], ties: &[Resultant]) -> Vec<Resultant> {
-        let (first, dimension, turns) = (self.mesh().nodes().len(), self.body().dimension(), self.body().turns());
-        let of_point = |(index, (point, [moved, force])): (usize, (&ReferencePoint, &[[f64; 6]; 2]))| {
-            let forces = ForcesAt::from([(first + index, *force)]);
-            let rotation = turns.iter().map(|&axis| moved[3 + axis]).collect();
-            let motion = Some(FaceMotion { displacement: moved[..dimension].to_vec(), rotation });
-            let on = Some(format!("`{}`", point.name));
-            let of = format!("points[{index}]");
-            let mut found = Resultant { on, nodes: 1, motion, ..self.resultant_at(&forces, of) };
-            if let Some(tension) = point.bolt.and_then(|tie| ties[tie].tension) {
-                found.force[0] = tension.abs().copysign(force[0]);
-                found.moment.fill(0.0);
-                found.centre = None;
-            }
-            found
-        };
-        self.parts.conditions.points.all.iter().zip(values).enumerate().map(of_point).collect()
-    }
+/// The body of a node, if there are several.
+fn name_of_body(model: &Model, node: Option<usize>) -> Option<String> {
+    let regions = model.body().regions();
+    let region = &regions[model.body().region_at(node?)?];
+    (regions.len() > 1).then(|| if region.name().is_empty() { "body".into() } else { region.name().into() })
+}
 
-    /// The resultant of the loads but those on reference points, if there are any.
-    pub(crate) fn load_resultant(&self) -> Option<Resultant> {
-        let mut on_points = vec![0.0; self.nodal_load().len()];
-        self.parts.conditions.points.add_load(&mut on_points, self.body().dimension());
-        let loads: Vec<f64> = self.nodal_load().iter().zip(on_points).map(|(load, on_point)| load - on_point).collect();
-        let loads = self.sum_of(self.by_node(&loads));
-        (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
-    }
-
-    /// The force or the displacement of a node among those of all nodes (length `dim * n_nodes`).
-    pub(crate) fn at_node(&self, forces: &[f64], node: usize) -> [f64; 3] {
-        let dimension = self.body().dimension();
-        let of_node = &forces[dimension * node..dimension * (node + 1)];
-        [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
-    }
-
-    /// The body of a node, if there are several.
-    fn name_of_body(&self, node: Option<usize>) -> Option<String> {
-        let regions = self.body().regions();
-        let region = &regions[self.body().region_at(node?)?];
-        (regions.len() > 1).then(|| if region.name().is_empty() { "body".into() } else { region.name().into() })
-    }
-
-    /// The reference of the forces in a report, as `per metre, of the whole body, 2 times the meshed part`; empty if
-    /// they are those of the whole body.
-    ///
-    /// With planes of symmetry the report gives the forces of the whole, a multiple of the modelled part. Without them
-    /// the body counts as a part if a support lets a flat boundary slide along itself and prescribes nothing else: that
-    /// may be a plane of symmetry.
-    pub fn basis_of_forces(&self) -> String {
-        let unit = match self.units().length.as_str() {
-            "m" => "metre",
-            "mm" => "millimetre",
-            "" => "unit of length",
-            other => other,
-        };
-        let across = match *self.body().formulation() {
-            Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => match thickness == 1.0 {
-                true => Some(format!("per {unit}")),
-                false => Some(format!("of a thickness of {thickness} {}", self.units().length).trim_end().to_string()),
-            },
-            Formulation::Axisymmetric => Some("per full circle".to_string()),
-            Formulation::Bar { .. } | Formulation::Space => None,
-        };
-        let part = match self.parts_of_whole() {
-            1.0 => self.parts.conditions.is_part.then(|| MESHED_PART.to_string()),
-            parts => Some(format!("of the whole body, {parts} times the meshed part")),
-        };
-        across.into_iter().chain(part).collect::<Vec<_>>().join(", ")
-    }
+pub(crate) fn basis_of_forces(model: &Model) -> String {
+    let unit = match model.units().length.as_str() {
+        "m" => "metre",
+        "mm" => "millimetre",
+        "" => "unit of length",
+        other => other,
+    };
+    let across = match *model.body().formulation() {
+        Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => match thickness == 1.0 {
+            true => Some(format!("per {unit}")),
+            false => Some(format!("of a thickness of {thickness} {}", model.units().length).trim_end().to_string()),
+        },
+        Formulation::Axisymmetric => Some("per full circle".to_string()),
+        Formulation::Bar { .. } | Formulation::Space => None,
+    };
+    // The supports were read when the model was built.
+    let is_part = || may_be_part(&model.parts.scene, model.body()).unwrap_or_default();
+    let part = match model.parts_of_whole() {
+        1.0 => is_part().then(|| MESHED_PART.to_string()),
+        parts => Some(format!("of the whole body, {parts} times the meshed part")),
+    };
+    across.into_iter().chain(part).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use crate::scene::input::schema::{RigidFaceSpec, Scene};
 const NO_MOTION: f64 = 1e-12;
 
 /// The names of the motions, in their order.
-const NAMES: [&str; 6] = ["x", "y", "z", "rotation.x", "rotation.y", "rotation.z"];
+pub(super) const NAMES: [&str; 6] = ["x", "y", "z", "rotation.x", "rotation.y", "rotation.z"];
 
 /// A boundary that moves as a rigid plate.
 #[derive(Clone, Debug)]
@@ -159,11 +159,6 @@ pub(super) struct Given<'a> {
     pub motions: [Option<f64>; 6],
     pub force: Option<&'a [f64]>,
     pub moment: Option<&'a [f64]>,
-}
-
-/// The key of a motion in a scene, as `rotation.z`.
-pub(super) fn motion_name(kind: usize) -> &'static str {
-    NAMES[kind]
 }
 
 /// The motions of the model, with their prescribed values and forces.

@@ -10,11 +10,11 @@ use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
+use crate::fem::sum::Sum;
 use crate::scene::Warning;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, number, wrong};
 use crate::scene::input::obstacle::SideOrder;
 use crate::scene::input::schema::{EquationSpec, PreloadSpec, Scene, TieSpec, TiedSurfacesSpec};
-use crate::scene::input::sum::Sum;
 use signorini_qp::SparseMatrix;
 
 /// An equation of which less than this share is left by others follows from them: far above the rounding of integrals
@@ -79,7 +79,9 @@ pub(crate) fn tied(
                 let path = format!("{path}.surfaces");
                 let facing = Facing::of([boundary, to], *reach, &path, (body, dofs, &order), &mut warnings)?;
                 covered[index] = Some((usize::from(facing.is_swapped), facing.found.covered[0]));
-                rows_of_means(&facing)?
+                // The means of one of both in every direction.
+                let rows = |axis: usize| facing.rows(|node| dofs.axes(node)[axis]);
+                (0..dimension).map(rows).collect::<Result<Vec<_>, _>>()?.concat()
             }
             TieSpec::Preload(spec) => {
                 let path = format!("{path}.preload");
@@ -148,13 +150,6 @@ pub(crate) fn tied_surfaces(scene: &Scene) -> impl Iterator<Item = [&str; 2]> {
         TieSpec::Preload(PreloadSpec { boundary, to, .. }) => Some([boundary.as_str(), to.as_str()]),
         TieSpec::Equation(_) | TieSpec::Coupling(_) => None,
     })
-}
-
-/// The rows of two surfaces: the means of one of them in every direction.
-fn rows_of_means(facing: &Facing) -> Result<Vec<TieRow>, Error> {
-    let dofs = facing.dofs;
-    let rows = |axis: usize| facing.rows(|node| dofs.axes(node)[axis]);
-    Ok((0..facing.body.dimension()).map(rows).collect::<Result<Vec<_>, Error>>()?.concat())
 }
 
 fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMap) -> Result<TieRow, Error> {

@@ -11,7 +11,9 @@ use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeS
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, located, number, point, refused, vector, wrong};
 use crate::scene::input::schema::analysis::PATH;
 use crate::scene::input::schema::{DynamicSpec, FieldSpec, PenetrationSpec, Scene};
-use crate::scene::models::resultants::without_rounding;
+use crate::scene::models::model::row_shifts;
+use crate::scene::models::resultants::{self, without_rounding};
+use crate::scene::models::set_up::{mass_of_nodes, mass_of_unknowns};
 use crate::scene::{Model, Resultant, Warning, WatchedPoint};
 use signorini_qp as qp;
 use signorini_qp::{ContactProblem, Method, Settings, SymmetricMatrix, dot, solve};
@@ -121,8 +123,8 @@ pub(crate) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<Dynamics>,
     let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
     let watched = watched.collect::<Result<_, Error>>()?;
     let loads = loads_in_time(scene, model.body(), spec)?;
-    let nodal_mass = model.nodal_mass(form)?;
-    let mass = model.mass_of(&nodal_mass)?;
+    let nodal_mass = mass_of_nodes(model, form)?;
+    let mass = mass_of_unknowns(model, &nodal_mass)?;
     let moving = moving(model, spec, mass, &loads)?;
     let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
     let mut problem = starting(model, spec, moving)?;
@@ -224,9 +226,9 @@ fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Resul
 /// the free dofs.
 fn largest_frequency(model: &Model, form: MassForm) -> Result<f64, Error> {
     let parts = &model.parts;
-    let lumped = model.nodal_mass(MassForm::Lumped)?;
+    let lumped = mass_of_nodes(model, MassForm::Lumped)?;
     let of_lumped = match parts.unknowns.has_faces() {
-        false => frequency_bound(model.problem().stiffness(), &model.mass_of(&lumped)?.diagonal()),
+        false => frequency_bound(model.problem().stiffness(), &mass_of_unknowns(model, &lumped)?.diagonal()),
         true => {
             let mass = free_mass(&parts.body, &parts.conditions.dofs, &lumped)?.diagonal();
             frequency_bound(&parts.on_springs(stiffness(&parts.body, &parts.conditions.dofs)?)?, &mass)
@@ -260,7 +262,7 @@ impl Dynamics {
             resultant.travel = model.travel(&integrator.state().displacement, index)?;
         }
         if let Some(balance) = integrator.balance(&self.supports.around) {
-            all.extend(model.support_resultants(self.supports.reactions(model, balance, multiplier)));
+            all.extend(resultants::support_resultants(model, self.supports.reactions(model, balance, multiplier)));
             all.extend(self.spring_resultants(model, integrator)?);
         }
         without_rounding(&mut all);
@@ -290,7 +292,7 @@ impl Dynamics {
         let nodal = model.nodal_displacement(&balance.displacement)?;
         let damped = model.nodal_velocity(&balance.velocity)?;
         let stretched: Vec<f64> = nodal.iter().zip(damped).map(|(u, v)| u + of_stiffness * v).collect();
-        Ok(model.spring_resultants(&stretched))
+        Ok(resultants::spring_resultants(model, &stretched))
     }
 }
 
@@ -368,7 +370,7 @@ impl DynamicSpec {
                 return Err(wrong(path, message));
             }
             finite(format!("{path}.shift"), moving.shift)?;
-            let (factor, shifts) = (moving.factor.function(&path)?, model.row_shifts(moving.obstacle, moving.shift));
+            let (factor, shifts) = (moving.factor.function(&path)?, row_shifts(model, moving.obstacle, moving.shift));
             problem = problem.with_moving_gaps(factor.clone(), shifts)?;
             found.push(MovingObstacle { obstacle: moving.obstacle, shift: moving.shift, factor });
         }

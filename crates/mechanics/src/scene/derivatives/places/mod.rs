@@ -38,10 +38,11 @@ use crate::fem::{Boundary, ElasticBody};
 use crate::scene::Scene;
 use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::boundary;
+use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::tie::StiffnessOf;
 use crate::scene::input::schema::{Place, SupportSpec, TieSpec};
-use crate::scene::input::sum::Profile;
 use crate::scene::models::load::{Acting, acting};
+use crate::scene::models::model::{check_multiplier, place};
 use crate::scene::models::rows::ContactRow;
 
 fn said(error: impl ToString) -> String {
@@ -53,7 +54,7 @@ pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, St
     refused(scene).map_or(Ok(()), Err)?;
     let (answer, model) = (pairing.answer, pairing.answer.model());
     let (body, parts) = (model.body(), &model.parts);
-    model.check_multiplier(pairing.forces).map_err(said)?;
+    check_multiplier(model, pairing.forces).map_err(said)?;
     let motion = parts.unknowns.motion(pairing.adjoint).map_err(said)?;
     let adjoint = parts.conditions.dofs.expand_motion(&motion).map_err(said)?;
     let mut gradient = vec![0.0; body.nodal_dofs()];
@@ -297,7 +298,7 @@ fn add_moment(answer: &Answer, obstacle: usize, axis: usize, gradient: &mut [f64
             add(node, of_place.map(|change| share * change));
         }
         if !slopes.has_fixed_normals() || row.is_mean {
-            let place = model.place(row.node);
+            let place = place(model, row.node);
             add(row.node, slopes.at(row.node)?.of_normal(COORDINATES.map(|force| moment(place, force))));
         }
     }

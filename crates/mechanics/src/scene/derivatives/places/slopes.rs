@@ -9,6 +9,8 @@ use crate::scene::answers::patch::{ContactPatch, StraightCell};
 use crate::scene::derivatives::effect::derivative;
 use crate::scene::input::entry::point;
 use crate::scene::input::obstacle::{ObstacleRow, PlacedObstacle, shortest_edges};
+use crate::scene::models::model::check_multiplier;
+use crate::scene::models::resultants::at_node;
 use crate::scene::models::rows::ContactRow;
 use crate::scene::{Answer, Model, Rule};
 
@@ -52,11 +54,7 @@ impl<'a> Slopes<'a> {
         self.obstacle.rule() == Some(Rule::Approach)
     }
 
-    /// Returns `true` if the obstacle is met from a node.
-    pub fn has_row(&self, node: usize) -> bool {
-        self.row(node, self.model.mesh().nodes()[node]).is_some()
-    }
-
+    /// The row of a node at another place.
     fn row(&self, node: usize, at: [f64; 3]) -> Option<ObstacleRow> {
         let candidate = *self.candidate_of.get(&node)?;
         self.obstacle.row(candidate, at, self.obstacle.shift(self.model.gap())).ok()?
@@ -154,7 +152,7 @@ impl<'a> Slopes<'a> {
 /// along the normals of planes of symmetry on which the node lies. Thus `n . do = v . ds` with
 /// `v = (n - (n . o) o)/|s|`.
 pub(crate) fn areas_by_places(model: &Model, weights: &[f64]) -> Result<Vec<f64>, String> {
-    model.check_multiplier(weights).map_err(|error| error.to_string())?;
+    check_multiplier(model, weights).map_err(|error| error.to_string())?;
     let mut gradient = vec![0.0; model.body().nodal_dofs()];
     for obstacle in 0..model.obstacles().len() {
         let rows = model.rows().iter().zip(weights.iter().copied());
@@ -338,7 +336,7 @@ fn add_row(
         let unknown = model.parts.unknowns.travel(row.obstacle);
         let relative = |nodal: &[f64], travel: Option<f64>| {
             let travelled = approach.map(|part| travel.unwrap_or(0.0) * part);
-            let at = |axis: usize| model.dofs().coefficient(row.node, |node| model.at_node(nodal, node)[axis]);
+            let at = |axis: usize| model.dofs().coefficient(row.node, |node| at_node(model, nodal, node)[axis]);
             [0, 1, 2].map(|axis| at(axis) + travelled[axis])
         };
         let u = relative(answer.displacement(), answer.travel(row.obstacle));
@@ -369,6 +367,8 @@ fn shares_of_gap<'a>(
     row: &'a ContactRow,
     slopes: &'a Slopes,
 ) -> impl Iterator<Item = (usize, f64)> + 'a {
-    let owner = |node: usize| if node == row.node || slopes.has_row(node) { node } else { row.node };
-    pairing.answer.model().dofs().basis.shares(row.node).map(move |(node, share)| (owner(node), share))
+    let model = pairing.answer.model();
+    let is_met = move |node: usize| node == row.node || slopes.row(node, model.mesh().nodes()[node]).is_some();
+    let owner = move |node: usize| if is_met(node) { node } else { row.node };
+    model.dofs().basis.shares(row.node).map(move |(node, share)| (owner(node), share))
 }

@@ -17,6 +17,7 @@ use crate::scene::input::entry::wrong;
 use crate::scene::input::obstacle::{Between, PlacedObstacle};
 use crate::scene::input::schema::condition::LoadSpec;
 use crate::scene::input::schema::{Rule, Scene};
+use crate::scene::models::model::place;
 use signorini_guarantee::{
     Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
     RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
@@ -265,8 +266,11 @@ fn one_normal(model: &Model, index: usize) -> Option<Point> {
 /// The normal of all rows of an obstacle, if they meet it in one plane.
 fn flat(model: &Model, index: usize) -> Option<Point> {
     let normal = one_normal(model, index)?;
-    let mut heights =
-        model.rows().iter().filter(|row| row.obstacle == index).map(|row| dot(model.place(row.node), normal) + row.gap);
+    let mut heights = model
+        .rows()
+        .iter()
+        .filter(|row| row.obstacle == index)
+        .map(|row| dot(place(model, row.node), normal) + row.gap);
     let first = heights.next()?;
     heights.all(|height| (height - first).abs() <= IN_PLANE * model.mesh().size()).then_some(normal)
 }

@@ -7,10 +7,10 @@ use super::bodies::{name_of_node, names_of_nodes};
 use super::keywords::Entry;
 use super::references::{NO_Z, References};
 use super::rigid::{Displacements, Transforms};
-use crate::fem::Error;
-use crate::fem::geometry::{COORDINATES, dot};
-use crate::fem::mesh::deck::{Card, Deck, Place, key};
 use serde_json::{Value, json};
+use signorini_fem::Error;
+use signorini_fem::geometry::{COORDINATES, dot};
+use signorini_fem::mesh::deck::{Card, Deck, Place, key};
 
 /// The directions of a node in a scene; those of a deck are numbered from 1.
 const AXES: [&str; 3] = ["x", "y", "z"];

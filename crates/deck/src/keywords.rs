@@ -3,10 +3,10 @@
 
 use std::fmt::Write;
 
-use crate::fem::Error;
-use crate::fem::mesh::deck::{Card, Deck, Place, key};
-use crate::scene::input::entry::number;
 use serde_json::{Map, Value};
+use signorini_fem::Error;
+use signorini_fem::mesh::deck::{Card, Deck, Place, key};
+use signorini_fem::number;
 
 /// A keyword that is read, in capitals without blanks.
 struct Read {

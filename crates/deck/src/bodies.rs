@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use super::amplitudes::Temperatures;
 use super::keywords::{Entry, object};
 use super::materials::{Section, Sections};
-use crate::fem::Error;
-use crate::fem::mesh::deck::{Deck, Place, Surface};
 use serde_json::{Value, json};
+use signorini_fem::Error;
+use signorini_fem::mesh::deck::{Deck, Place, Surface};
 
 /// The name of a node set or a surface of a body: in a further body it begins with the name of the body.
 fn name_in(body: usize, name: &str) -> String {

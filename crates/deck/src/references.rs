@@ -8,10 +8,10 @@ use super::coupling::{Coupling, Equation, Kind};
 use super::keywords::{Entry, object};
 use super::mpc::{Spring, constraints, equations, springs};
 use super::rigid::{Of, ReferenceNode, RigidBodies, Transforms};
-use crate::fem::Error;
-use crate::fem::mesh::deck::{Deck, Place};
-use crate::scene::input::sum::{Component, Sum};
 use serde_json::{Value, json};
+use signorini_fem::Error;
+use signorini_fem::mesh::deck::{Deck, Place};
+use signorini_fem::sum::{Component, Sum};
 
 /// The refusal of a displacement other than 0.
 pub(super) const NO_Z: &str = "a plane model has no displacement along z";

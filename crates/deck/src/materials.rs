@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use serde_json::{Value, json};
 
-use crate::fem::geometry::minus;
-use crate::fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
-use crate::fem::{Error, nearly};
+use signorini_fem::geometry::minus;
+use signorini_fem::mesh::deck::{Card, Deck, Fields, Place, Space, key};
+use signorini_fem::{Error, nearly};
 
 #[derive(Clone, Debug, Default)]
 struct Given {

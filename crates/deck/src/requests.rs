@@ -5,8 +5,8 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::amplitudes::{Amplitudes, Temperatures, periods};
 use super::rigid::{ReferenceNode, RigidBodies, Transforms};
-use crate::fem::Error;
-use crate::fem::mesh::deck::{Card, Deck, Place, key};
+use signorini_fem::Error;
+use signorini_fem::mesh::deck::{Card, Deck, Place, key};
 
 /// The results that a deck asks for, under the labels of CalculiX in capitals.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Requests {
     /// Number of steps of the deck.
     pub steps: usize,
     /// The nodes that are no nodes of the mesh, but move or are moved.
-    pub(crate) references: Vec<ReferenceNode>,
+    pub references: Vec<ReferenceNode>,
     /// The time at the end of the step, since the start of the first one.
     pub time: f64,
     /// The time that the step takes.
@@ -76,7 +76,7 @@ const OTHERS: [&str; 4] = ["FACEPRINT", "SECTIONPRINT", "SECTIONFILE", "ENERGYPR
 
 impl Requests {
     /// What a deck asks for at the end of its step; `references` are its reference nodes.
-    pub(crate) fn of(deck: &Deck, references: Vec<ReferenceNode>) -> Result<Self, Error> {
+    pub fn of(deck: &Deck, references: Vec<ReferenceNode>) -> Result<Self, Error> {
         let end = Temperatures::of(deck, &Amplitudes::of(deck)?)?.end;
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
         let transforms = Transforms::of(deck, &RigidBodies::of(deck)?)?;

@@ -6,10 +6,10 @@
 
 use super::coupling::Equation;
 use super::rigid::Transforms;
-use crate::fem::Error;
-use crate::fem::geometry::{COORDINATES, across, cross, distance, dot, length, minus, shifted, unit};
-use crate::fem::mesh::deck::{Card, Deck, Place, SpringType, key};
-use crate::scene::input::sum::Sum;
+use signorini_fem::Error;
+use signorini_fem::geometry::{COORDINATES, across, cross, distance, dot, length, minus, shifted, unit};
+use signorini_fem::mesh::deck::{Card, Deck, Place, SpringType, key};
+use signorini_fem::sum::Sum;
 
 /// Nodes farther from their plane or line than this share of its extent lie outside: far above the digits of
 /// coordinates in decks.

@@ -7,11 +7,11 @@ use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
 use super::contacts::Bolts;
 use super::coupling::{Coupling, Joined, couplings};
 use super::keywords::Entry;
-use crate::fem::Error;
-use crate::fem::geometry::{cross, length, minus, unit};
-use crate::fem::material::Cylinder;
-use crate::fem::mesh::deck::{Card, Deck, Place};
 use serde_json::{Value, json};
+use signorini_fem::Error;
+use signorini_fem::geometry::{cross, length, minus, unit};
+use signorini_fem::material::Cylinder;
+use signorini_fem::mesh::deck::{Card, Deck, Place};
 
 /// The motions of a rigid body: displacements along x, y and z, then rotations about them.
 const MOTIONS: [&str; 6] = ["x", "y", "z", "x", "y", "z"];
@@ -260,18 +260,18 @@ fn transform(deck: &Deck, card: &Card) -> Result<Transform, Error> {
 }
 
 /// The displacement along x, y, z, in length, and the rotation about them, in radians, of nodes, by their numbers.
-pub(crate) type Displacements = HashMap<usize, [f64; 6]>;
+pub type Displacements = HashMap<usize, [f64; 6]>;
 
 /// A reference node that is no reference point of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ReferenceNode {
+pub struct ReferenceNode {
     pub number: usize,
     pub of: Of,
 }
 
 /// The entry of the scene that a reference node moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Of {
+pub enum Of {
     /// A rigid face about a centre. The directions of the node name its motions from this one: 0 for displacements, 3
     /// for rotations.
     Face { face: usize, first: usize, centre: [f64; 3] },

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::fem::Error;
-use crate::fem::mesh::deck::{Card, Deck, Place, key};
+use signorini_fem::Error;
+use signorini_fem::mesh::deck::{Card, Deck, Place, key};
 
 /// An amplitude: its points, each a time with a factor, and whether the times count from the start of the first step.
 struct Amplitude {

@@ -6,9 +6,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::fem::Error;
-use crate::fem::mesh::deck::{Card, Deck, Line, Place};
-use crate::scene::input::sum::{Sum, following, mean};
+use signorini_fem::Error;
+use signorini_fem::mesh::deck::{Card, Deck, Line, Place};
+use signorini_fem::sum::{Sum, following, mean};
 
 /// A sum that is zero. Its components are those of the nodes of the deck; a node without elements has its displacements
 /// along its local axes.

@@ -7,10 +7,10 @@ use super::bodies::{name_of_node, names_of_faces, names_of_nodes};
 use super::keywords::{Entry, object};
 use super::references::References;
 use super::rigid::Transforms;
-use crate::fem::Error;
-use crate::fem::geometry::{dot, unit};
-use crate::fem::mesh::deck::{Card, Deck, Fields, Place, key};
 use serde_json::{Value, json};
+use signorini_fem::Error;
+use signorini_fem::geometry::{dot, unit};
+use signorini_fem::mesh::deck::{Card, Deck, Fields, Place, key};
 
 /// A load on the volume: it acts on all bodies.
 struct OnVolume {

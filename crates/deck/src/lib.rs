@@ -1,6 +1,22 @@
 //! Input decks of CalculiX as scenes: a deck becomes the text of a scene, whose body is the mesh of the deck.
 //!
 //! A card is read, passed over because it changes no answer, or refused with its line: a deck is never half read.
+//!
+//! ```
+//! use signorini_deck::{DeckScene, Reading};
+//! # let folder = std::env::temp_dir().join("signorini_deck_example");
+//! # std::fs::create_dir_all(&folder).unwrap();
+//! # let file = folder.join("rod.inp");
+//! let deck = "*NODE\n1, 0., 0., 0.\n2, 2., 0., 0.\n*ELEMENT, TYPE=T3D2, ELSET=ROD\n1, 1, 2\n*MATERIAL, NAME=M\n*ELASTIC\n\
+//!     100., 0.\n*SOLID SECTION, MATERIAL=M, ELSET=ROD\n1.\n*BOUNDARY\n1, 1, 3\n*STEP\n*STATIC\n*END STEP\n";
+//! std::fs::write(&file, deck).unwrap();
+//! let reading = Reading { permits: &[], step: None, earlier: &[] };
+//! println!("{:?}", DeckScene::read(&file, "rod.inp", reading).map(|scene| scene.text));
+//! ```
+
+#![forbid(unsafe_code)]
+#![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
+#![allow(clippy::missing_errors_doc, reason = "the sentence of an error says what is wrong")]
 
 mod amplitudes;
 mod bodies;
@@ -10,17 +26,14 @@ mod keywords;
 mod loads;
 mod materials;
 mod mpc;
-pub(crate) mod references;
-pub(crate) mod requests;
-pub(crate) mod rigid;
+mod references;
+mod requests;
+#[doc(hidden)]
+mod rigid;
 mod supports;
 
 use std::path::{Path, PathBuf};
 
-use super::warning::{NONLINEAR, Warning};
-use crate::error::Error;
-use crate::fem::mesh::deck::{Deck, DeckElement, Place, Space};
-use crate::scene::Scene;
 use amplitudes::{Amplitudes, Temperatures};
 use bodies::Body;
 use contacts::{contacts, ties};
@@ -28,8 +41,17 @@ use keywords::SceneText;
 use loads::Loads;
 use materials::Sections;
 use references::References;
-use rigid::{Displacements, ReferenceNode, RigidBodies, Transforms};
+use rigid::{Displacements, RigidBodies, Transforms};
+use signorini_fem::Error;
+use signorini_fem::mesh::deck::{Deck, DeckElement, Place, Space};
 use supports::supports;
+
+pub use requests::{RequestedTable, Requests};
+#[doc(hidden)]
+pub use rigid::{Of, ReferenceNode};
+
+/// The code of the warning that a deck asks for large displacements.
+pub const NONLINEAR: &str = "nonlinear";
 
 /// More bodies than this are a mesh whose nodes were not merged.
 const MOST_BODIES: usize = 1000;
@@ -38,23 +60,27 @@ const MOST_BODIES: usize = 1000;
 const LONGEST_TITLE: usize = 200;
 
 /// Returns `true` for the name of an input deck: it ends with `.inp`.
-pub(crate) fn is_deck(file: &Path) -> bool {
+pub fn is_deck(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("inp"))
 }
 
-pub(crate) struct DeckScene {
+/// The scene of a deck, and what it is read from.
+pub struct DeckScene {
     /// Its text, with a comment for each entry.
     pub text: String,
-    pub warnings: Vec<Warning>,
+    /// The code and the sentence of each warning.
+    pub warnings: Vec<(&'static str, String)>,
     /// Its nodes that are no nodes of the mesh.
     pub references: Vec<ReferenceNode>,
-    deck: Deck,
-    /// Of [`Scene::lines`].
-    lines: Vec<(String, (PathBuf, usize))>,
+    /// The deck itself.
+    pub deck: Deck,
+    /// The file and the line of each entry of the scene, by its JSON path.
+    pub lines: Vec<(String, (PathBuf, usize))>,
 }
 
+/// How a deck is read.
 #[derive(Clone, Copy)]
-pub(crate) struct Reading<'a> {
+pub struct Reading<'a> {
     /// Files that the deck includes may lie outside its folder with `outside`; friction is left out with `friction`.
     pub permits: &'a [&'a str],
     /// The step, from 1; the last one without it.
@@ -75,7 +101,7 @@ impl DeckScene {
                 "the deck has {} bodies that share no node; merge the nodes in the mesher: at most {MOST_BODIES} are allowed",
                 deck.bodies
             );
-            return Err(deck.source.fault(deck.place_of_body(1), message).into());
+            return Err(deck.source.fault(deck.place_of_body(1), message));
         }
         let space = space(&deck)?;
         let amplitudes = Amplitudes::of(&deck)?;
@@ -122,8 +148,7 @@ impl DeckScene {
             let (file, line) = deck.source.position(place);
             (file.to_path_buf(), line)
         };
-        let warning =
-            |code, place, message: &str| Warning::new(code, format!("{}: {message}", named_line(position(place))));
+        let warning = |code, place, message: &str| (code, format!("{}: {message}", named_line(position(place))));
         let small = "NLGEOM is answered with small displacements";
         let nonlinear = large_displacements(&deck).map(|place| warning(NONLINEAR, place, small));
         let noted = noted.into_iter().map(|(place, message)| warning("deck", place, &message));
@@ -131,14 +156,6 @@ impl DeckScene {
         let lines = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
         Ok(DeckScene { text, warnings, references: reference_nodes, deck, lines })
     }
-}
-
-/// The scene of a deck, with what it is read from.
-pub(crate) fn read(path: &Path, reading: Reading) -> Result<(Scene, Deck, Vec<ReferenceNode>), Error> {
-    let named = path.file_name().unwrap_or_default().to_string_lossy();
-    let deck = DeckScene::read(path, &named, reading)?;
-    let (scene, folder) = (Scene::from_json(&deck.text, &named)?, path.parent().map(Path::to_path_buf));
-    Ok((Scene { folder, noted: deck.warnings, lines: deck.lines, ..scene }, deck.deck, deck.references))
 }
 
 /// A file with a line, as `part.inp:12`.
@@ -191,7 +208,7 @@ fn space(deck: &Deck) -> Result<Space, Error> {
                 of_type.name,
                 model(first)
             );
-            Err(deck.source.fault(*place, message).into())
+            Err(deck.source.fault(*place, message))
         }
     }
 }

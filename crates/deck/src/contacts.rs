@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use super::bodies::side;
 use super::keywords::{Entry, object};
-use crate::fem::mesh::deck::{Card, Deck, Place, key};
-use crate::fem::{Error, nearly};
 use serde_json::{Value, json};
+use signorini_fem::mesh::deck::{Card, Deck, Place, key};
+use signorini_fem::{Error, nearly};
 
 /// The contacts of a scene, and what a reader should know of them.
 pub(super) struct Contacts {

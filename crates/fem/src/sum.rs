@@ -1,18 +1,12 @@
-//! Sums of components of nodes and reference points, which equations set to zero and springs resist; factors over
-//! space.
+//! Sums of components of nodes and reference points, which equations set to zero and springs resist.
 
 use std::collections::BTreeMap;
 
-use super::entry::{direction, table};
-use super::schema::condition::ProfileSpec;
-use crate::error::Error;
-use crate::fem::assembly::Kinks;
-use crate::fem::geometry::{COORDINATES, cross, dot, inertia, minus, principal, trace};
-use crate::motion::between;
+use crate::geometry::{COORDINATES, cross, dot, inertia, minus, principal, trace};
 
 /// A component of a node or of a reference point: its number, then 0 to 2 for its displacements along x, y, z and 3 to
 /// 5 for its rotations about them, which points alone have.
-pub(crate) type Component = (usize, usize);
+pub type Component = (usize, usize);
 
 /// A determinant of the moments of inertia below this share of the cube of their sum is rounding: the nodes lie on a
 /// line.
@@ -23,7 +17,7 @@ const CANCELLED: f64 = 1e-13;
 
 /// A sum of components with coefficients and of a constant.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Sum {
+pub struct Sum {
     pub terms: BTreeMap<Component, f64>,
     /// The components that are replaced by their values, with their coefficients.
     pub replaced: BTreeMap<Component, f64>,
@@ -100,7 +94,7 @@ impl Sum {
 
 /// The sums that are zero if a node follows a rigid motion along some axes: u_k - U_k - (R x r)_k, with r from the
 /// reference point at `centre` and rotations R about the axes `turns`.
-pub(crate) fn following(
+pub fn following(
     (node, at): (usize, [f64; 3]),
     (point, centre): (usize, [f64; 3]),
     axes: &[usize],
@@ -123,7 +117,7 @@ pub(crate) fn following(
 /// A force F and a moment M at the point become the forces w (F + (T^-1 M') x r) on the nodes, with the share w of a
 /// node in the area, its distance r from the centre of area, T = sum of w (r.r I - r r'), and the moment M' about the
 /// centre. The work of these forces is that of F and M, so that U and R are means of the displacements of the nodes.
-pub(crate) fn mean(
+pub fn mean(
     areas: &[(usize, f64, [f64; 3])],
     (point, at): (usize, [f64; 3]),
     kinds: &[usize],
@@ -169,43 +163,4 @@ pub(crate) fn mean(
         Some(sum)
     };
     kinds.iter().map(of_kind).collect()
-}
-
-/// A factor that depends on the place, checked.
-#[derive(Debug)]
-pub(crate) struct Profile {
-    /// The direction along which the factor changes, of length 1.
-    along: [f64; 3],
-    places: Vec<f64>,
-    /// The same places, each with its factor.
-    points: Vec<(f64, f64)>,
-}
-
-impl Profile {
-    /// The factor at a JSON path, in a model of `dimension` coordinates.
-    pub fn of(spec: &ProfileSpec, path: &str, dimension: usize) -> Result<Self, Error> {
-        let along = direction(&format!("{path}.along"), &spec.along, dimension)?;
-        table(path, ("places", &spec.places), &spec.factors)?;
-        let points = spec.places.iter().copied().zip(spec.factors.iter().copied()).collect();
-        Ok(Profile { along, places: spec.places.clone(), points })
-    }
-
-    /// The factor at a point.
-    pub fn at(&self, point: [f64; 3]) -> f64 {
-        between(&self.points, dot(self.along, point))
-    }
-
-    /// The change of the factor with the place along each axis, at a point off its kinks.
-    pub fn by_place(&self, point: [f64; 3]) -> [f64; 3] {
-        let after = self.places.partition_point(|&place| place <= dot(self.along, point));
-        match after.checked_sub(1).and_then(|before| self.points.get(before..after + 1)) {
-            Some(&[(from, first), (to, last)]) => self.along.map(|part| part * (last - first) / (to - from)),
-            _ => [0.0; 3],
-        }
-    }
-
-    /// The places of its kinks.
-    pub fn kinks(&self) -> Kinks<'_> {
-        Kinks { along: self.along, at: &self.places }
-    }
 }
