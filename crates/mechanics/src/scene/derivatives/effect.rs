@@ -40,14 +40,11 @@ impl Effect {
 /// The effect of a parameter of `scene` at an answer; `active` are the rows that may be closed.
 pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usize]) -> Result<Effect, Why> {
     let parts = &answer.model().parts;
+    let of_load = |nodal: &[f64]| of_nodal_load(answer, nodal).map(Effect::of);
     let nodal_load = |scene: &Scene, index: usize| -> Result<Vec<f64>, Why> {
         let mut nodal = vec![0.0; parts.body.nodal_dofs()];
         add_load(scene, &parts.body, index, &mut nodal).map_err(in_words)?;
         Ok(nodal)
-    };
-    let of_load = |nodal: &[f64]| -> Result<Effect, Why> {
-        let load = parts.unknowns.force(parts.conditions.dofs.restrict(nodal).map_err(in_words)?);
-        Ok(Effect::of(Change { load, ..unchanged(answer) }))
     };
     match &parameter.kind {
         Kind::Gap | Kind::GapOf(_) | Kind::InShape(..) => of_rows(scene, parameter, answer, active),
@@ -60,12 +57,10 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
         }
         Kind::Load(index) => of_load(&nodal_load(scene, *index)?),
         Kind::InLoad(index, _) if parameter.is_linear() => {
-            let unit = parameter::unit_load(scene, parameter).map_err(in_words)?;
-            of_load(&nodal_load(&unit, *index)?)
+            of_load(&nodal_load(&parameter::unit_load(scene, parameter).map_err(in_words)?, *index)?)
         }
         Kind::InLoad(index, _) => {
-            let varied = |by: f64| parameter::varied(scene, parameter, by).map_err(in_words);
-            let at = |by: f64| nodal_load(&varied(by)?, *index);
+            let at = |by: f64| nodal_load(&parameter::varied(scene, parameter, by).map_err(in_words)?, *index);
             let scale = if parameter.value == 0.0 { 1.0 } else { parameter.value.abs() };
             let nodal = derivative(at, scale)?.ok_or_else(|| corner(parameter))?;
             of_load(&nodal)
@@ -101,6 +96,13 @@ fn is_proportional(answer: &Answer) -> bool {
 fn unchanged(answer: &Answer) -> Change {
     let problem = answer.model().problem();
     Change { load: vec![0.0; problem.dofs()], distance: vec![0.0; problem.inequalities() + problem.equality_rows()] }
+}
+
+/// The change by a load on the nodes (length `dim * n_nodes`, in force per unit).
+fn of_nodal_load(answer: &Answer, nodal: &[f64]) -> Result<Change, Why> {
+    let parts = &answer.model().parts;
+    let load = parts.unknowns.force(parts.conditions.dofs.restrict(nodal).map_err(in_words)?);
+    Ok(Change { load, ..unchanged(answer) })
 }
 
 /// The body of derivatives by a number of a material, or by a temperature.

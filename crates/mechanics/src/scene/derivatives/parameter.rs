@@ -36,11 +36,11 @@ pub(crate) enum Kind {
     InLoad(usize, String),
     /// A number of the shape of an obstacle, by its place in the text of the shape.
     InShape(usize, String),
-    /// Young's modulus of a material, by the place of the material in the text of the scene.
+    /// Young's modulus of a material, by its place in the text of the scene.
     Young(String),
-    /// Poisson's ratio of a material, by the place of the material in the text of the scene.
+    /// Poisson's ratio of a material, by its place in the text of the scene.
     Poisson(String),
-    /// The temperature at the origin of an entry, by the place of the entry.
+    /// The temperature at the origin of an entry, by its place.
     Temperature(String),
     Places,
 }
@@ -97,38 +97,32 @@ pub(crate) fn all(scene: &Scene) -> Vec<Parameter> {
         }
     }
     let text = serde_json::to_value(scene).unwrap_or_default();
-    let mut materials = vec![(String::new(), "/material".to_string())];
-    let mut temperatures = Vec::new();
-    let bodies = std::iter::once((String::new(), String::new())).chain(
-        (0..scene.further_bodies.len())
-            .map(|body| (format!("further-bodies[{body}]."), format!("/further-bodies/{body}"))),
-    );
-    for (name, place) in bodies {
-        if !name.is_empty() {
-            materials.push((name.clone(), format!("{place}/material")));
-        }
+    let (mut materials, mut temperatures) = (Vec::new(), Vec::new());
+    let further = (0..scene.further_bodies.len())
+        .map(|body| (format!("further-bodies[{body}]."), format!("/further-bodies/{body}")));
+    for (name, place) in std::iter::once((String::new(), String::new())).chain(further) {
         let count = |key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_array).map_or(0, Vec::len);
-        materials.extend(
-            (0..count("materials"))
-                .map(|part| (format!("{name}materials[{part}]."), format!("{place}/materials/{part}/material"))),
-        );
-        temperatures.extend(
-            (0..count("temperature"))
-                .map(|entry| (format!("{name}temperature[{entry}]"), format!("{place}/temperature/{entry}"))),
-        );
+        materials.push((name.clone(), format!("{place}/material")));
+        for part in 0..count("materials") {
+            materials.push((format!("{name}materials[{part}]."), format!("{place}/materials/{part}/material")));
+        }
+        for entry in 0..count("temperature") {
+            temperatures.push((format!("{name}temperature[{entry}]"), format!("{place}/temperature/{entry}/value")));
+        }
     }
-    let number = |place: &str, key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_f64);
+    let number = |pointer: &str| text.pointer(pointer).and_then(Value::as_f64);
     for (name, place) in materials {
-        if let Some(value) = number(&place, "young") {
-            add(format!("{name}young"), Kind::Young(place.clone()), value, pressure.clone());
+        let [young, poisson] = ["young", "poisson"].map(|key| format!("{place}/{key}"));
+        if let Some(value) = number(&young) {
+            add(format!("{name}young"), Kind::Young(young), value, pressure.clone());
         }
-        if let Some(value) = number(&place, "poisson") {
-            add(format!("{name}poisson"), Kind::Poisson(place), value, none());
+        if let Some(value) = number(&poisson) {
+            add(format!("{name}poisson"), Kind::Poisson(poisson), value, none());
         }
     }
-    for (name, place) in temperatures {
-        if let Some(value) = number(&place, "value") {
-            add(name, Kind::Temperature(place), value, "degree".into());
+    for (name, pointer) in temperatures {
+        if let Some(value) = number(&pointer) {
+            add(name, Kind::Temperature(pointer), value, "degree".into());
         }
     }
     add("nodes".into(), Kind::Places, 0.0, length);
@@ -151,13 +145,8 @@ pub(crate) fn varied(scene: &Scene, parameter: &Parameter, by: f64) -> Result<Sc
             let shape = &varied.obstacles[*index].shape;
             varied.obstacles[*index].shape = with_number(shape, pointer, value).map_err(refused)?;
         }
-        Kind::Young(place) | Kind::Poisson(place) | Kind::Temperature(place) => {
-            let key = match parameter.kind {
-                Kind::Young(_) => "young",
-                Kind::Poisson(_) => "poisson",
-                _ => "value",
-            };
-            let changed: Scene = with_number(scene, &format!("{place}/{key}"), value).map_err(refused)?;
+        Kind::Young(pointer) | Kind::Poisson(pointer) | Kind::Temperature(pointer) => {
+            let changed: Scene = with_number(scene, pointer, value).map_err(refused)?;
             let (folder, reads_outside, is_linear) = (scene.folder.clone(), scene.reads_outside, scene.is_linear);
             varied = Scene { folder, reads_outside, is_linear, noted: scene.noted.clone(), ..changed };
         }

@@ -94,6 +94,7 @@ pub(crate) fn add_loads(
     virtual_displacement: &[f64],
     gradient: &mut [f64],
 ) -> Result<(), Error> {
+    let on = |boundary| Loaded { body, boundary, virtual_displacement };
     for index in 0..scene.loads.len() {
         match acting(scene, body, index)? {
             Acting::AtNodes(_) => {}
@@ -103,19 +104,13 @@ pub(crate) fn add_loads(
                 centrifugal_by_places(body, omega, axis, virtual_displacement, gradient)?;
             }
             Acting::Traction { boundary, traction, profile } => {
-                let on = Loaded { body, boundary, virtual_displacement };
-                on.add_traction(traction, profile.as_ref(), gradient);
+                on(boundary).add_traction(traction, profile.as_ref(), gradient);
             }
             Acting::Pressure { boundary, pressure, profile } => {
-                let on = Loaded { body, boundary, virtual_displacement };
-                on.add_pressure(pressure, profile.as_ref(), gradient);
+                on(boundary).add_pressure(pressure, profile.as_ref(), gradient);
             }
-            Acting::Spread { boundary, force } => {
-                Loaded { body, boundary, virtual_displacement }.add_spread(force, gradient);
-            }
-            Acting::Moment { boundary, moment } => {
-                Loaded { body, boundary, virtual_displacement }.add_moment(moment, gradient);
-            }
+            Acting::Spread { boundary, force } => on(boundary).add_spread(force, gradient),
+            Acting::Moment { boundary, moment } => on(boundary).add_moment(moment, gradient),
         }
     }
     Ok(())
