@@ -65,10 +65,11 @@
 pub mod cli;
 
 pub use signorini_lcp as lcp;
-pub use signorini_mechanics::{Error, fem, motion, scene, study};
+pub use signorini_mechanics::{Error, fem, motion, scene};
 #[cfg(feature = "pictures")]
 pub use signorini_output as output;
 pub use signorini_qp as qp;
+pub use signorini_study as study;
 
 pub use qp::{
     Certificate, Condense, ContactProblem, ContactSet, Failure, Goal, InteriorPoint, Iteration, Method, Path, Penalty,

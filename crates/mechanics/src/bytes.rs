@@ -12,12 +12,12 @@ const OF_CONNECTION: f64 = 16.0;
 const OF_MODEL: [f64; 2] = [110.0, 11.0];
 
 /// Bytes of a mesh of `nodes` nodes; its elements have `connections` nodes together.
-pub(crate) fn of_mesh(nodes: f64, connections: f64) -> f64 {
+pub fn of_mesh(nodes: f64, connections: f64) -> f64 {
     OF_NODE * nodes + OF_CONNECTION * connections
 }
 
 /// Bytes of the problem of a model that is not solved.
-pub(crate) fn of_model(dofs: f64, entries: f64) -> f64 {
+pub fn of_model(dofs: f64, entries: f64) -> f64 {
     OF_MODEL[0] * dofs + OF_MODEL[1] * entries
 }
 
@@ -25,7 +25,7 @@ pub(crate) fn of_model(dofs: f64, entries: f64) -> f64 {
 const OF_ANSWER: f64 = 100.0;
 
 /// Bytes of `count` answers that are kept, with `dofs` unknowns each.
-pub(crate) fn of_answers(count: f64, dofs: f64) -> f64 {
+pub fn of_answers(count: f64, dofs: f64) -> f64 {
     OF_ANSWER * count * dofs
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn of_answers(count: f64, dofs: f64) -> f64 {
 const OF_MOTION: [f64; 2] = [400.0, 40.0];
 
 /// Bytes that a motion takes beside the solve of a step.
-pub(crate) fn of_motion(dofs: f64, entries: f64) -> f64 {
+pub fn of_motion(dofs: f64, entries: f64) -> f64 {
     OF_MOTION[0] * dofs + OF_MOTION[1] * entries
 }
 
@@ -47,6 +47,6 @@ const OF_SPACE: [f64; 2] = [4.0, 48.0];
 
 /// Bytes that the search for `count` modes takes beside the solve of the equilibrium: a factor of its own, and the
 /// space.
-pub(crate) fn of_modes(count: f64, dofs: f64, entries: f64, factor: f64) -> f64 {
+pub fn of_modes(count: f64, dofs: f64, entries: f64, factor: f64) -> f64 {
     OF_PENCIL * entries + 8.0 * factor + 8.0 * dofs * (OF_SPACE[0] * count + OF_SPACE[1])
 }

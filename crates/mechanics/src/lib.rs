@@ -26,7 +26,6 @@
 //! | [`fem`] | elastic bodies: meshes, elements, assembly, recovery of stresses; it names no contact problem |
 //! | [`motion`] | contact in time: mass, schemes, the loop over steps |
 //! | [`scene`] | scenes in JSON, their models, and the answers to them |
-//! | [`study`] | comparison of methods, sweeps, trade-offs, the error against the continuum |
 //!
 //! `signorini` re-exports these modules. The sentence of an [`Error`] names the value that is wrong and what is
 //! allowed: functions list only the errors by which a caller may decide.
@@ -35,11 +34,11 @@
 #![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 #![allow(clippy::missing_errors_doc, reason = "see above: the sentence of an error says what is wrong")]
 
-mod bytes;
+#[doc(hidden)]
+pub mod bytes;
 mod error;
 pub mod motion;
 pub mod scene;
-pub mod study;
 
 pub use error::{Error, nearest};
 pub use scene::{Model, Scene};

@@ -14,10 +14,14 @@
 //! # Ok::<(), signorini_mechanics::Error>(())
 //! ```
 
-pub(crate) mod answers;
-pub(crate) mod derivatives;
-pub(crate) mod input;
-pub(crate) mod models;
+#[doc(hidden)]
+pub mod answers;
+#[doc(hidden)]
+pub mod derivatives;
+#[doc(hidden)]
+pub mod input;
+#[doc(hidden)]
+pub mod models;
 mod modes;
 mod motions;
 
@@ -41,7 +45,8 @@ pub use answers::answer::Answer;
 pub use answers::segments::{ContactExtent, Segment};
 pub use derivatives::sensitivity::{ByParameter, Sensitivities, Sensitivity, outputs_of};
 pub use input::body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
-pub(crate) use input::entry::refused;
+#[doc(hidden)]
+pub use input::entry::refused;
 pub use input::obstacle::{Inertia, Obstacle, ObstacleRow, PlacedObstacle};
 pub use input::schema::{Rule, Scene, Units};
 pub use input::size::Size;

@@ -17,8 +17,8 @@ use crate::view::pressure::pressure_plots;
 use crate::view::words::headline;
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::{Answer, Model};
-use signorini_mechanics::study::{Summary, Sweep, SweepPoint};
 use signorini_qp::{ContactSet, Iteration, Solution};
+use signorini_study::{Summary, Sweep, SweepPoint};
 
 /// The pictures that a command draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

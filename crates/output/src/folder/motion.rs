@@ -28,9 +28,9 @@ use crate::view::field::Source;
 use signorini_mechanics::Error;
 use signorini_mechanics::motion::{Observation, State};
 use signorini_mechanics::scene::{Answer, Model, Resultant, Scene, WatchedPoint};
-use signorini_mechanics::study::MotionSummary;
 use signorini_qp::ContactSet;
 use signorini_qp::file::read_text_capped;
+use signorini_study::MotionSummary;
 
 /// Most bytes of a table of a motion: more than any motion that can be kept writes.
 const MOST_OF_TABLE: u64 = 4 << 30;

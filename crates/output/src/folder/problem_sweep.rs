@@ -12,7 +12,7 @@ use crate::reports::report::{columns, events_text, plural, table};
 use crate::text::printable;
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::Units;
-use signorini_mechanics::study::{ProblemPoint, ProblemSweep};
+use signorini_study::{ProblemPoint, ProblemSweep};
 
 /// The table of a sweep, and the events between its points.
 fn problem_sweep_text(title: &str, sweep: &ProblemSweep) -> String {

@@ -18,7 +18,7 @@ use crate::view::curves::error_plot;
 use signorini_mechanics::Error;
 use signorini_mechanics::fem::{ElasticBody, ElementKind, Mesh};
 use signorini_mechanics::scene::Units;
-use signorini_mechanics::study::{ContinuumAnswer, Domain, Ended, Guarantee, Level, LevelKind, Summary, TotalError};
+use signorini_study::{ContinuumAnswer, Domain, Ended, Guarantee, Level, LevelKind, Summary, TotalError};
 
 /// The report: the error, the refinement of the mesh, then the answer on the last mesh.
 fn total_error_text(title: &str, found: &TotalError, answer: Option<&Summary>, units: &Units) -> String {

@@ -7,7 +7,7 @@ use super::packed::Packer;
 use super::rows::{Closed, ClosedShown};
 use super::state::{State, kept};
 use signorini_mechanics::Error;
-use signorini_mechanics::study::{ContactSummary, Status, Sweep, SweepCorner, SweepEvent, SweepPoint};
+use signorini_study::{ContactSummary, Status, Sweep, SweepCorner, SweepEvent, SweepPoint};
 
 /// Bytes of all states together, before they are deflated.
 pub(super) const MOST_BYTES: usize = 12 << 20;

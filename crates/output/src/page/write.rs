@@ -29,8 +29,8 @@ use crate::view::along::Along;
 use crate::view::curves::{error_plot, history_plots, sweep_plots};
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::{Answer, ModalAnalysis, Model, Units};
-use signorini_mechanics::study::{Agreement, Summary, Sweep, TotalError};
 use signorini_qp::Iteration;
+use signorini_study::{Agreement, Summary, Sweep, TotalError};
 
 impl About {
     /// The page of one answer to a scene, with the answer along lines.

@@ -4,7 +4,7 @@ use crate::draw::colour::Colour;
 use crate::draw::drawing::{Anchor, Drawing, Paint};
 use crate::text::printable;
 use signorini_mechanics::scene::Units;
-use signorini_mechanics::study::{Level, TotalError};
+use signorini_study::{Level, TotalError};
 
 /// Number of panels: the first mesh, the last, and some between.
 const PANELS: usize = 4;

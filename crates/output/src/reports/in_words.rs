@@ -9,7 +9,7 @@ use super::tradeoff_plot::{OF_ROUNDING, total_error_plot, tradeoff_plot};
 use crate::draw::drawing::Drawing;
 use crate::plots::medium::Medium;
 use signorini_mechanics::scene::{ModalAnalysis, Sensitivities, Units};
-use signorini_mechanics::study::{Agreement, MotionTradeoff, Summary, Sweep, Tradeoff, Verification};
+use signorini_study::{Agreement, MotionTradeoff, Summary, Sweep, Tradeoff, Verification};
 
 /// A result that is reported as a text for reading.
 pub trait InWords {

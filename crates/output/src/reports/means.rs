@@ -1,7 +1,7 @@
 //! The sentence about rows between meshes that do not match: they hold means, not the gaps of nodes.
 
 use crate::text::printable;
-use signorini_mechanics::study::{ContactSummary, ObstacleContact};
+use signorini_study::{ContactSummary, ObstacleContact};
 
 /// What closed and open, computed or proven, mean for rows of means; `None` without such rows.
 pub(crate) fn means_text(contact: &ContactSummary) -> Option<String> {

@@ -6,8 +6,8 @@ use serde_json::json;
 use super::report::{columns, entry, in_unit, plural, quantity, table, warnings_text};
 use crate::text::printable;
 use signorini_mechanics::scene::{Dynamics, Model};
-use signorini_mechanics::study::{MotionContact, MotionError, MotionSummary, RunSeconds, Status};
 use signorini_qp::Method;
+use signorini_study::{MotionContact, MotionError, MotionSummary, RunSeconds, Status};
 
 /// The interval over which the force is averaged.
 const WINDOW: &str = "a fifth of the time that a pressure wave takes through the body";

@@ -7,7 +7,7 @@ use crate::plots::medium::Medium;
 use crate::plots::plot::{Plot, Series, line_plots_for};
 use crate::plots::ticks::{Quantity, Scale};
 use crate::text::printable;
-use signorini_mechanics::study::MotionTradeoff;
+use signorini_study::MotionTradeoff;
 
 /// The table of a trade-off of motions, one line for each scheme and step; a star marks the Pareto front.
 pub(crate) fn motion_tradeoff_text(title: &str, tradeoff: &MotionTradeoff) -> String {

@@ -4,11 +4,11 @@ use super::certificate::{CertificateWords, conditions};
 use super::means::{between_text, means_text};
 use crate::text::printable;
 use signorini_mechanics::scene::{ContactExtent, Resultant, Rule, Segment, Units, Warning};
-use signorini_mechanics::study::{
-    Agreement, ContactSummary, ObstacleContact, Summary, Sweep, SweepEvent, SweepPoint, Verification,
-};
 use signorini_qp::memory::in_words as memory;
 use signorini_qp::{Certificate, Goal, ProvenSet, Why};
+use signorini_study::{
+    Agreement, ContactSummary, ObstacleContact, Summary, Sweep, SweepEvent, SweepPoint, Verification,
+};
 
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
     format!("{value:.6e} {}", printable(unit)).trim_end().to_string()

@@ -3,7 +3,7 @@
 use super::certificate::number;
 use super::report::{Column, columns, comma_separated, plural, table};
 use crate::text::printable;
-use signorini_mechanics::study::{Tradeoff, TradeoffPoint};
+use signorini_study::{Tradeoff, TradeoffPoint};
 
 /// The energy error of an answer that is called loose.
 const LOOSE: f64 = 1e-2;

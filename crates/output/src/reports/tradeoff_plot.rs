@@ -6,7 +6,7 @@ use crate::draw::drawing::Drawing;
 use crate::plots::medium::Medium;
 use crate::plots::plot::{Plot, Series, line_plots_for};
 use crate::plots::ticks::{Quantity, Scale};
-use signorini_mechanics::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
+use signorini_study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 
 /// An error below this is rounding: the answer is exact for its mesh.
 const EXACT: f64 = 3e-16;

@@ -3,7 +3,7 @@
 use crate::plots::plot::{Plot, Series};
 use crate::plots::ticks::{Quantity, Scale};
 use signorini_mechanics::scene::Model;
-use signorini_mechanics::study::{Level, LevelKind, ObstacleContact, Sweep, SweepCorner, SweepPoint, TotalError};
+use signorini_study::{Level, LevelKind, ObstacleContact, Sweep, SweepCorner, SweepPoint, TotalError};
 
 /// A plotted value of an item.
 type Value<'a, T> = &'a dyn Fn(&T) -> f64;

@@ -7,8 +7,8 @@ use crate::plots::ticks::Quantity;
 use signorini_mechanics::fem::geometry::cross;
 use signorini_mechanics::fem::{Boundary, Formulation};
 use signorini_mechanics::scene::{Answer, ContactRow, Model};
-use signorini_mechanics::study::Summary;
 use signorini_qp::dot;
+use signorini_study::Summary;
 
 /// The part of the boundary that is shown reaches beyond the contact by this share of its length.
 const BEYOND: f64 = 0.4;

@@ -239,7 +239,7 @@ impl Scheme {
     }
 
     /// What else is known of the scheme, and the function that prepares its steps.
-    pub(crate) fn about(self) -> &'static Facts {
+    pub fn about(self) -> &'static Facts {
         self.spec().about()
     }
 }

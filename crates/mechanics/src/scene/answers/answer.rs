@@ -112,12 +112,14 @@ impl Answer {
     }
 
     /// The answer without its stresses, which take more memory than all else; they are computed anew for who asks.
-    pub(crate) fn without_stress(self) -> Self {
+    #[doc(hidden)]
+    pub fn without_stress(self) -> Self {
         Answer { state: OnceLock::new(), ..self }
     }
 
     /// The largest strain and rotation; `None` without elements.
-    pub(crate) fn deformation(&self) -> Option<Deformation> {
+    #[doc(hidden)]
+    pub fn deformation(&self) -> Option<Deformation> {
         self.state().ok()?.deformation
     }
 
@@ -191,7 +193,8 @@ impl Answer {
         &self.multiplier
     }
 
-    pub(crate) fn unknowns(&self) -> &[f64] {
+    #[doc(hidden)]
+    pub fn unknowns(&self) -> &[f64] {
         &self.unknowns
     }
 
@@ -306,7 +309,8 @@ impl Answer {
         Ok((estimated.relative(), estimated.strain_energy()))
     }
 
-    pub(crate) fn estimated_error(&self) -> Result<recovery::patches::EstimatedError, Error> {
+    #[doc(hidden)]
+    pub fn estimated_error(&self) -> Result<recovery::patches::EstimatedError, Error> {
         Ok(recovery::patches::EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)?)
     }
 }

@@ -71,7 +71,8 @@ impl Answer {
 
     /// The depths at five points in each direction of every facet that may touch a rigid obstacle. Parts of an obstacle
     /// narrower than the distance of these points are missed.
-    pub(crate) fn depths_between_nodes(&self) -> Result<Depths, Error> {
+    #[doc(hidden)]
+    pub fn depths_between_nodes(&self) -> Result<Depths, Error> {
         let (model, mesh) = (self.model(), self.model().mesh());
         let mut depths = Depths { of_elements: vec![0.0; mesh.element_count()], pushed: 0.0 };
         for (index, obstacle) in model.obstacles().iter().enumerate() {
@@ -121,7 +122,7 @@ fn from(first: usize, all: [f64; 6]) -> [f64; 6] {
 
 /// Depths between nodes.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Depths {
+pub struct Depths {
     /// The largest depth on each element, in length; zero on an element outside all obstacles.
     pub of_elements: Vec<f64>,
     /// The displacement that the obstacles impose, or would impose: the largest displacement along a row at a

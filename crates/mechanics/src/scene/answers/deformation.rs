@@ -10,7 +10,7 @@ use crate::scene::models::rows::ContactRow;
 
 /// Strains above this, and rotations above this in radians, are beyond small displacements: the answer is wrong by
 /// about as much, except near singular points.
-pub(crate) const BEYOND: f64 = 0.5;
+pub const BEYOND: f64 = 0.5;
 
 /// Depths below this share of the size of the mesh are rounding of coordinates.
 const ROUNDING: f64 = 1e-9;

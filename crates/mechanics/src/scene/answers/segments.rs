@@ -78,7 +78,8 @@ pub struct Segment {
 
 impl ContactExtent {
     /// The extent of all segments together; `None` without segments.
-    pub(crate) fn of<'a>(segments: impl Iterator<Item = &'a Segment> + Clone) -> Option<Self> {
+    #[doc(hidden)]
+    pub fn of<'a>(segments: impl Iterator<Item = &'a Segment> + Clone) -> Option<Self> {
         let peak = segments.clone().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
         let extents = || segments.clone().map(|segment| &segment.extent);
         Some(ContactExtent {
@@ -92,7 +93,8 @@ impl ContactExtent {
     }
 
     /// The extent of `parts` mirror images together.
-    pub(crate) fn of_parts(self, parts: f64) -> Self {
+    #[doc(hidden)]
+    pub fn of_parts(self, parts: f64) -> Self {
         ContactExtent {
             pressure_uncertainty: self.pressure_uncertainty,
             area: parts * self.area,

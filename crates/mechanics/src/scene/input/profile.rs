@@ -9,7 +9,7 @@ use crate::motion::between;
 
 /// A factor that depends on the place, checked.
 #[derive(Debug)]
-pub(crate) struct Profile {
+pub struct Profile {
     /// The direction along which the factor changes, of length 1.
     along: [f64; 3],
     places: Vec<f64>,

@@ -88,7 +88,7 @@ pub(crate) fn estimated(scene: &Scene) -> Size {
 
 /// Refuses bodies whose assembly alone would take more than `most` bytes: the size of a mesh from a file is known
 /// only now.
-pub(crate) fn check_bodies(bodies: &[ElasticBody], most: f64) -> Result<(), Error> {
+pub fn check_bodies(bodies: &[ElasticBody], most: f64) -> Result<(), Error> {
     let (mut dofs, mut stiffness_entries, mut bytes) = (0.0, 0.0, Estimate::START);
     for mesh in bodies.iter().map(ElasticBody::mesh) {
         let (nodes, dimension) = (mesh.nodes().len() as f64, mesh.dimension() as f64);
@@ -151,7 +151,7 @@ pub(crate) fn refined(scene: &Scene, times: usize) -> Result<Scene, Error> {
 }
 
 /// Returns `true` if a body has sides that approximate known circles or spheres, to which finer meshes come nearer.
-pub(crate) fn is_round(scene: &Scene) -> bool {
+pub fn is_round(scene: &Scene) -> bool {
     let further = scene.further_bodies.iter().map(|further| &further.body);
     std::iter::once(&scene.body).chain(further).any(|body| body.shape().is_round())
 }

@@ -14,7 +14,8 @@ pub struct Warning {
 }
 
 impl Warning {
-    pub(crate) fn new(code: &'static str, message: impl Into<String>) -> Self {
+    #[doc(hidden)]
+    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
         Warning { code, message: message.into() }
     }
 }

@@ -39,7 +39,7 @@ pub(crate) fn within(scene: &Scene, most: f64, further: &[Further]) -> Result<Mo
 type Further<'a> = (&'a str, Arc<dyn Obstacle>);
 
 /// The model of a scene with its bodies, in the order of the scene, on any meshes.
-pub(crate) fn model_of(scene: &Scene, bodies: Vec<ElasticBody>, further: &[Further]) -> Result<Model, Error> {
+pub fn model_of(scene: &Scene, bodies: Vec<ElasticBody>, further: &[Further]) -> Result<Model, Error> {
     let body = with_parts(scene, joined(scene, bodies)?)?;
     let (scene, body) = with_contacts(scene, body)?;
     let conditions = conditions(&scene, &body, further)?;
@@ -151,12 +151,12 @@ pub(crate) fn explain(model: &Model, error: Error) -> Error {
 }
 
 /// A node with its coordinates, as `node 5 at (0.25, 1)`.
-pub(crate) fn node_in_words(model: &Model, node: usize) -> String {
+pub fn node_in_words(model: &Model, node: usize) -> String {
     format!("node {node}{} at {}", model.of_part(), place_in_words(model, node))
 }
 
 /// The coordinates of a node to six digits; those of rounding are 0.
-pub(crate) fn place_in_words(model: &Model, node: usize) -> String {
+pub fn place_in_words(model: &Model, node: usize) -> String {
     let rounding = COORDINATE_ROUNDING * model.mesh().size();
     let at = model.mesh().nodes()[node].map(|value| if value.abs() <= rounding { 0.0 } else { six_digits(value) });
     point(&at[..model.mesh().dimension()])

@@ -42,7 +42,7 @@ struct DescribedBody<'a> {
     stress: &'a [InitialStressSpec],
 }
 
-pub(crate) fn bodies(scene: &Scene) -> Result<Vec<ElasticBody>, Error> {
+pub fn bodies(scene: &Scene) -> Result<Vec<ElasticBody>, Error> {
     let read = MeshFiles::default();
     described(scene).map(|described| described.elastic_body(&read)).collect()
 }

@@ -137,7 +137,7 @@ pub(crate) fn in_unknowns(
 
 /// One equation: the sum of `vector . u` over its terms is `value`.
 #[derive(Clone, Debug)]
-pub(crate) struct TieRow {
+pub struct TieRow {
     /// Nodes with their vectors [x, y, z], dimensionless; at a node with a coefficient for the coefficient.
     pub terms: Vec<(usize, [f64; 3])>,
     /// The terms of the nodes of the first side.

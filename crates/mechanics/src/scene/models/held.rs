@@ -23,7 +23,7 @@ const NO_COMPONENT: f64 = 1e-14;
 
 /// The source of a prescribed component.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Holder {
+pub enum Holder {
     /// The axis of revolution: there the radial displacement is zero.
     Axis,
     /// A plane of symmetry.
@@ -45,7 +45,7 @@ impl Holder {
 
 /// A prescribed component of a displacement: `direction . u = value`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Component {
+pub struct Component {
     /// The direction of the prescribed component, [x, y, z], of length 1.
     pub direction: [f64; 3],
     /// The prescribed displacement, in length.
@@ -64,7 +64,7 @@ struct Span {
 
 /// The prescribed components of all nodes; a node without one is absent.
 #[derive(Debug, Default)]
-pub(crate) struct Held {
+pub struct Held {
     nodes: BTreeMap<usize, Vec<Component>>,
 }
 

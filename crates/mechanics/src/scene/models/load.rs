@@ -18,7 +18,7 @@ use crate::scene::input::schema::condition::{
 use crate::scene::input::schema::{ModelSpec, Scene};
 
 /// A load of a scene, checked.
-pub(crate) enum Acting<'a> {
+pub enum Acting<'a> {
     /// A traction, in force per area, times a factor over space.
     Traction { boundary: &'a Boundary, traction: [f64; 3], profile: Option<Profile> },
     /// A pressure, in force per area, times a factor over space.

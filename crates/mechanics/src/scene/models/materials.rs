@@ -9,7 +9,7 @@ use crate::scene::input::schema::{MaterialPartSpec, MaterialSpec, ModelSpec, Ort
 use signorini_qp as qp;
 
 /// The materials of a body as a scene describes them.
-pub(crate) struct BodyMaterials<'a> {
+pub struct BodyMaterials<'a> {
     /// The material of all elements outside the parts.
     pub material: Option<&'a MaterialSpec>,
     pub parts: &'a [MaterialPartSpec],
@@ -203,7 +203,7 @@ impl BodyMaterials<'_> {
 
 /// The selected elements of a body: those of a group, those with the centroid in a box, those in both; all if neither
 /// is given.
-pub(crate) struct Selection<'a> {
+pub struct Selection<'a> {
     pub group: Option<&'a str>,
     pub cuboid: Option<&'a PartBoxSpec>,
 }

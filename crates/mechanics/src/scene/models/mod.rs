@@ -1,29 +1,29 @@
 //! A discretised scene: mesh and materials, supports, loads and springs, contact rows, and the problem that they make.
 
-pub(crate) mod build;
-pub(crate) mod continuum;
-pub(crate) mod elastic;
+pub mod build;
+pub mod continuum;
+pub mod elastic;
 mod facing;
-pub(crate) mod held;
-pub(crate) mod load;
+pub mod held;
+pub mod load;
 mod materials;
-pub(crate) mod model;
-pub(crate) mod overlap;
+pub mod model;
+pub mod overlap;
 mod part;
-pub(crate) mod parts;
-pub(crate) mod points;
+pub mod parts;
+pub mod points;
 mod preload;
-pub(crate) mod resultants;
-pub(crate) mod rigid_body_modes;
+pub mod resultants;
+pub mod rigid_body_modes;
 mod rigid_face;
-pub(crate) mod rows;
-pub(crate) mod set_up;
+pub mod rows;
+pub mod set_up;
 mod springs;
-pub(crate) mod start;
+pub mod start;
 mod suspect;
 mod symmetry;
 mod ties;
-pub(crate) mod unknowns;
+pub mod unknowns;
 
 use crate::error::Error;
 use crate::fem::recovery::StressField;

@@ -44,7 +44,8 @@ const NO_AREA: f64 = 1e-12;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Model {
-    pub(crate) parts: Arc<Parts>,
+    #[doc(hidden)]
+    pub parts: Arc<Parts>,
     pub(crate) gap: f64,
     /// How far each obstacle has moved along its approach direction in a motion, in length; empty if none has.
     pub(crate) moved: Vec<f64>,
@@ -135,7 +136,7 @@ pub(crate) fn row_shifts(model: &Model, obstacle: usize, by: f64) -> Vec<f64> {
 }
 
 /// The same scene with another force on the one obstacle that a force presses.
-pub(crate) fn pressed_by(model: &Model, force: f64) -> Result<Model, Error> {
+pub fn pressed_by(model: &Model, force: f64) -> Result<Model, Error> {
     let parts = &model.parts;
     let &[obstacle] = parts.unknowns.pressed.as_slice() else {
         let message = match parts.unknowns.pressed.len() {
@@ -160,7 +161,7 @@ pub(crate) fn pressed_by(model: &Model, force: f64) -> Result<Model, Error> {
 }
 
 /// The solution with pressed obstacles at their first contact with the body, without a force.
-pub(crate) fn touched(model: &Model, settings: &Settings) -> Result<Solution, Error> {
+pub fn touched(model: &Model, settings: &Settings) -> Result<Solution, Error> {
     let (parts, problem) = (&model.parts, &model.problem);
     let is_pressed = |row: usize| parts.unknowns.travel(model.rows[row].obstacle).is_some();
     // The obstacles are out of reach, on springs that nothing stretches.

@@ -32,7 +32,7 @@ const KEPT_APART: f64 = 0.05;
 
 /// A node of one body inside another.
 #[derive(Clone, Debug)]
-pub(crate) struct Overlap {
+pub struct Overlap {
     pub node: usize,
     /// The distance from the surface of the other body, in length, positive.
     pub depth: f64,
@@ -113,7 +113,7 @@ impl Solid {
 /// The deepest overlap of two displaced bodies at a node or in the middle of a facet, beyond what contact rows
 /// between the two leave, and beyond the shortening of a bolt between them; `None` without one. `displacement` has
 /// `dim` entries a node.
-pub(crate) fn deepest_overlap(model: &Model, displacement: &[f64], unknowns: &[f64]) -> Option<Overlap> {
+pub fn deepest_overlap(model: &Model, displacement: &[f64], unknowns: &[f64]) -> Option<Overlap> {
     let (mesh, regions, dimension) = (model.mesh(), model.body().regions(), model.body().dimension());
     if regions.len() < 2 || dimension < 2 {
         return None;

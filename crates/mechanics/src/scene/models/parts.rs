@@ -16,7 +16,7 @@ use signorini_qp::{ContactProblem, SymmetricMatrix};
 
 /// The data that do not depend on the gap.
 #[derive(Debug)]
-pub(crate) struct Parts {
+pub struct Parts {
     /// With the contacts that were found.
     pub scene: Scene,
     pub body: ElasticBody,
@@ -29,7 +29,7 @@ pub(crate) struct Parts {
 
 /// What a scene asks of its body.
 #[derive(Debug)]
-pub(crate) struct Conditions {
+pub struct Conditions {
     pub dofs: DofMap,
     /// The prescribed components of the nodes.
     pub held: Held,
@@ -45,7 +45,7 @@ pub(crate) struct Conditions {
 
 /// Where a model comes from: what sentences may advise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Origin {
+pub enum Origin {
     Deck,
     /// A scene with `"contact": "auto"`.
     WithAuto,

@@ -24,7 +24,7 @@ const CONTRADICTION: f64 = 1e-9;
 /// The reference points of a scene, and what its ties and springs at points mean for nodes. In sums the points come
 /// after the nodes of the mesh.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct ReferencePoints {
+pub struct ReferencePoints {
     pub all: Vec<ReferencePoint>,
     nodes: usize,
     /// The sums of each tie at points that are zero.
@@ -47,7 +47,7 @@ struct Whole {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct ReferencePoint {
+pub struct ReferencePoint {
     pub name: String,
     pub at: [f64; 3],
     /// The preload that it stands for.

@@ -19,7 +19,7 @@ use crate::scene::input::schema::{PointSpec, PreloadSpec, Scene, TermPlace, Term
 
 /// The shortening of a bolt: the sum of `vector . u` over its terms.
 #[derive(Clone, Debug)]
-pub(crate) struct Shortening {
+pub struct Shortening {
     pub tie: usize,
     /// Nodes with their vectors, as in [`TieRow`].
     pub terms: Vec<(usize, [f64; 3])>,

@@ -72,7 +72,7 @@ pub struct FaceMotion {
 
 /// The sum of forces at points.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sum {
+pub struct Sum {
     /// Each force with its point.
     forces: Vec<([f64; 3], [f64; 3])>,
 }
@@ -171,7 +171,7 @@ pub(crate) fn contact_resultants(model: &Model, multiplier: &[f64]) -> Result<Ve
 
 /// The moment about the origin of the contact forces on the other body of an obstacle, as [`Resultant::moment`],
 /// from the multipliers of all rows.
-pub(crate) fn moment_on_other(model: &Model, obstacle: usize, multiplier: &[f64]) -> Vec<f64> {
+pub fn moment_on_other(model: &Model, obstacle: usize, multiplier: &[f64]) -> Vec<f64> {
     let mut sum = Sum::default();
     for (row, &lambda) in model.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
         let own = model.body().region_at(row.node);
@@ -188,7 +188,7 @@ pub(crate) fn moment_on_other(model: &Model, obstacle: usize, multiplier: &[f64]
 /// and the size of the mesh, in the meshed part: 0 if the forces of each row lie on one line. Means over curved
 /// surfaces are not exactly so. `None` for rows that are no means, and about an axis of revolution, where forces
 /// have no moment.
-pub(crate) fn moment_defect(model: &Model, obstacle: usize, multiplier: &[f64]) -> Option<f64> {
+pub fn moment_defect(model: &Model, obstacle: usize, multiplier: &[f64]) -> Option<f64> {
     model.obstacles()[obstacle].other_body()?.1.filter(|_| !model.body().formulation().is_axisymmetric())?;
     let (mut moment, mut force, nodes) = ([0.0; 3], 0.0, model.mesh().nodes());
     for (row, &lambda) in model.rows().iter().zip(multiplier).filter(|(row, _)| row.obstacle == obstacle) {
@@ -384,7 +384,7 @@ pub(crate) fn load_resultant(model: &Model) -> Option<Resultant> {
 }
 
 /// The force or the displacement of a node among those of all nodes (length `dim * n_nodes`).
-pub(crate) fn at_node(model: &Model, forces: &[f64], node: usize) -> [f64; 3] {
+pub fn at_node(model: &Model, forces: &[f64], node: usize) -> [f64; 3] {
     let dimension = model.body().dimension();
     let of_node = &forces[dimension * node..dimension * (node + 1)];
     [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))

@@ -18,7 +18,7 @@ pub(super) const NAMES: [&str; 6] = ["x", "y", "z", "rotation.x", "rotation.y", 
 
 /// A boundary that moves as a rigid plate.
 #[derive(Clone, Debug)]
-pub(crate) struct RigidFace {
+pub struct RigidFace {
     /// The nodes that move with the face.
     pub nodes: Vec<usize>,
     pub centre: [f64; 3],
@@ -30,7 +30,7 @@ pub(crate) struct RigidFace {
 
 /// A displacement of the centre or a rotation about it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion {
+pub struct Motion {
     /// 0 to 2 along x, y, z; 3 to 5 about them.
     pub kind: usize,
     /// In length, or in radians; `None` if it is an unknown.

@@ -58,7 +58,7 @@ impl ContactRow {
 }
 
 /// The rows of all obstacles, with their matrix B and vector g in the free dofs.
-pub(crate) struct Rows {
+pub struct Rows {
     pub rows: Vec<ContactRow>,
     /// The same contact seen from nodes of the other bodies, where rows are means.
     pub across: Vec<ContactRow>,
@@ -79,7 +79,7 @@ pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
 }
 
 /// The rows with the entries `(row, column, value)` of B, before they are a matrix.
-pub(crate) struct Found {
+pub struct Found {
     pub rows: Vec<ContactRow>,
     pub entries: Vec<(usize, usize, f64)>,
     pub gap: Vec<f64>,

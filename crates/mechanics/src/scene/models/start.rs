@@ -198,7 +198,7 @@ fn plate(pressed: &str, roles: &Roles, mesh: &Mesh, young: f64) -> String {
 const LARGEST_IN_METRES: f64 = 5.0;
 
 /// The bodies of a file, of steel.
-pub(crate) struct Bodies {
+pub struct Bodies {
     /// The groups of each body; without a group one body has all elements.
     pub sets: Vec<Glued>,
     /// The name of each body in the scene: that of its first group; empty for the first body.

@@ -11,7 +11,7 @@ use crate::scene::input::schema::{ModelSpec, Scene, SymmetryPlane};
 
 /// The planes of symmetry of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Symmetry {
+pub struct Symmetry {
     /// The axis normal to each plane, and the coordinate of the plane along it.
     planes: Vec<(usize, f64)>,
     /// A node within this length of a plane of symmetry lies on it: rounding of coordinates.

@@ -23,7 +23,7 @@ const REPEATED: f64 = 1e-9;
 
 /// All ties of a scene in the unknowns.
 #[derive(Debug)]
-pub(crate) struct Ties {
+pub struct Ties {
     pub rows: Vec<TieRow>,
     /// The rows of each tie of the scene.
     pub of_tie: Vec<Range<usize>>,

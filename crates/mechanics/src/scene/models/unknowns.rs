@@ -22,7 +22,7 @@ use signorini_qp::{SparseMatrix, SymmetricMatrix, dot};
 
 /// The meaning of the unknowns by their order.
 #[derive(Clone, Debug)]
-pub(crate) struct Unknowns {
+pub struct Unknowns {
     /// Number of free dofs.
     free: usize,
     on_faces: Option<FaceMotions>,

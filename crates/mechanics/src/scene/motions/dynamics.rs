@@ -61,14 +61,15 @@ pub struct Dynamics {
     /// Points with output at every step.
     pub watched: Vec<WatchedPoint>,
     supports: MovingSupports,
-    pub(crate) obstacles: Vec<MovingObstacle>,
+    #[doc(hidden)]
+    pub obstacles: Vec<MovingObstacle>,
     /// Warnings about the scene and the scheme of the motion.
     pub warnings: Vec<Warning>,
 }
 
 /// An obstacle that moves along its approach direction, by `shift` times the growth of its factor since the start.
 #[derive(Clone, Debug)]
-pub(crate) struct MovingObstacle {
+pub struct MovingObstacle {
     obstacle: usize,
     shift: f64,
     factor: TimeFunction,

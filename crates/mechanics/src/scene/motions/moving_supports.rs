@@ -18,7 +18,7 @@ use signorini_qp::SparseMatrix;
 ///
 /// Prescribed displacements are constant: supported dofs have neither velocity nor acceleration.
 #[derive(Clone, Debug)]
-pub(crate) struct MovingSupports {
+pub struct MovingSupports {
     /// The nodes, increasing; empty if the scene has no support.
     nodes: Vec<usize>,
     /// The unknowns that share an element or a spring with them, increasing: those whose motion
@@ -119,7 +119,7 @@ impl MovingSupports {
 
 /// The loads on all nodes, in force, length `dim * n_nodes` each; or on some nodes, in their order.
 #[derive(Clone, Debug)]
-pub(crate) struct NodalLoads {
+pub struct NodalLoads {
     pub constant: Vec<f64>,
     pub changing: Vec<(TimeFunction, Vec<f64>)>,
 }

@@ -294,7 +294,8 @@ impl PlacedObstacle {
 
     /// The unit normal of the surface, into the obstacle, at the point where the row of the candidate of this index
     /// meets it; for another body the mean of both normals. `None` if it is out of reach.
-    pub(crate) fn surface_normal(&self, candidate: usize, node: [f64; 3], gap: f64) -> Option<[f64; 3]> {
+    #[doc(hidden)]
+    pub fn surface_normal(&self, candidate: usize, node: [f64; 3], gap: f64) -> Option<[f64; 3]> {
         match &self.geometry {
             Geometry::Rigid(obstacle) => obstacle.surface_normal(node, gap),
             Geometry::Body(_) => self.facing(candidate).map(|facing| facing.mean),

@@ -22,7 +22,8 @@ use signorini_guarantee::{
     Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
     RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
 };
-pub(crate) use surface::{NoGuarantee, WhyNot, none};
+use surface::none;
+pub use surface::{NoGuarantee, WhyNot};
 
 /// Times that facets partly within the reach of a pressed obstacle are refined.
 const MOST_ROUNDS: usize = 12;
@@ -31,7 +32,7 @@ const MOST_ROUNDS: usize = 12;
 const ALL_OF_IT: f64 = 1e-6;
 
 /// Refuses a scene without an answer in the continuum.
-pub(crate) fn check(scene: &Scene) -> Result<(), Error> {
+pub fn check(scene: &Scene) -> Result<(), Error> {
     match scene.loads.iter().position(LoadSpec::is_at_points) {
         Some(index) if scene.model.dimension() > 1 => {
             let message = "a force at a point makes an infinite displacement in a continuum, so that there is \
@@ -45,7 +46,7 @@ pub(crate) fn check(scene: &Scene) -> Result<(), Error> {
 
 /// Asks for a guaranteed bound: the problem of the polygon or polyhedron that the mesh of `model` fills and the
 /// initial simplices, or why not.
-pub(crate) fn problem(scene: &Scene, model: &Model) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
+pub fn problem(scene: &Scene, model: &Model) -> Result<(ContinuumProblem, SimplexMesh), WhyNot> {
     let (body, formulation) = (model.body(), *model.body().formulation());
     let thickness = match formulation {
         Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => thickness,
@@ -129,7 +130,7 @@ pub(crate) fn problem(scene: &Scene, model: &Model) -> Result<(ContinuumProblem,
 }
 
 /// The scene on the last mesh of a guaranteed error, with the boundaries and parts of the first mesh.
-pub(crate) fn on_last_mesh(scene: &Scene, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
+pub fn on_last_mesh(scene: &Scene, first: &Model, last: &ContinuumAnswer) -> Result<Model, Error> {
     // Contacts that the program found are found again.
     let found: Vec<&str> = first.obstacles()[scene.obstacles.len()..]
         .iter()

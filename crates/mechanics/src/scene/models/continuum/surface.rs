@@ -306,7 +306,7 @@ fn normal(corners: &[Point]) -> Point {
 
 /// What of a scene has no guaranteed bound, and what would have one.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct NoGuarantee {
+pub struct NoGuarantee {
     /// JSON path of what has none.
     pub path: String,
     pub message: String,
@@ -315,7 +315,7 @@ pub(crate) struct NoGuarantee {
 /// Why there is no problem of the continuum: an answer to the question for a guarantee, or a failure, which answers
 /// nothing.
 #[derive(Debug)]
-pub(crate) enum WhyNot {
+pub enum WhyNot {
     /// The scene has no guaranteed bound.
     NoGuarantee(NoGuarantee),
     /// The question has no answer.

@@ -1,6 +1,6 @@
 //! Rigid-body modes: those that nothing resists, and their names.
 
-pub(crate) mod soft;
+pub mod soft;
 mod unit;
 
 use super::facing::TieRow;
@@ -31,7 +31,7 @@ fn component(of_units: &Components, motion: &[f64]) -> f64 {
 ///
 /// Amplitudes are multiples of the unit motions, six for each body in turn.
 #[derive(Clone, Debug)]
-pub(crate) struct RigidBodyModes {
+pub struct RigidBodyModes {
     /// The elastic bodies, followed by the pressed obstacles.
     bodies: Vec<UnitMotions>,
     dimension: usize,

@@ -32,7 +32,7 @@ const MOST_BODIES: usize = 20;
 
 /// A rigid motion of bodies that only contact without friction resists, and hardly, in an answer.
 #[derive(Clone, Debug)]
-pub(crate) struct SoftMotion {
+pub struct SoftMotion {
     /// The motion and its bodies in words.
     pub name: String,
     /// The largest displacement of a node by it, in length.

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::error::Error;
-use crate::fem::ElementKind;
-use crate::scene::{Answer, Model, Scene, Warning};
-use crate::study::{ModelSize, Status};
+use crate::{ModelSize, Status};
 use serde::Serialize;
+use signorini_fem::ElementKind;
 use signorini_guarantee::ContinuumAnswer;
+use signorini_mechanics::Error;
+use signorini_mechanics::scene::{Answer, Model, Scene, Warning};
 use signorini_qp as qp;
 use signorini_qp::{Settings, Solution};
 

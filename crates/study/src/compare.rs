@@ -5,7 +5,7 @@ use signorini_qp as qp;
 
 use super::summary::Status;
 use super::tradeoff::{energy_norm, relative};
-use crate::error::Error;
+use signorini_mechanics::Error;
 use signorini_qp::{ContactProblem, Method, Settings, Solution, largest, solve};
 
 /// Two exact methods must agree in the displacement to this share of its largest entry: both end with a linear solve,

@@ -1,10 +1,10 @@
 //! An answer with the data of its model and of each obstacle, serialised as the JSON that the command line prints.
 
 use super::warnings::{lost_digits, opposite_sign};
-use crate::fem::geometry::length;
-use crate::scene::models::resultants;
-use crate::scene::{Answer, ContactExtent, Resultant, Segment, Warning};
 use serde::Serialize;
+use signorini_fem::geometry::length;
+use signorini_mechanics::scene::models::resultants;
+use signorini_mechanics::scene::{Answer, ContactExtent, Resultant, Segment, Warning};
 use signorini_qp::{Certificate, ContactProblem, Goal, Seconds, Solution};
 
 /// The judgement of an answer against its goal, and of a motion by its energy.
@@ -94,7 +94,7 @@ pub struct Summary {
 }
 
 /// The entries of a summary that planes of symmetry leave of the meshed part. All other numbers are of the whole body.
-pub(crate) const OF_MESHED_PART: [&str; 15] = [
+pub const OF_MESHED_PART: [&str; 15] = [
     "certificate",
     "contact.count",
     "contact.force_balance",

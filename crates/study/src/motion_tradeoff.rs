@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use super::motion::MotionSummary;
 use super::tradeoff::{Tradeoff, relative};
-use crate::error::Error;
-use crate::motion::{Integrator, SchemeSpec};
-use crate::scene::input::schema::AnalysisSpec;
-use crate::scene::{Dynamics, Model, Scene};
 use serde::Serialize;
+use signorini_mechanics::Error;
+use signorini_mechanics::motion::{Integrator, SchemeSpec};
+use signorini_mechanics::scene::input::schema::AnalysisSpec;
+use signorini_mechanics::scene::{Dynamics, Model, Scene};
 use signorini_qp as qp;
 use signorini_qp::Settings;
 

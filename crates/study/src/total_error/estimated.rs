@@ -4,15 +4,15 @@
 use std::sync::Arc;
 
 use super::found::{Answering, Asked, Ended, Level, LevelKind, PER_UNKNOWN, TotalError, marked, shortage};
-use crate::error::Error;
-use crate::fem::body::ElasticBody;
-use crate::fem::mesh::bisection::Tetrahedra;
-use crate::scene::answers::beside_nodes::Depths;
-use crate::scene::input::size::{check_bodies, is_round};
-use crate::scene::models::build::model_of;
-use crate::scene::models::elastic::bodies;
-use crate::scene::{Answer, Model, Scene};
-use crate::study::{ModelSize, Status};
+use crate::{ModelSize, Status};
+use signorini_fem::body::ElasticBody;
+use signorini_fem::mesh::bisection::Tetrahedra;
+use signorini_mechanics::Error;
+use signorini_mechanics::scene::answers::beside_nodes::Depths;
+use signorini_mechanics::scene::input::size::{check_bodies, is_round};
+use signorini_mechanics::scene::models::build::model_of;
+use signorini_mechanics::scene::models::elastic::bodies;
+use signorini_mechanics::scene::{Answer, Model, Scene};
 use signorini_qp as qp;
 use signorini_qp::solve;
 

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::error::Error;
-use crate::fem::geometry::{along_axis, dot, plus};
-use crate::scene::answers::deformation;
-use crate::scene::models::build::{node_in_words, place_in_words};
-use crate::scene::models::overlap::{Overlap, deepest_overlap};
-use crate::scene::models::parts::Origin;
-use crate::scene::models::resultants::{at_node, moment_defect};
-use crate::scene::models::rigid_body_modes::RigidBodyModes;
-use crate::scene::models::rigid_body_modes::soft::SoftMotion;
-use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
 use signorini_deck::NONLINEAR;
+use signorini_fem::geometry::{along_axis, dot, plus};
+use signorini_mechanics::Error;
+use signorini_mechanics::scene::answers::deformation;
+use signorini_mechanics::scene::models::build::{node_in_words, place_in_words};
+use signorini_mechanics::scene::models::overlap::{Overlap, deepest_overlap};
+use signorini_mechanics::scene::models::parts::Origin;
+use signorini_mechanics::scene::models::resultants::{at_node, moment_defect};
+use signorini_mechanics::scene::models::rigid_body_modes::RigidBodyModes;
+use signorini_mechanics::scene::models::rigid_body_modes::soft::SoftMotion;
+use signorini_mechanics::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, Warning, refused};
 use signorini_qp::{Certificate, ContactProblem, Solution, largest};
 
 /// Overlaps below this share of the size of the mesh are rounding of coordinates.

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::warnings::check_approach;
-use crate::error::Error;
-use crate::scene::{Answer, Scene};
 use serde::Serialize;
+use signorini_mechanics::Error;
+use signorini_mechanics::scene::{Answer, Scene};
 use signorini_qp as qp;
 use signorini_qp::{
     Condense, ContactProblem, InteriorPoint, Method, Penalty, Prepared, Settings, Solution, Watch, dot, solve,

@@ -14,11 +14,11 @@ use std::time::Instant;
 
 use signorini_qp::{Settings, Solution};
 
-use crate::error::Error;
-use crate::scene::models::continuum::{self, NoGuarantee, WhyNot};
-use crate::scene::{Answer, Model, Scene};
-use crate::study::Status;
+use crate::Status;
 use found::Asked;
+use signorini_mechanics::Error;
+use signorini_mechanics::scene::models::continuum::{self, NoGuarantee, WhyNot};
+use signorini_mechanics::scene::{Answer, Model, Scene};
 
 /// Refines the mesh of a scene until its total error is at most `goal`, as with the default settings.
 ///

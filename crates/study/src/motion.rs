@@ -3,9 +3,9 @@
 use std::collections::VecDeque;
 
 use super::warnings::FEW_NODES;
-use crate::motion::Observation;
-use crate::scene::{Model, Warning};
 use serde::{Deserialize, Serialize};
+use signorini_mechanics::motion::Observation;
+use signorini_mechanics::scene::{Model, Warning};
 
 /// Largest allowed growth of the energy, relative to the initial energy and the work of the loads; a motion beyond it
 /// is not reliable.

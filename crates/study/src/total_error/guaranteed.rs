@@ -7,14 +7,14 @@ use super::found::{
     Asked, Bound, Domain, Ended, Guarantee, JudgedMesh, LEAST, Level, LevelKind, MARKED, PER_UNKNOWN, TotalError,
     marked, shortage,
 };
-use crate::error::Error;
-use crate::fem::ElementKind;
-use crate::fem::assembly::internal_force;
-use crate::scene::models::continuum;
-use crate::scene::{Answer, Scene, Warning};
-use crate::study::warnings::{check_motion, of_refined};
-use crate::study::{ModelSize, Status};
+use crate::warnings::{check_motion, of_refined};
+use crate::{ModelSize, Status};
+use signorini_fem::ElementKind;
+use signorini_fem::assembly::internal_force;
 use signorini_guarantee::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
+use signorini_mechanics::Error;
+use signorini_mechanics::scene::models::continuum;
+use signorini_mechanics::scene::{Answer, Scene, Warning};
 use signorini_qp as qp;
 use signorini_qp::{Method, Settings, Solution, dot, solve};
 
