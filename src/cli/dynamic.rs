@@ -130,7 +130,7 @@ impl<'a> Run<'a> {
         while self.integrator.state().steps < last {
             watch.part("step", self.integrator.state().steps + 1, last);
             match self.integrator.advance() {
-                Err(Error::Qp(qp::Error::Interrupted)) => break,
+                Err(qp::Error::Interrupted) => break,
                 advanced => advanced.map_err(|error| self.model.explain(error))?,
             };
             let seen = self.model.of_whole(self.integrator.observe());

@@ -6,7 +6,7 @@
 //! REFERENCE: waves in bars (`closed_forms::ImpactingBar`, `closed_forms::BouncingBar`).
 
 use signorini::motion::{DynamicProblem, Integrator, Scheme, SchemeSpec, TimeFunction};
-use signorini::{ContactProblem, Error, Scene, Settings, SparseMatrix, SymmetricMatrix, qp};
+use signorini::{ContactProblem, Scene, Settings, SparseMatrix, SymmetricMatrix, qp};
 use support::impact::cases::cases;
 use support::impact::measure::run;
 
@@ -96,7 +96,7 @@ fn invalid_steps_and_steps_beyond_the_stable_one_are_refused() {
     let settings = Settings::default();
     for step in [0.0, -0.1, f64::NAN, f64::INFINITY] {
         let refused = Integrator::new(oscillator(0.0), Scheme::Midpoint, step, &settings).err().unwrap();
-        assert!(matches!(refused, Error::Linear(qp::LinearError::Setting { name: "step", .. })), "{refused}");
+        assert!(matches!(refused, qp::Error::Linear(qp::LinearError::Setting { name: "step", .. })), "{refused}");
     }
     // The angular frequency is 2, so that steps up to 2/2 are stable.
     let explicit = Scheme::CentralDifference { restitution: 0.0 };

@@ -1,7 +1,7 @@
 //! Invalid motions are refused before the first step, or at the step whose values overflow.
 
 use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction};
-use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix};
+use signorini::{ContactProblem, Settings, SparseMatrix, SymmetricMatrix, qp::Error};
 
 fn symmetric(dofs: usize, entries: &[(usize, usize, f64)]) -> SymmetricMatrix {
     SparseMatrix::from_triplets(dofs, dofs, entries).and_then(SymmetricMatrix::from_lower).unwrap()

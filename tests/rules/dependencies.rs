@@ -63,6 +63,7 @@ fn each_dependency_stands_once_in_the_workspace_with_its_reason_above_it() {
         "crates/fem",
         "crates/guarantee",
         "crates/mechanics",
+        "crates/motion",
         "crates/study",
         "crates/output",
         "python",

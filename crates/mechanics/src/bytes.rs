@@ -29,15 +29,6 @@ pub fn of_answers(count: f64, dofs: f64) -> f64 {
     OF_ANSWER * count * dofs
 }
 
-/// Bytes of an unknown, and of an entry of the stiffness, both triangles, that a motion takes beside the solve of a
-/// step: its mass, the matrix of a step, its states and their frames.
-const OF_MOTION: [f64; 2] = [400.0, 40.0];
-
-/// Bytes that a motion takes beside the solve of a step.
-pub fn of_motion(dofs: f64, entries: f64) -> f64 {
-    OF_MOTION[0] * dofs + OF_MOTION[1] * entries
-}
-
 /// Bytes of an entry of the stiffness, both triangles, that the search for modes takes beside a solve: the mass, both
 /// matrices scaled, their sum and its analysis.
 const OF_PENCIL: f64 = 60.0;

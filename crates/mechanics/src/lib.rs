@@ -37,9 +37,9 @@
 #[doc(hidden)]
 pub mod bytes;
 mod error;
-pub mod motion;
 pub mod scene;
 
 pub use error::{Error, nearest};
 pub use scene::{Model, Scene};
 pub use signorini_fem as fem;
+pub use signorini_motion as motion;

@@ -5,7 +5,7 @@ use super::schema::condition::ProfileSpec;
 use crate::error::Error;
 use crate::fem::assembly::Kinks;
 use crate::fem::geometry::dot;
-use crate::motion::between;
+use signorini_motion::between;
 
 /// A factor that depends on the place, checked.
 #[derive(Debug)]

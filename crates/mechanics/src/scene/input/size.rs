@@ -77,7 +77,9 @@ pub(crate) fn estimated(scene: &Scene) -> Size {
         size.model_bytes += mesh + bytes::of_model(dofs, entries);
     }
     match &scene.analysis {
-        Some(AnalysisSpec::Dynamic(_)) => size.bytes += bytes::of_motion(size.dofs, size.stiffness_entries),
+        Some(AnalysisSpec::Dynamic(_)) => {
+            size.bytes += signorini_motion::bytes_of_motion(size.dofs, size.stiffness_entries)
+        }
         Some(AnalysisSpec::Modes(ModesSpec { count })) => {
             size.bytes += bytes::of_modes(*count as f64, size.dofs, size.stiffness_entries, size.factor_entries);
         }

@@ -95,7 +95,7 @@ pub(crate) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<Dynamics>,
     }
     let scheme = spec.scheme();
     spec.check_parameters()?;
-    scheme.check().map_err(in_place)?;
+    scheme.check().map_err(|error| located(error, &format!("{PATH}.")))?;
     if !(spec.duration.is_finite() && spec.duration > 0.0) {
         return Err(not_positive("duration", spec.duration));
     }
@@ -170,12 +170,12 @@ fn moving(
     let mut problem = DynamicProblem::new(statics, mass)?
         .with_damping(spec.damping.mass, spec.damping.stiffness)
         .map_err(|error| match error {
-            Error::Linear(qp::LinearError::Setting { name, value, allowed }) => {
+            qp::Error::Linear(qp::LinearError::Setting { name, value, allowed }) => {
                 let field = if name == "mass damping" { "mass" } else { "stiffness" };
                 let message = format!("{} is not allowed: it must be {allowed}", number(value));
                 wrong(format!("{PATH}.damping.{field}"), message)
             }
-            other => other,
+            other => other.into(),
         })?
         .holding(held, energy);
     for (factor, load) in &loads.changing {
@@ -483,11 +483,6 @@ impl FieldSpec {
         }
         Ok(move |at: [f64; 3]| [0, 1, 2].map(|axis| value[axis] + dot(&gradient[axis], &at)))
     }
-}
-
-/// A parameter of the scheme at its JSON path.
-fn in_place(error: Error) -> Error {
-    located(error, &format!("{PATH}."))
 }
 
 fn not_positive(field: &str, value: f64) -> Error {

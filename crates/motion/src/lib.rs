@@ -7,7 +7,7 @@
 //! The unknown of a step is the change w against a prediction u^, so that no digits are lost after a large motion.
 //!
 //! ```
-//! use signorini_mechanics::motion::{DynamicProblem, Integrator, Scheme};
+//! use signorini_motion::{DynamicProblem, Integrator, Scheme};
 //! use signorini_qp::{ContactProblem, Settings, SparseMatrix, SymmetricMatrix};
 //!
 //! // A mass of 1 on a spring of 1 lets go at u = 1; after half a period, pi, it stands at u = -1.
@@ -21,8 +21,12 @@
 //!     integrator.advance()?;
 //! }
 //! assert!((integrator.state().displacement[0] + 1.0).abs() < 1e-5);
-//! # Ok::<(), signorini_mechanics::Error>(())
+//! # Ok::<(), signorini_qp::Error>(())
 //! ```
+
+#![forbid(unsafe_code)]
+#![deny(missing_docs, clippy::print_stdout, clippy::print_stderr)]
+#![allow(clippy::missing_errors_doc, reason = "the sentence of an error says what is wrong")]
 
 mod integrator;
 mod problem;
@@ -30,9 +34,14 @@ mod scheme;
 mod step;
 
 pub use integrator::Integrator;
-pub(crate) use problem::between;
+#[doc(hidden)]
+pub use integrator::bytes_of_motion;
+#[doc(hidden)]
+pub use problem::between;
 pub use problem::{DynamicProblem, TimeFunction};
-pub(crate) use scheme::{MOST_IN_CONTACT, frequency_bound};
+#[doc(hidden)]
+pub use scheme::{MOST_IN_CONTACT, frequency_bound};
 pub use scheme::{Scheme, SchemeSpec};
-pub(crate) use step::Balance;
+#[doc(hidden)]
+pub use step::Balance;
 pub use step::{Observation, Parameter, State};

@@ -5,15 +5,15 @@ mod fox_goodwin;
 mod midpoint;
 mod newmark;
 
-pub(crate) use central_difference::{MOST_IN_CONTACT, frequency_bound};
+pub use central_difference::{MOST_IN_CONTACT, frequency_bound};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_qp as qp;
 
 use super::step::{Facts, Parameter};
-use crate::error::Error;
-use crate::fem::assembly::MassForm;
+use signorini_fem::assembly::MassForm;
+use signorini_qp::Error;
 
 /// The schemes to choose from, without the values of their parameters: the names that a scene uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -18,10 +18,10 @@
 //! Methods Appl. Mech. Eng. 190 (2000) 1763-1783: midpoint forces corrected so that their work is the change of energy.
 
 use super::newmark::TRAPEZOIDAL;
-use crate::error::Error;
-use crate::fem::assembly::MassForm;
-use crate::motion::step::{Advance, Facts, Found, Stepping, next, plus};
-use crate::motion::{Balance, DynamicProblem, State};
+use crate::step::{Advance, Facts, Found, Stepping, next, plus};
+use crate::{Balance, DynamicProblem, State};
+use signorini_fem::assembly::MassForm;
+use signorini_qp::Error;
 use signorini_qp::{ContactProblem, ContactSet, Settings, SparseMatrix, SymmetricMatrix, dot, largest};
 
 /// Error in energy of a step, relative to kinetic and strain energy, above which its contact force is corrected.

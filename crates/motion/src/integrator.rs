@@ -4,10 +4,9 @@ use std::time::Instant;
 
 use super::step::{Advance, HalfStep, plus};
 use super::{Balance, DynamicProblem, Observation, Scheme, State};
-use crate::bytes;
-use crate::error::Error;
-use crate::fem::assembly::MassForm;
+use signorini_fem::assembly::MassForm;
 use signorini_qp as qp;
+use signorini_qp::Error;
 use signorini_qp::{ContactSet, Method, Settings, Watch, dot, largest};
 
 /// Rounding of the displacement and the gaps, relative to the largest entry: below this there is no penetration at the
@@ -16,6 +15,16 @@ const GAP_ROUNDING: f64 = 1e-12;
 
 /// A motion with its scheme and its step.
 ///
+/// Bytes of an unknown, and of an entry of the stiffness, both triangles, that a motion takes beside the solve of a
+/// step: its mass, the matrix of a step, its states and their frames.
+const OF_MOTION: [f64; 2] = [400.0, 40.0];
+
+/// Bytes that a motion takes beside the solve of a step.
+#[doc(hidden)]
+pub fn bytes_of_motion(dofs: f64, entries: f64) -> f64 {
+    OF_MOTION[0] * dofs + OF_MOTION[1] * entries
+}
+
 /// The matrix of the steps is factorised when the integrator is made, and never again.
 #[derive(Debug)]
 pub struct Integrator {
@@ -63,18 +72,18 @@ impl Integrator {
         }
         // The matrices of the motion leave less to the solve of a step.
         let statics = problem.statics();
-        let beside = bytes::of_motion(statics.dofs() as f64, statics.stiffness().entries() as f64);
+        let beside = bytes_of_motion(statics.dofs() as f64, statics.stiffness().entries() as f64);
         settings.memory = settings.memory.map(|most| (most - beside).max(1.0));
         let watch = settings.watch.clone();
         let prepared =
             (scheme.about().prepare)(&problem, step, scheme.value(), &settings).map_err(|error| match error {
-                Error::Qp(qp::Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }) => {
+                qp::Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed } => {
                     let [bytes, allowed] = [bytes, allowed].map(|taken| taken + beside);
-                    qp::Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }.into()
+                    qp::Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed }
                 }
-                Error::Qp(qp::Error::NoRoom { factor, multigrid, allowed, ended }) => {
+                qp::Error::NoRoom { factor, multigrid, allowed, ended } => {
                     let [factor, multigrid, allowed] = [factor, multigrid, allowed].map(|taken| taken + beside);
-                    qp::Error::NoRoom { factor, multigrid, allowed, ended }.into()
+                    qp::Error::NoRoom { factor, multigrid, allowed, ended }
                 }
                 error => error,
             })?;
@@ -90,7 +99,7 @@ impl Integrator {
         };
         let state = prepared.start(&problem, step, state.with_forces(&problem))?;
         if watch.is_over() {
-            return Err(qp::Error::Interrupted.into());
+            return Err(qp::Error::Interrupted);
         }
         let load_times = scheme.about().load_times;
         Ok(Integrator { problem, step, scheme: prepared, load_times, state, before: None, watch, longest: 0.0 })
@@ -103,14 +112,14 @@ impl Integrator {
     /// [`qp::Error::Interrupted`] if the watch of the settings ends the run, in the state after the last whole step.
     pub fn advance(&mut self) -> Result<&State, Error> {
         if self.watch.time_left().is_some_and(|left| left <= self.longest) {
-            return Err(qp::Error::Interrupted.into());
+            return Err(qp::Error::Interrupted);
         }
         let clock = Instant::now();
         let next = self.scheme.advance(&self.problem, self.step, &self.state);
         self.longest = self.longest.max(clock.elapsed().as_secs_f64());
         if self.watch.acknowledge() {
             // The solves of this step may be incomplete.
-            return Err(qp::Error::Interrupted.into());
+            return Err(qp::Error::Interrupted);
         }
         let mut next = next?;
         if let Some(value) = next.displacement.iter().chain(&next.velocity).find(|value| !value.is_finite()) {
@@ -169,7 +178,7 @@ impl Integrator {
 
     /// The balance of forces that the last step solved, at some of the dofs; `None` before the first step, and before
     /// the first step after a resume.
-    pub(crate) fn balance(&self, at: &[usize]) -> Option<Balance> {
+    pub fn balance(&self, at: &[usize]) -> Option<Balance> {
         let before = self.before.as_ref()?;
         Some(self.scheme.balance(self.step, before, &self.state, at))
     }

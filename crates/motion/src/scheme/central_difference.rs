@@ -17,11 +17,11 @@
 //! impact law.
 
 use super::newmark::TRAPEZOIDAL;
-use crate::error::Error;
-use crate::fem::assembly::MassForm;
-use crate::motion::step::{Advance, Facts, HalfStep, Parameter, Stepping, halfway, next, plus};
-use crate::motion::{Balance, DynamicProblem, State};
+use crate::step::{Advance, Facts, HalfStep, Parameter, Stepping, halfway, next, plus};
+use crate::{Balance, DynamicProblem, State};
+use signorini_fem::assembly::MassForm;
 use signorini_qp as qp;
+use signorini_qp::Error;
 use signorini_qp::{ContactSet, SymmetricMatrix, largest};
 
 pub(super) static ABOUT: Facts = Facts {
@@ -123,11 +123,11 @@ const LIMIT_ROUNDING: f64 = 1e-12;
 /// it carries up to 1/(1 - C^2) times the energy of the impacts that feed it: 50 at 0.99. Measured on the bar of period
 /// 3 over 20 periods, the energy grows by 0.1 % at 0.9, by 0.4 % at 0.99, by 6 % at 0.999, by 420 % at 0.9999 and by
 /// 100 % at 1.
-pub(crate) const MOST_IN_CONTACT: f64 = 0.99;
+pub const MOST_IN_CONTACT: f64 = 0.99;
 
 /// An upper bound on the largest angular frequency, per time, of a stiffness with a positive diagonal mass, without
 /// damping.
-pub(crate) fn frequency_bound(stiffness: &SymmetricMatrix, mass: &[f64]) -> f64 {
+pub fn frequency_bound(stiffness: &SymmetricMatrix, mass: &[f64]) -> f64 {
     let mut x = vec![1.0; mass.len()];
     let mut bound = f64::INFINITY;
     for _ in 0..STEPS {

@@ -4,9 +4,9 @@
 use std::fmt;
 
 use super::DynamicProblem;
-use crate::error::Error;
-use crate::fem::assembly::MassForm;
 use serde::{Deserialize, Serialize};
+use signorini_fem::assembly::MassForm;
+use signorini_qp::Error;
 use signorini_qp::{ContactProblem, ContactSet, Prepared, Settings, SymmetricMatrix, dot};
 
 /// The description of a scheme.
@@ -207,7 +207,7 @@ pub(super) fn plus(a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
 /// Each scheme evaluates u, v, a and the times at which it balances the forces: at the middle of a step, at its end, or
 /// between.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Balance {
+pub struct Balance {
     /// Displacement u, one entry for each requested dof, in length.
     pub displacement: Vec<f64>,
     /// Velocity v, one entry for each requested dof, in length over time.

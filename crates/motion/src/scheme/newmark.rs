@@ -10,11 +10,11 @@
 //! H. M. Hilber, T. J. R. Hughes, R. L. Taylor, *Improved numerical dissipation for time integration algorithms in
 //! structural dynamics*, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292.
 
-use crate::error::Error;
-use crate::fem::assembly::MassForm;
-use crate::motion::step::{Advance, Facts, Found, Parameter, Stepping, next, plus};
-use crate::motion::{Balance, DynamicProblem, State};
+use crate::step::{Advance, Facts, Found, Parameter, Stepping, next, plus};
+use crate::{Balance, DynamicProblem, State};
+use signorini_fem::assembly::MassForm;
 use signorini_qp as qp;
+use signorini_qp::Error;
 use signorini_qp::{Method, Penalty, Settings, largest};
 
 #[derive(Debug)]

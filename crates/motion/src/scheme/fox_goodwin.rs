@@ -30,10 +30,10 @@
 //! Numer. Methods Eng. 53 (2002) 245-274: velocities that change at release so that energy is restored.
 
 use super::newmark::TRAPEZOIDAL;
-use crate::error::Error;
-use crate::fem::assembly::MassForm;
-use crate::motion::step::{Advance, Facts, Found, HalfStep, Stepping, halfway, next, plus};
-use crate::motion::{Balance, DynamicProblem, State};
+use crate::step::{Advance, Facts, Found, HalfStep, Stepping, halfway, next, plus};
+use crate::{Balance, DynamicProblem, State};
+use signorini_fem::assembly::MassForm;
+use signorini_qp::Error;
 use signorini_qp::SparseMatrix;
 
 /// The beta of fourth order.

@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::error::Error;
 use signorini_qp as qp;
+use signorini_qp::Error;
 use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, dot};
 
 /// The motion of a body with contact, from a given displacement and velocity:
@@ -330,7 +330,7 @@ impl TimeFunction {
     /// The factor at time `t`.
     ///
     /// ```
-    /// use signorini_mechanics::motion::TimeFunction;
+    /// use signorini_motion::TimeFunction;
     /// let table = TimeFunction::Table(vec![(0.0, 1.0), (2.0, 5.0)]);
     /// assert_eq!([-1.0, 0.5, 3.0].map(|t| table.at(t)), [1.0, 2.0, 5.0]);
     /// ```
@@ -350,7 +350,7 @@ impl TimeFunction {
 
 /// The value at `t` of straight lines between points `(t, value)`, t increasing; constant before the first and after
 /// the last, 1 without points.
-pub(crate) fn between(points: &[(f64, f64)], t: f64) -> f64 {
+pub fn between(points: &[(f64, f64)], t: f64) -> f64 {
     let after = points.partition_point(|&(at, _)| at <= t);
     match (after.checked_sub(1).and_then(|before| points.get(before)), points.get(after)) {
         (Some(&(from, first)), Some(&(to, last))) => first + (last - first) * (t - from) / (to - from),
