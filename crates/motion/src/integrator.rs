@@ -178,6 +178,7 @@ impl Integrator {
 
     /// The balance of forces that the last step solved, at some of the dofs; `None` before the first step, and before
     /// the first step after a resume.
+    #[doc(hidden)]
     pub fn balance(&self, at: &[usize]) -> Option<Balance> {
         let before = self.before.as_ref()?;
         Some(self.scheme.balance(self.step, before, &self.state, at))
