@@ -41,8 +41,8 @@ pub struct Deformation {
     pub strain: (f64, usize),
     /// The largest rotation, in radians if it is small, and its element.
     pub rotation: (f64, usize),
-    /// The strain or rotation beyond which no body has more than [`SINGULAR`] of its volume, or of its energy; zero if
-    /// it is below [`SMALL`].
+    /// The strain or rotation beyond which no body has more than `SINGULAR` of its volume, or of its energy; zero if
+    /// it is below `SMALL`.
     pub widespread: f64,
 }
 

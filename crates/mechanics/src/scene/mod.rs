@@ -107,7 +107,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`GmshFile::read`](crate::fem::GmshFile::read) and [`GmshFile::mesh`](crate::fem::GmshFile::mesh);
-    /// [`Error::Mesh`] for a mesh of which no boundary can be held while another is pressed.
+    /// [`Error::Fem`] for a mesh of which no boundary can be held while another is pressed.
     pub fn start(file: &Path, named: &str) -> Result<String, Error> {
         first_scene(file, named)
     }

@@ -31,7 +31,7 @@ impl<'a> CalculixFiles<'a> {
     /// The files of the answers to the steps of a deck, in their order.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if the mesh of an answer does not come from a deck.
+    /// [`Error::Fem`] if the mesh of an answer does not come from a deck.
     pub fn new(steps: &'a [(Answer, Requests)]) -> Result<Self, Error> {
         steps
             .iter()

@@ -174,7 +174,7 @@ impl BodyShape for HalfDiscSpec {
 /// ```
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element that is not plane, a centre that is not finite, more than `MAX_NODES` nodes;
+/// [`Error::Fem`] for an element that is not plane, a centre that is not finite, more than `MAX_NODES` nodes;
 /// [`qp::LinearError::Setting`](signorini_qp::LinearError::Setting) for a radius or a zone out of its range.
 pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 2 {
@@ -289,7 +289,7 @@ impl BodyShape for RingSpec {
 /// angle). It is closed if the angles span 360 degrees.
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element that is not plane, fewer than two radii or angles, values that do not increase, an
+/// [`Error::Fem`] for an element that is not plane, fewer than two radii or angles, values that do not increase, an
 /// inner radius that is not positive, angles of more than 360 degrees or steps of 180 or more, more than
 /// `MAX_NODES` nodes.
 pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) -> Result<Mesh, Error> {

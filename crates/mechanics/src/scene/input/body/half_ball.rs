@@ -99,7 +99,7 @@ impl BodyShape for HalfBallSpec {
 /// and `symmetry-y` (y = centre).
 ///
 /// # Errors
-/// [`Error::Mesh`] for a centre that is not finite, more than `MAX_NODES` nodes;
+/// [`Error::Fem`] for a centre that is not finite, more than `MAX_NODES` nodes;
 /// [`qp::LinearError::Setting`](signorini_qp::LinearError::Setting) for a radius or a zone out of its range.
 pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, sides: [Sides; 2]) -> Result<Mesh, Error> {
     let graded = Grading::new(radius, zone)?;

@@ -58,7 +58,7 @@ impl BodyShape for RectangleSpec {
 /// edges in the direction of growing coordinates.
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element that is not plane, fewer than two lines, lines that do not increase, or more than
+/// [`Error::Fem`] for an element that is not plane, fewer than two lines, lines that do not increase, or more than
 /// `MAX_NODES` nodes.
 pub fn rectangle(x: &[f64], y: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 2 {
@@ -158,7 +158,7 @@ impl BodyShape for BarSpec {
 /// `right`.
 ///
 /// # Errors
-/// [`Error::Mesh`] for fewer than two nodes, coordinates that do not increase, or more than
+/// [`Error::Fem`] for fewer than two nodes, coordinates that do not increase, or more than
 /// `MAX_NODES`.
 pub fn bar(x: &[f64]) -> Result<Mesh, Error> {
     check_lines(&[("x", x)], 1)?;
@@ -235,7 +235,7 @@ impl BodyShape for BoxSpec {
 /// outside.
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element of lower dimension, fewer than two lines, lines that do not increase, or more than
+/// [`Error::Fem`] for an element of lower dimension, fewer than two lines, lines that do not increase, or more than
 /// `MAX_NODES` nodes.
 pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 3 {
