@@ -6,12 +6,14 @@
 //! use signorini_deck::{DeckScene, Reading};
 //! # let folder = std::env::temp_dir().join("signorini_deck_example");
 //! # std::fs::create_dir_all(&folder).unwrap();
-//! # let file = folder.join("rod.inp");
-//! let deck = "*NODE\n1, 0., 0., 0.\n2, 2., 0., 0.\n*ELEMENT, TYPE=T3D2, ELSET=ROD\n1, 1, 2\n*MATERIAL, NAME=M\n*ELASTIC\n\
-//!     100., 0.\n*SOLID SECTION, MATERIAL=M, ELSET=ROD\n1.\n*BOUNDARY\n1, 1, 3\n*STEP\n*STATIC\n*END STEP\n";
+//! # let file = folder.join("square.inp");
+//! // A square, held at a corner.
+//! let deck = "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, TYPE=CPE4, ELSET=E\n1, 1, 2, 3, 4\n*MATERIAL, NAME=M\n\
+//!     *ELASTIC\n100., .3\n*SOLID SECTION, MATERIAL=M, ELSET=E\n*BOUNDARY\n1, 1, 2\n*STEP\n*STATIC\n*END STEP\n";
 //! std::fs::write(&file, deck).unwrap();
-//! let reading = Reading { permits: &[], step: None, earlier: &[] };
-//! println!("{:?}", DeckScene::read(&file, "rod.inp", reading).map(|scene| scene.text));
+//! let scene = DeckScene::read(&file, "square.inp", Reading { permits: &[], step: None, earlier: &[] })?;
+//! assert!(scene.text.contains(r#""material": {"young": 100, "poisson": 0.3}"#), "{}", scene.text);
+//! # Ok::<(), signorini_fem::Error>(())
 //! ```
 
 #![forbid(unsafe_code)]

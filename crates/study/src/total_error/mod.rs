@@ -23,7 +23,7 @@ use signorini_mechanics::scene::{Answer, Model, Scene};
 /// Refines the mesh of a scene until its total error is at most `goal`, as with the default settings.
 ///
 /// ```
-/// use signorini_mechanics::{Scene, study};
+/// use signorini_mechanics::Scene;
 ///
 /// let scene = Scene::from_json(
 ///     r#"{
@@ -35,7 +35,7 @@ use signorini_mechanics::scene::{Answer, Model, Scene};
 ///     }"#,
 ///     "block",
 /// )?;
-/// let found = study::total_error(&scene, 0.2)?;
+/// let found = signorini_study::total_error(&scene, 0.2)?;
 /// assert!(found.total_error.guaranteed && found.total_error.bound <= 0.2);
 /// # Ok::<(), signorini_mechanics::Error>(())
 /// ```
