@@ -25,6 +25,7 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// The vector `[x, y, z]` from the end of b to the end of a, if both begin in one point: their difference, in their
 /// unit.
+#[inline]
 pub fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
@@ -42,21 +43,25 @@ pub fn shifted(from: [f64; 3], share: f64, way: [f64; 3]) -> [f64; 3] {
 }
 
 /// The middle of two points.
+#[inline]
 pub fn midpoint(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0, (a[2] + b[2]) / 2.0]
 }
 
 /// The Euclidean norm of a vector `[x, y, z]`, in its unit: how far its end lies from its beginning.
+#[inline]
 pub fn length(vector: [f64; 3]) -> f64 {
     vector[0].hypot(vector[1]).hypot(vector[2])
 }
 
 /// The distance of two points.
+#[inline]
 pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     length(minus(a, b))
 }
 
 /// The vector scaled to length 1; zero stays zero.
+#[inline]
 pub fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = length(vector);
     if length > 0.0 { vector.map(|component| component / length) } else { vector }
@@ -148,6 +153,7 @@ pub fn sorted(nodes: impl IntoIterator<Item = usize>) -> Vec<usize> {
 }
 
 /// The key of an edge: its two nodes, increasing.
+#[inline]
 pub fn key(a: usize, b: usize) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }

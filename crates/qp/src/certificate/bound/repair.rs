@@ -60,6 +60,7 @@ pub struct Repair<'a> {
     pub answer: &'a Answer<'a>,
     rows: RowsOnBoundary,
     pub violation: Vec<f64>,
+    /// g of each row, in the units of `violation`; infinite without an obstacle.
     pub gap: Vec<f64>,
     pub multiplier: Vec<f64>,
     /// The sweep of the residual: squares of the interior, and the boundary.
@@ -279,10 +280,33 @@ mod tests {
             [witness.error.terms[0], witness.left.terms[0]] = terms;
             repair.bound(&witness).whole.is_finite()
         };
-        // The terms of both forces add up; a force of 4 beside terms of 5e15 is rounding, beside 1e15 it is not.
-        assert!(holds([0.0, 0.0]));
+        // The terms of both forces add up; a force of 4 beside terms of 1e16 is rounding, beside 1e15 it is not.
+        assert!(holds([0.0, 0.0]) && holds([5e14, 5e14]));
         for terms in [[1e16, 0.0], [0.0, 1e16], [1e16, 1e16]] {
             assert!(!holds(terms), "{terms:?}");
+        }
+    }
+
+    #[test]
+    fn rows_that_contradict_each_other_have_no_witness_however_far_the_answer_has_travelled() {
+        // At 1e15 a distance is rounded by more than 0.1; u <= 1 and -2 u <= -2 meet there, u <= 1 and -2 u <= -2.1 do
+        // not. The order of the rows and their units do not matter.
+        for (unit, rows) in [(1.0, [0, 1]), (1e9, [0, 1]), (1.0, [1, 0])] {
+            let is_met = |second: f64| {
+                let mut gaps = [0.0; 2];
+                (gaps[rows[0]], gaps[rows[1]]) = (unit, -2.0 * unit * second);
+                let problem = ContactProblem::of_entries(
+                    &[(0, 0, 4.0)],
+                    &[8.0],
+                    &[(rows[0], 0, unit), (rows[1], 0, -2.0 * unit)],
+                    &gaps,
+                );
+                let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+                let answer = Answer::of(&problem, &[1e15], &[-1.0; 2]);
+                let repair = Repair::new(&norm, &answer).unwrap();
+                repair.settle(&[true, true], false).is_some()
+            };
+            assert!(is_met(1.0) && !is_met(1.05) && !is_met(1.0001), "{unit}, {rows:?}");
         }
     }
 

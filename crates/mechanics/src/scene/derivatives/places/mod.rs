@@ -23,7 +23,7 @@ pub(super) use slopes::Slopes;
 use slopes::add_at;
 pub(crate) use slopes::{Pairing, add_width, areas_by_places};
 
-use super::effect::{Why, derivative};
+use super::effect::{Why, derivative, in_words};
 use super::output::{Direct, Smooth, by_component, moment_of, obstacles_of, stress_of};
 use crate::error::Error;
 use crate::fem::assembly::{
@@ -45,23 +45,19 @@ use crate::scene::models::load::{Acting, acting};
 use crate::scene::models::model::{check_multiplier, place};
 use crate::scene::models::rows::ContactRow;
 
-fn said(error: impl ToString) -> String {
-    error.to_string()
-}
-
 /// The change of R with the place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), per length.
 pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, String> {
     refused(scene).map_or(Ok(()), Err)?;
     let (answer, model) = (pairing.answer, pairing.answer.model());
     let (body, parts) = (model.body(), &model.parts);
-    check_multiplier(model, pairing.forces).map_err(said)?;
-    let motion = parts.unknowns.motion(pairing.adjoint).map_err(said)?;
-    let adjoint = parts.conditions.dofs.expand_motion(&motion).map_err(said)?;
+    check_multiplier(model, pairing.forces).map_err(in_words)?;
+    let motion = parts.unknowns.motion(pairing.adjoint).map_err(in_words)?;
+    let adjoint = parts.conditions.dofs.expand_motion(&motion).map_err(in_words)?;
     let mut gradient = vec![0.0; body.nodal_dofs()];
     internal_work_by_places(body, answer.displacement(), &adjoint, &mut gradient)?;
     gradient.iter_mut().for_each(|entry| *entry = 0.0 - *entry);
-    add_loads(scene, body, &adjoint, &mut gradient).map_err(said)?;
-    add_springs(scene, body, [answer.displacement(), &adjoint], &mut gradient).map_err(said)?;
+    add_loads(scene, body, &adjoint, &mut gradient).map_err(in_words)?;
+    add_springs(scene, body, [answer.displacement(), &adjoint], &mut gradient).map_err(in_words)?;
     slopes::add(pairing, &adjoint, &mut gradient)?;
     Ok(gradient)
 }
