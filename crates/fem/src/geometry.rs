@@ -159,7 +159,7 @@ pub fn key(a: usize, b: usize) -> [usize; 2] {
 }
 
 /// The cells around every point, by one counting sort.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Around {
     starts: Vec<u32>,
     cells: Vec<u32>,

@@ -200,7 +200,7 @@ pub(super) fn of_refined(answer: &Answer, solution: &Solution) -> Result<Vec<War
 pub(super) fn check_motion(model: &Model, largest: f64) -> Result<(), Error> {
     let is_rounding = largest > 0.0 && largest <= ROUNDING_OF_PLACES * model.mesh().size();
     let is_loaded = model.problem().load().iter().any(|&force| force != 0.0);
-    let is_pressed = (0..model.obstacles().len()).any(|obstacle| model.parts.unknowns.pressed.contains(&obstacle));
+    let is_pressed = (0..model.obstacles().len()).any(|obstacle| model.parts.pressed.contains(&obstacle));
     if !is_rounding || is_loaded || is_pressed {
         return Ok(());
     }
@@ -412,7 +412,7 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<Warning> {
 /// The deepest place of the undeformed body in an obstacle, in words; `None` if it lies in none. An obstacle that a
 /// force presses moves to the body first.
 pub(super) fn initial_overlap(model: &Model) -> Option<String> {
-    let stands = |row: usize| !model.parts.unknowns.pressed.contains(&model.rows()[row].obstacle);
+    let stands = |row: usize| !model.parts.pressed.contains(&model.rows()[row].obstacle);
     let gaps = model.problem().inequalities_given().1.iter().copied().enumerate().filter(|&(row, _)| stands(row));
     let (row, gap) = gaps.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let (unit, row) = (&model.units().length, &model.rows()[row]);

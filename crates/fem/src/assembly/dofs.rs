@@ -1,12 +1,14 @@
-//! Free and supported dofs: eliminate, and expand again; the frames of nodes at inclined supports; rigid-body modes.
+//! The unknowns of a body: u = C y + u0. Supports eliminate dofs, frames turn them, and nodes may follow motions.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use super::PositiveBasis;
 use crate::body::ElasticBody;
+use crate::dense::DenseMatrix;
 use crate::error::Error;
-use crate::geometry::{COORDINATES, dot, shifted, unit};
+use crate::geometry::{COORDINATES, cross, dot, shifted, unit};
 use crate::mesh::Mesh;
 use signorini_linear as linear;
 
@@ -16,10 +18,17 @@ const SUPPORTED: usize = usize::MAX;
 /// A component of a vector along an axis of a frame below this, relative to the vector, is rounding of the frame.
 const NO_COMPONENT: f64 = 1e-14;
 
-/// The free dofs, their numbers in the problem, and the displacement of the supported dofs.
+/// Takes the place of the number at a dof of a node that follows motions.
+const FOLLOWING: usize = usize::MAX - 1;
+
+/// Singular values below this, relative to the largest, are rounding of the places of nodes.
+const DEPENDENT: f64 = 1e-12;
+
+/// The unknowns of a body, and the displacements of its nodes as affine functions of them: u = C y + u0.
 ///
-/// The dofs of a node run along the coordinate axes; those of a node with a [`Frame`] run along the axes of the frame
-/// and are called local dofs. Nodal vectors always run along the coordinate axes.
+/// The unknowns are the free dofs, then the motions that some nodes follow, and then those without nodes. The dofs of a
+/// node run along the coordinate axes; those of a node with a [`Frame`] run along the axes of the frame and are called
+/// local dofs. Nodal vectors always run along the coordinate axes.
 ///
 /// On quadratic faces in space that may touch an obstacle, the dofs of a mid-side node are coefficients of shape
 /// functions with positive integrals; those of all other nodes are their displacements.
@@ -27,14 +36,41 @@ const NO_COMPONENT: f64 = 1e-14;
 pub struct DofMap {
     /// Zero at free dofs.
     prescribed: Vec<f64>,
-    /// [`SUPPORTED`] at supported dofs.
+    /// [`SUPPORTED`] at supported dofs, [`FOLLOWING`] at those of nodes that follow motions.
     number: Vec<usize>,
     free: Vec<usize>,
-    /// Dofs of a node; used only for frames.
+    /// Dofs of a node; used only for frames and coefficients.
     dimension: usize,
     frames: BTreeMap<usize, Frame>,
+    /// The nodes whose dofs are not their displacements along the coordinate axes: those with frames, and followers.
+    moved: BTreeMap<usize, Moved>,
+    /// The group of each follower.
+    group_of: BTreeMap<usize, usize>,
+    /// The first motion of each group, the first one without nodes, and the number of all unknowns.
+    motions: Vec<usize>,
     /// The coefficients at mid-side nodes.
     pub basis: PositiveBasis,
+}
+
+/// The displacement of a node, or its coefficient, as a function of unknowns: `offset + sum of y_k v_k`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// The part that no unknown changes, [x, y, z], in length.
+    pub offset: [f64; 3],
+    /// Unknowns y_k, each with the displacement v_k by one of it.
+    pub by_unknown: Vec<ByOne>,
+}
+
+/// An unknown, and the displacement [x, y, z] of a node by one of it.
+pub type ByOne = (usize, [f64; 3]);
+
+/// Nodes that follow the same motions.
+#[derive(Clone, Debug, Default)]
+pub struct Followers {
+    /// How many motions are unknown.
+    pub motions: usize,
+    /// The nodes, with the motions by their numbers from 0.
+    pub nodes: Vec<(usize, Moved)>,
 }
 
 /// The displacement of a node, or its coefficient, along a vector: the sum of `coefficient * free dof` and of the part
@@ -67,8 +103,9 @@ impl DofMap {
         }
         free.shrink_to_fit();
         let prescribed = prescribed.into_iter().map(Option::unwrap_or_default).collect();
-        let (frames, basis) = (BTreeMap::new(), PositiveBasis::default());
-        Ok(DofMap { prescribed, number, free, dimension: 1, frames, basis })
+        let (frames, moved, group_of) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        let (motions, basis) = (vec![free.len(); 2], PositiveBasis::default());
+        Ok(DofMap { prescribed, number, free, dimension: 1, frames, moved, group_of, motions, basis })
     }
 
     /// From one entry per dof, `dimension` per node, in length; those of the nodes in `frames` are local: along the
@@ -84,8 +121,146 @@ impl DofMap {
         let nodes = prescribed.len().checked_div(dimension).unwrap_or(0);
         match frames.keys().find(|&&node| node >= nodes) {
             Some(node) => Err(Error::Mesh { message: format!("a frame for node {node}, but there are {nodes} nodes") }),
-            None => Ok(DofMap { dimension, frames, ..Self::new(prescribed)? }),
+            None => {
+                let mut dofs = DofMap { dimension, frames, ..Self::new(prescribed)? };
+                dofs.moved = dofs.frames.iter().map(|(&node, frame)| (node, dofs.in_frame(node, frame))).collect();
+                Ok(dofs)
+            }
         }
+    }
+
+    /// The displacement of a node with a frame.
+    fn in_frame(&self, node: usize, frame: &Frame) -> Moved {
+        let mut moved = Moved::default();
+        for (dof, &axis) in (self.dimension * node..self.dimension * (node + 1)).zip(&frame.axes) {
+            match self.number(dof) {
+                Some(number) => moved.by_unknown.push((number, axis)),
+                None => moved.offset = shifted(moved.offset, self.prescribed[dof], axis),
+            }
+        }
+        moved
+    }
+
+    /// The same with nodes that follow motions, group by group, instead of unknowns of their own; a node follows one
+    /// group. At a node with a coefficient it is the coefficient that follows.
+    #[doc(hidden)]
+    pub fn with_followers(mut self, dimension: usize, groups: Vec<Followers>) -> Self {
+        for (group, followers) in groups.iter().enumerate() {
+            for &(node, _) in &followers.nodes {
+                self.number[dimension * node..dimension * (node + 1)].fill(FOLLOWING);
+                self.prescribed[dimension * node..dimension * (node + 1)].fill(0.0);
+                self.frames.remove(&node);
+                self.group_of.insert(node, group);
+            }
+        }
+        self.free.retain(|&dof| self.number[dof] != FOLLOWING);
+        self.free.iter().enumerate().for_each(|(number, &dof)| self.number[dof] = number);
+        self.dimension = dimension;
+        self.moved = self.frames.iter().map(|(&node, frame)| (node, self.in_frame(node, frame))).collect();
+        self.motions = vec![self.free.len()];
+        for Followers { motions, nodes } in groups {
+            let first = self.count();
+            for (node, mut moved) in nodes {
+                moved.by_unknown.iter_mut().for_each(|of| of.0 += first);
+                self.moved.insert(node, moved);
+            }
+            self.motions.push(first + motions);
+        }
+        self.motions.push(self.count());
+        self
+    }
+
+    /// The same with more unknowns at the end, which move no node.
+    #[doc(hidden)]
+    pub fn with_further(mut self, count: usize) -> Self {
+        self.motions.last_mut().into_iter().for_each(|all| *all += count);
+        self
+    }
+
+    /// Number of unknowns: free dofs, then motions.
+    pub fn count(&self) -> usize {
+        self.motions.last().copied().unwrap_or(0)
+    }
+
+    /// Number of groups of nodes that follow the same motions.
+    #[doc(hidden)]
+    pub fn groups(&self) -> usize {
+        self.motions.len() - 2
+    }
+
+    /// The unknown motions of a group of followers.
+    #[doc(hidden)]
+    pub fn motions(&self, group: usize) -> Range<usize> {
+        self.motions[group]..self.motions[group + 1]
+    }
+
+    /// The unknowns next to a displacement [x, y, z] of each node, or of its coefficient, without what is prescribed, in
+    /// length: motions that nodes follow by least squares; zero for those without nodes.
+    #[doc(hidden)]
+    pub fn nearest(&self, at: impl Fn(usize) -> [f64; 3]) -> Vec<f64> {
+        let of_dof = |&dof: &usize| dot(self.axes(dof / self.dimension)[dof % self.dimension], at(dof / self.dimension));
+        let mut values: Vec<f64> = self.free.iter().map(of_dof).collect();
+        values.resize(self.count(), 0.0);
+        for group in 0..self.groups() {
+            // The normal equations of its motions, which are independent.
+            let motions = self.motions(group);
+            let (mut matrix, mut right) = (vec![vec![0.0; motions.len()]; motions.len()], vec![0.0; motions.len()]);
+            for (node, _) in self.group_of.iter().filter(|of| *of.1 == group) {
+                let by_unknown = &self.moved[node].by_unknown;
+                for &(row, along) in by_unknown {
+                    right[row - motions.start] += dot(along, at(*node));
+                    for &(column, other) in by_unknown {
+                        matrix[row - motions.start][column - motions.start] += dot(along, other);
+                    }
+                }
+            }
+            let matrix = DenseMatrix::from_fn(right.len(), right.len(), |row, column| matrix[row][column]);
+            values[motions].copy_from_slice(&matrix.singular_values().solve(&right, DEPENDENT));
+        }
+        values
+    }
+
+    /// The group that a node follows.
+    #[inline]
+    pub(super) fn group_of(&self, node: usize) -> Option<usize> {
+        self.group_of.get(&node).copied()
+    }
+
+    /// Returns `true` if the dofs of a node are its displacements along the coordinate axes.
+    #[inline]
+    pub(super) fn is_plain(&self, node: usize) -> bool {
+        !self.moved.contains_key(&node) && self.basis.ends(node).is_none()
+    }
+
+    /// Returns `true` if every node is plain.
+    pub(super) fn all_plain(&self) -> bool {
+        self.moved.is_empty() && self.basis.is_nodal()
+    }
+
+    /// The displacement of a node, or its coefficient, in the unknowns.
+    fn moved(&self, node: usize, dimension: usize) -> Cow<'_, Moved> {
+        if let Some(moved) = self.moved.get(&node) {
+            return Cow::Borrowed(moved);
+        }
+        let mut moved = Moved::default();
+        for (axis, &along) in COORDINATES.iter().enumerate().take(dimension) {
+            let dof = dimension * node + axis;
+            match self.number(dof) {
+                Some(number) => moved.by_unknown.push((number, along)),
+                None => moved.offset[axis] = self.prescribed[dof],
+            }
+        }
+        Cow::Owned(moved)
+    }
+
+    /// The displacement of a node itself, never its coefficient, by one of each unknown.
+    pub(crate) fn displaced_by(&self, node: usize, dimension: usize) -> Vec<ByOne> {
+        let mut all = Vec::new();
+        for (of, share) in self.basis.values(node) {
+            let moved = self.moved(of, dimension);
+            all.extend(moved.by_unknown.iter().map(|&(unknown, by_one)| (unknown, by_one.map(|part| share * part))));
+        }
+        all
     }
 
     /// The same with coefficients at the mid-side nodes of `boundaries`, which obstacles may touch, if `body` has
@@ -178,36 +353,16 @@ impl DofMap {
         self.frame(node).map_or(&COORDINATES, Frame::axes)
     }
 
-    /// The displacement of `node` along `vector`, which has one entry per coordinate and no unit, in terms of the free
-    /// dofs: the form of a contact row or of a measured displacement. At a mid-side node with a coefficient it is the
-    /// coefficient.
+    /// The displacement of `node` along `vector`, which has one entry per coordinate and no unit, in terms of the
+    /// unknowns: the form of a contact row or of a measured displacement. At a mid-side node with a coefficient it is
+    /// the coefficient.
     pub fn along(&self, node: usize, vector: &[f64]) -> Along {
-        let mut local = vector.to_vec();
-        if let Some(frame) = self.frame(node) {
-            frame.turn_in(&mut local);
-            let rounding = NO_COMPONENT * local.iter().fold(0.0, |length: f64, part| length.hypot(*part));
-            local.iter_mut().filter(|part| part.abs() < rounding).for_each(|part| *part = 0.0);
-        }
-        let mut along = Along { free: Vec::with_capacity(local.len()), prescribed: 0.0 };
-        for (axis, &component) in local.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-            let dof = vector.len() * node + axis;
-            match self.number(dof) {
-                Some(number) => along.free.push((number, component)),
-                None => along.prescribed += component * self.prescribed(dof).unwrap_or(0.0),
-            }
-        }
-        along
-    }
-
-    /// The displacement of `node` itself, never its coefficient, along `vector`, which has one entry per coordinate.
-    pub(crate) fn displacement_along(&self, node: usize, vector: &[f64]) -> Along {
-        let mut sum = Along { free: Vec::new(), prescribed: 0.0 };
-        for (of, share) in self.basis.values(node) {
-            let along = self.along(of, vector);
-            sum.prescribed += share * along.prescribed;
-            sum.free.extend(along.free.into_iter().map(|(number, part)| (number, share * part)));
-        }
-        sum
+        let moved = self.moved(node, vector.len());
+        let part = |by_one: &[f64; 3]| vector.iter().zip(by_one).map(|(entry, part)| entry * part).sum::<f64>();
+        let rounding = NO_COMPONENT * vector.iter().fold(0.0, |length: f64, part| length.hypot(*part));
+        let along = moved.by_unknown.iter().map(|(unknown, by_one)| (*unknown, part(by_one)));
+        let free = along.filter(|along| along.1 != 0.0 && along.1.abs() >= rounding).collect();
+        Along { free, prescribed: part(&moved.offset) }
     }
 
     /// The nodal dof of each free dof, increasing: entry i is the index, from 0, among the `dim * n_nodes` nodal dofs.
@@ -215,79 +370,96 @@ impl DofMap {
         &self.free
     }
 
-    /// The number of nodal dof `dof` among the free dofs, from 0; `None` if it is supported.
+    /// The number of nodal dof `dof` among the free dofs, from 0; `None` if it is supported, or follows motions.
     #[inline]
     pub fn number(&self, dof: usize) -> Option<usize> {
-        self.number.get(dof).copied().filter(|&number| number != SUPPORTED)
+        self.number.get(dof).copied().filter(|&number| number < FOLLOWING)
     }
 
     /// The displacement of nodal dof `dof`, in length, if it is supported.
     pub fn prescribed(&self, dof: usize) -> Option<f64> {
-        let supported = self.number.get(dof) == Some(&SUPPORTED);
-        self.prescribed.get(dof).copied().filter(|_| supported)
+        self.prescribed.get(dof).copied().filter(|_| self.is_supported(dof))
     }
 
-    /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs (`free`, one entry per free
-    /// dof, in length); supported dofs take their prescribed values.
+    /// Returns `true` if a support prescribes nodal dof `dof`.
+    pub fn is_supported(&self, dof: usize) -> bool {
+        self.number.get(dof) == Some(&SUPPORTED)
+    }
+
+    /// Returns `true` if something is prescribed that is not zero: a displacement of a support or of followers.
+    pub fn is_moved(&self) -> bool {
+        self.prescribed.iter().any(|&value| value != 0.0) || self.moved.values().any(|moved| moved.offset != [0.0; 3])
+    }
+
+    /// Nodal displacements, length `dim * n_nodes`, in length, from the unknowns (`free`, one entry each, in length);
+    /// supported dofs take their prescribed values.
     pub fn expand(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
-        self.expand_with(free, |dof| self.prescribed(dof).unwrap_or(0.0))
+        self.expand_with(free, 1.0)
     }
 
-    /// A nodal motion, length `dim * n_nodes`, from that of the free dofs (`free`, one entry per free dof), both in
-    /// length, or in length over time; supported dofs stay at zero.
+    /// A nodal motion, length `dim * n_nodes`, from that of the unknowns (`free`, one entry each), both in length, or in
+    /// length over time; supported dofs stay at zero.
     pub fn expand_motion(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
-        self.expand_with(free, |_| 0.0)
+        self.expand_with(free, 0.0)
     }
 
-    fn expand_with(&self, free: &[f64], supported: impl Fn(usize) -> f64) -> Result<Vec<f64>, Error> {
-        linear::Error::check_length("displacement", free.len(), self.free.len(), "free dofs")?;
-        let value = |(dof, &number): (usize, &usize)| if number == SUPPORTED { supported(dof) } else { free[number] };
-        let mut nodal: Vec<f64> = self.number.iter().enumerate().map(value).collect();
-        self.turn_back(&mut nodal);
+    /// As [`expand`](Self::expand), with this share of what is prescribed.
+    fn expand_with(&self, free: &[f64], share: f64) -> Result<Vec<f64>, Error> {
+        linear::Error::check_length("displacement", free.len(), self.count(), "free dofs")?;
+        let value = |(&number, prescribed): (&usize, &f64)| free.get(number).copied().unwrap_or(share * prescribed);
+        let mut nodal: Vec<f64> = self.number.iter().zip(&self.prescribed).map(value).collect();
+        for (node, moved) in &self.moved {
+            let offset = moved.offset.map(|part| share * part);
+            let sum = moved.by_unknown.iter().fold(offset, |sum, &(unknown, by)| shifted(sum, free[unknown], by));
+            nodal[self.dimension * node..].iter_mut().zip(sum).take(self.dimension).for_each(|(at, part)| *at = part);
+        }
         self.basis.evaluate(&mut nodal, self.dimension);
         Ok(nodal)
     }
 
-    /// The entries of nodal forces (`nodal`, length `dim * n_nodes`, in force) at the free dofs: one entry per free
-    /// dof, in force.
+    /// The forces along the unknowns of nodal forces (`nodal`, length `dim * n_nodes`, in force): one entry for each, in
+    /// force.
     pub fn restrict(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
-        let local = self.turned_in(nodal)?;
-        Ok(self.free.iter().map(|&dof| local[dof]).collect())
+        let forces = self.on_coefficients(nodal)?;
+        let mut along: Vec<f64> = self.free.iter().map(|&dof| forces[dof]).collect();
+        along.resize(self.count(), 0.0);
+        for (node, moved) in &self.moved {
+            let force = &forces[self.dimension * node..self.dimension * (node + 1)];
+            let is_own = |unknown: usize| unknown < self.free.len();
+            for (unknown, by_one) in &moved.by_unknown {
+                let work: f64 = force.iter().zip(by_one).map(|(force, part)| force * part).sum();
+                along[*unknown] = if is_own(*unknown) { work } else { along[*unknown] + work };
+            }
+        }
+        Ok(along)
     }
 
     /// The part of nodal forces (`nodal`, length `dim * n_nodes`, in force) along the supported dofs, of the same
     /// length: the reactions among the forces on all nodes.
     pub fn supported_part(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
-        self.part(nodal, |dof| self.number(dof).is_none())
+        self.part(nodal, |dof| self.is_supported(dof))
     }
 
     /// The part of nodal forces along some of the dofs.
     #[doc(hidden)]
     pub fn part(&self, nodal: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
-        let mut part = self.turned_in(nodal)?.into_owned();
+        let mut part = self.on_coefficients(nodal)?.into_owned();
+        let of_node = |node: usize| self.dimension * node..self.dimension * (node + 1);
+        self.frames.iter().for_each(|(&node, frame)| frame.turn_in(&mut part[of_node(node)]));
         part.iter_mut().enumerate().filter(|(dof, _)| !keeps(*dof)).for_each(|(_, value)| *value = 0.0);
-        self.turn_back(&mut part);
+        self.frames.iter().for_each(|(&node, frame)| frame.turn_back(&mut part[of_node(node)]));
         self.basis.scatter(&mut part, self.dimension);
         Ok(part)
     }
 
-    /// Nodal forces as forces on coefficients; the entries of nodes with frames run along the axes of the frame.
-    fn turned_in<'a>(&self, nodal: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
+    /// Nodal forces as forces on coefficients.
+    fn on_coefficients<'a>(&self, nodal: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         linear::Error::check_length("nodal vector", nodal.len(), self.nodal_count(), "nodal dofs")?;
-        let mut local = Cow::Borrowed(nodal);
+        let mut forces = Cow::Borrowed(nodal);
         if !self.basis.is_nodal() {
-            self.basis.gather(local.to_mut(), self.dimension);
+            self.basis.gather(forces.to_mut(), self.dimension);
         }
-        for (node, frame) in &self.frames {
-            frame.turn_in(&mut local.to_mut()[self.dimension * node..self.dimension * (node + 1)]);
-        }
-        Ok(local)
-    }
-
-    fn turn_back(&self, local: &mut [f64]) {
-        for (node, frame) in &self.frames {
-            frame.turn_back(&mut local[self.dimension * node..self.dimension * (node + 1)]);
-        }
+        Ok(forces)
     }
 }
 
@@ -342,13 +514,13 @@ impl Frame {
     }
 
     /// Turns the entries of a node, one per axis, from the coordinate axes to the axes of the frame.
-    pub(super) fn turn_in(&self, entries: &mut [f64]) {
+    fn turn_in(&self, entries: &mut [f64]) {
         let local = self.axes.map(|axis| entries.iter().zip(axis).map(|(entry, part)| entry * part).sum());
         entries.iter_mut().zip(local).for_each(|(entry, value): (_, f64)| *entry = value);
     }
 
     /// Turns the entries of a node from the axes of the frame back to the coordinate axes.
-    pub(super) fn turn_back(&self, entries: &mut [f64]) {
+    fn turn_back(&self, entries: &mut [f64]) {
         let mut global = [0.0; 3];
         for (&entry, axis) in entries.iter().zip(self.axes) {
             global.iter_mut().zip(axis).for_each(|(sum, part)| *sum += entry * part);
@@ -362,31 +534,33 @@ pub fn perpendicular(vector: [f64; 3], axes: &[[f64; 3]]) -> [f64; 3] {
     axes.iter().fold(vector, |rest, &axis| shifted(rest, -dot(rest, axis), axis))
 }
 
-/// The rigid-body modes at the free dofs, one vector each, one entry per free dof: the translations, then the rotations
-/// about the centre of the mesh, divided by half its size so that all are dimensionless and of order one.
+/// How many rigid-body modes a body has, and the displacement [x, y, z] of a place by one of them: the translations,
+/// then the rotations about the centre of the mesh, divided by half its size so that all are dimensionless and of order
+/// one.
 ///
 /// A body of revolution is treated as its half plane: the distance from the axis is ignored.
-pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
-    let (mesh, dimension) = (body.mesh(), body.dimension());
-    let (least, most) = mesh.extent();
-    let size = mesh.size();
-    let rotations: &[[usize; 2]] = match dimension {
+pub fn rigid_motions(body: &ElasticBody) -> (usize, impl Fn(usize, [f64; 3]) -> [f64; 3]) {
+    let ((least, most), size, dimension) = (body.mesh().extent(), body.mesh().size(), body.dimension());
+    let axes: &[usize] = match dimension {
         1 => &[],
-        2 => &[[0, 1]],
-        _ => &[[1, 2], [2, 0], [0, 1]],
+        2 => &[2],
+        _ => &[0, 1, 2],
     };
-    let mut motions = vec![Vec::with_capacity(dofs.free().len()); dimension + rotations.len()];
-    for &dof in dofs.free() {
-        let (node, axis) = (dof / dimension, dof % dimension);
-        let direction = dofs.axes(node)[axis];
-        let place = dofs.basis.place(mesh.nodes(), node);
-        let from_middle = [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size);
-        for (translation, motion) in motions[..dimension].iter_mut().enumerate() {
-            motion.push(direction[translation]);
+    let motion = move |mode: usize, place: [f64; 3]| match mode.checked_sub(dimension) {
+        None => COORDINATES[mode],
+        Some(turn) => {
+            cross(COORDINATES[axes[turn]], [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size))
         }
-        for (&[first, second], motion) in rotations.iter().zip(&mut motions[dimension..]) {
-            motion.push(from_middle[first] * direction[second] - from_middle[second] * direction[first]);
-        }
-    }
-    motions
+    };
+    (dimension + axes.len(), motion)
+}
+
+/// The rigid-body modes at the free dofs, one vector each, one entry per free dof, as [`rigid_motions`].
+pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
+    let ((count, motion), dimension) = (rigid_motions(body), body.dimension());
+    let along = |mode: usize, dof: usize| {
+        let at = dofs.basis.place(body.mesh().nodes(), dof / dimension);
+        dot(dofs.axes(dof / dimension)[dof % dimension], motion(mode, at))
+    };
+    (0..count).map(|mode| dofs.free().iter().map(|&dof| along(mode, dof)).collect()).collect()
 }

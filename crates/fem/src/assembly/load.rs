@@ -195,14 +195,12 @@ fn add_force_at(
     }
 }
 
-/// The load of the free dofs, one entry per free dof, in force: the nodal load (`nodal`, length `dim * n_nodes`, in
-/// force) at the free dofs, minus the internal forces of the prescribed displacements, temperatures and initial
-/// stresses.
+/// The load of the unknowns, one entry each, in force: the nodal load (`nodal`, length `dim * n_nodes`, in force) along
+/// them, minus the internal forces of the prescribed displacements, temperatures and initial stresses.
 pub fn free_load(body: &ElasticBody, dofs: &DofMap, nodal: &[f64]) -> Result<Vec<f64>, Error> {
     let mut load = nodal.to_vec();
-    let is_moved = || (0..dofs.nodal_count()).any(|dof| dofs.prescribed(dof).is_some_and(|value| value != 0.0));
-    if body.has_own_stress() || is_moved() {
-        let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
+    if body.has_own_stress() || dofs.is_moved() {
+        let lifted = dofs.expand(&vec![0.0; dofs.count()])?;
         let forces = internal_force(body, &lifted)?;
         load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);
     }

@@ -5,7 +5,7 @@ use super::{DofMap, element_stiffness};
 use crate::body::{BodyElement, ElasticBody, Region};
 use crate::dense::DenseMatrix;
 use crate::error::Error;
-use crate::geometry::dot;
+use crate::geometry::{dot, length};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use signorini_linear::{SparseMatrix, SymmetricMatrix};
@@ -159,34 +159,28 @@ fn lumped(element: &ElementMass) -> Vec<f64> {
     if sums.iter().any(is_small) { scaled.collect() } else { sums }
 }
 
-/// The mass of the free dofs from that of the nodes, as [`nodal_mass`].
+/// A cosine below this is rounding of the axes of a frame.
+const RIGHT_ANGLE: f64 = 1e-14;
+
+/// The mass of the unknowns from that of the nodes, as [`nodal_mass`].
 pub fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let dimension = body.dimension();
-    let nodal = match dofs.basis.is_nodal() {
-        true => nodal.clone(),
-        false => {
-            let values =
-                (0..nodal.columns()).flat_map(|node| dofs.basis.values(node).map(move |(of, share)| (of, node, share)));
-            let values = SparseMatrix::from_triplets(nodal.rows(), nodal.columns(), &values.collect::<Vec<_>>())?;
-            SymmetricMatrix::from_lower(nodal.clone())?.congruent(&values)?.lower().clone()
-        }
-    };
+    let moved_by: Vec<_> = (0..nodal.columns()).map(|node| dofs.displaced_by(node, dimension)).collect();
     let mut entries = Vec::with_capacity(dimension * nodal.entries());
     for (row, column, value) in nodal.triplets() {
-        let [of_row, of_column] = [row, column].map(|node| dofs.axes(node));
-        for (i, own) in of_row.iter().enumerate().take(dimension) {
-            let Some(first) = dofs.number(dimension * row + i) else { continue };
-            for (j, other) in of_column.iter().enumerate().take(dimension) {
-                let cosine = if row == column { f64::from(i == j) } else { dot(*own, *other) };
-                if let Some(second) = dofs.number(dimension * column + j).filter(|_| cosine != 0.0) {
-                    entries.push((first, second, value * cosine));
+        for &(p, by_p) in &moved_by[row] {
+            for &(q, by_q) in &moved_by[column] {
+                let (product, size) = (dot(by_p, by_q), length(by_p) * length(by_q));
+                // Entries off the diagonal have a mirror image.
+                let times = if row != column && p == q { 2.0 } else { 1.0 };
+                if product.abs() > RIGHT_ANGLE * size && (row != column || p >= q) {
+                    entries.push((p.max(q), p.min(q), times * value * product));
                 }
             }
         }
     }
-    let free = dofs.free().len();
-    Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(free, free, &entries)?)?)
+    Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs.count(), dofs.count(), &entries)?)?)
 }
 
 // Moves the mass of contact nodes to their neighbours and applies the smallest linear correction of the density that

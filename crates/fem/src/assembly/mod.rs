@@ -14,7 +14,7 @@ mod shape_derivative;
 mod springs;
 mod stiffness;
 
-pub use dofs::{Along, perpendicular};
+pub use dofs::{Along, Followers, Moved, perpendicular, rigid_motions};
 pub use dofs::{DofMap, Frame, rigid_body_modes};
 pub use element_stiffness::element_stiffness;
 pub use load::{
@@ -33,5 +33,5 @@ pub use shape_derivative::{
     integral_by_places, internal_work_by_places, interpolated, own_energy, own_energy_by_places, own_energy_change,
 };
 pub use springs::{NodalForces, Springs};
-pub use stiffness::{add_to_nodes, of_cell};
+pub use stiffness::{add_to_nodes, of_cell, stiffness_on};
 pub use stiffness::{internal_force, stiffness};

@@ -6,7 +6,6 @@
 
 use std::collections::BTreeMap;
 
-use super::element_stiffness::ElementStiffness;
 use crate::element::{POSITIVE_SHARE as WEIGHT, ReferenceElement, positive_coefficient};
 use crate::mesh::Boundary;
 
@@ -119,22 +118,6 @@ impl PositiveBasis {
                 let force = forces[dimension * middle + axis] / (1.0 - 2.0 * WEIGHT);
                 ends.iter().for_each(|end| forces[dimension * end + axis] -= WEIGHT * force);
                 forces[dimension * middle + axis] = force;
-            }
-        }
-    }
-
-    /// Turns the stiffness of an element with these nodes into that of the coefficients.
-    pub fn change(&self, nodes: &[usize], stiffness: &mut ElementStiffness) {
-        if self.is_nodal() {
-            return;
-        }
-        let place = |node: usize| nodes.iter().position(|&other| other == node);
-        for (middle, &node) in nodes.iter().enumerate() {
-            for end in self.ends(node).into_iter().flatten().filter_map(place) {
-                stiffness.add_function(end, middle, WEIGHT);
-            }
-            if self.ends(node).is_some() {
-                stiffness.scale_function(middle, 1.0 - 2.0 * WEIGHT);
             }
         }
     }

@@ -7,11 +7,8 @@ use super::DofMap;
 use super::element_stiffness::Block;
 use super::load::for_each_point;
 use crate::body::ElasticBody;
-use crate::error::Error;
-use crate::geometry::{COORDINATES, length, unit};
+use crate::geometry::{length, unit};
 use crate::mesh::Boundary;
-use signorini_linear as linear;
-use signorini_linear::{SparseMatrix, SymmetricMatrix};
 
 /// Forces on some nodes, in force.
 pub type NodalForces = BTreeMap<usize, [f64; 3]>;
@@ -20,7 +17,7 @@ pub type NodalForces = BTreeMap<usize, [f64; 3]>;
 #[derive(Clone, Debug, Default)]
 pub struct Springs {
     /// The force on the first node against the displacement of the second node; every pair in both orders.
-    pairs: Vec<(usize, usize, Block)>,
+    pub(super) pairs: Vec<(usize, usize, Block)>,
     /// The nodes of a spring between nodes, each with its vector in the elongation; empty for springs to the ground.
     elongation: Vec<(usize, [f64; 3])>,
     /// The forces on nodes that do not move.
@@ -110,31 +107,9 @@ impl Springs {
         directions.map(|held| vec![held]).collect()
     }
 
-    /// The stiffness of the free dofs, with all springs added to it.
-    pub fn added_to(
-        all: &[Springs],
-        stiffness: &SymmetricMatrix,
-        dofs: &DofMap,
-        dimension: usize,
-    ) -> Result<SymmetricMatrix, Error> {
-        let mut entries: Vec<(usize, usize, f64)> = stiffness.lower().triplets().collect();
-        let along = |node: usize, axis: usize| dofs.displacement_along(node, &COORDINATES[axis][..dimension]).free;
-        for (a, b, block) in all.iter().flat_map(|springs| &springs.pairs) {
-            for (i, of_row) in block.iter().enumerate().take(dimension) {
-                for (j, &stiffness) in of_row.iter().enumerate().take(dimension).filter(|entry| *entry.1 != 0.0) {
-                    let of_b = along(*b, j);
-                    for (row, one) in along(*a, i) {
-                        let product = |&(column, other): &(usize, f64)| (row, column, stiffness * one * other);
-                        entries.extend(of_b.iter().filter(|entry| entry.0 <= row).map(product));
-                    }
-                }
-            }
-        }
-        if let Some((row, _, value)) = entries.iter().find(|entry| !entry.2.is_finite()) {
-            let at = format!("row {row}");
-            return Err(linear::Error::NotFinite { name: "stiffness", at, value: *value, allowed: "finite" }.into());
-        }
-        Ok(SymmetricMatrix::from_lower(SparseMatrix::from_triplets(stiffness.dim(), stiffness.dim(), &entries)?)?)
+    /// The nodes whose unknowns a spring between nodes couples.
+    pub(super) fn coupled(&self, dofs: &DofMap) -> Vec<usize> {
+        self.elongation.iter().flat_map(|&(node, _)| dofs.basis.values(node).map(|(of, _)| of)).collect()
     }
 }
 

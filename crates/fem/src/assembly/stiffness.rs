@@ -1,32 +1,31 @@
-//! K = sum of the element stiffnesses, in the free dofs, assembled directly into the lower triangle in compressed
-//! columns.
+//! K = sum of the stiffnesses of elements and springs, in the unknowns, assembled directly into the lower triangle in
+//! compressed columns.
 
 use std::ops::Range;
 
-use super::element_stiffness::{Block, ElementStiffness};
-use super::{DofMap, Frame, element_stiffness};
+use super::dofs::ByOne;
+use super::element_stiffness::ElementStiffness;
+use super::{DofMap, Springs, element_stiffness};
 use crate::body::{ElasticBody, Strained};
 use crate::element::{MAX_NODES, Tabulated};
 use crate::error::Error;
-use crate::geometry::{Around, Symmetric};
+use crate::geometry::{Around, Symmetric, dot};
 use crate::mesh::Mesh;
 use crate::threads::{in_order, on_parts, parts};
 use signorini_linear as linear;
 use signorini_linear::{SparseMatrix, SymmetricMatrix};
 
-/// The free dofs of one node: the number of the first, how many there are, and the axis of each: of the frame if the
-/// node has one.
+/// The free dofs of one plain node: the number of the first, how many there are, and the axis of each.
 #[derive(Clone, Copy, Default)]
-struct FreeAxes<'a> {
+struct FreeAxes {
     first: usize,
     count: usize,
     axes: [usize; 3],
-    frame: Option<&'a Frame>,
 }
 
-impl<'a> FreeAxes<'a> {
-    fn of(node: usize, dimension: usize, dofs: &'a DofMap) -> Self {
-        let mut free = FreeAxes { frame: dofs.frame(node), ..FreeAxes::default() };
+impl FreeAxes {
+    fn of(node: usize, dimension: usize, dofs: &DofMap) -> Self {
+        let mut free = FreeAxes::default();
         for axis in 0..dimension {
             if let Some(number) = dofs.number(dimension * node + axis) {
                 if free.count == 0 {
@@ -40,52 +39,64 @@ impl<'a> FreeAxes<'a> {
     }
 }
 
-/// The stiffness K of the free dofs (n x n), in force per length; only its lower triangle is ever built.
+/// The stiffness K of the unknowns (n x n), in force per length; only its lower triangle is ever built.
 pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, Error> {
+    stiffness_on(body, dofs, &[])
+}
+
+/// The stiffness K of the unknowns (n x n) of a body on springs, in force per length.
+#[doc(hidden)]
+pub fn stiffness_on(body: &ElasticBody, dofs: &DofMap, springs: &[Springs]) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
-    let (starts, rows) = lower_pattern(body.mesh(), dofs);
+    let pattern = Pattern::of(body.mesh(), dofs, springs);
+    let (starts, rows) = pattern.lower();
     let mut values = vec![0.0; rows.len()];
     let parts = parts(body.mesh().element_count());
-    // A part has the columns of whole nodes.
-    let first_node = |part: usize| match part == parts {
-        true => body.mesh().nodes().len(),
+    // A part has the columns of whole groups.
+    let first_group = |part: usize| match part == parts {
+        true => pattern.groups(),
         false => {
             let column = starts.partition_point(|&start| start < rows.len() / parts * part);
-            dofs.free().get(column).map_or(0, |dof| dof / body.dimension())
+            dofs.free().get(column).map_or(body.mesh().nodes().len(), |dof| dof / body.dimension())
         }
     };
-    let nodes: Vec<usize> = (0..=parts).map(first_node).collect();
-    let first_column = |&node: &usize| dofs.free().partition_point(|&dof| dof < node * body.dimension());
-    let bounds: Vec<usize> = nodes.iter().map(|node| starts[first_column(node)]).collect();
+    let groups: Vec<usize> = (0..=parts).map(first_group).collect();
+    let bounds: Vec<usize> = groups.iter().map(|&group| starts[pattern.first_column(group)]).collect();
     let congruent = Congruent::of(body);
     on_parts(&mut values, &bounds, |part, values| {
-        let columns =
-            Columns { starts: &starts, rows: &rows, nodes: nodes[part]..nodes[part + 1], first: bounds[part] };
+        let columns = Columns { starts: &starts, rows: &rows, range: groups[part]..groups[part + 1], first: bounds[part] };
         columns.add_elements(body, dofs, &congruent, values);
     });
+    let all = Columns { starts: &starts, rows: &rows, range: 0..pattern.groups(), first: 0 };
+    let moved_by = |node: usize| dofs.displaced_by(node, body.dimension());
+    for (a, b, block) in springs.iter().flat_map(|springs| &springs.pairs) {
+        all.add_block((&moved_by(*a), &moved_by(*b)), 0..starts.len(), |i, j| block[i][j], &mut values);
+    }
     if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
         let at = format!("row {}", rows[entry]);
         return Err(linear::Error::NotFinite { name: "stiffness", at, value: values[entry], allowed: "finite" }.into());
     }
-    Ok(SymmetricMatrix::from_lower(SparseMatrix::from_parts(dofs.free().len(), starts, rows, values))?)
+    Ok(SymmetricMatrix::from_lower(SparseMatrix::from_parts(dofs.count(), starts, rows, values))?)
 }
 
-/// The columns of some nodes that follow each other.
+/// The columns of some groups that follow each other.
 struct Columns<'a> {
     starts: &'a [usize],
     rows: &'a [u32],
-    nodes: Range<usize>,
+    range: Range<usize>,
     /// The place of their first entry.
     first: usize,
 }
 
 impl Columns<'_> {
-    /// Adds the elements around these nodes, in their order.
+    /// Adds the elements around these groups, in their order.
     fn add_elements(&self, body: &ElasticBody, dofs: &DofMap, congruent: &Congruent, values: &mut [f64]) {
         let tables = body.tabulated();
+        let columns = [self.range.start, self.range.end].map(|group| first_column(dofs, body.mesh(), group));
+        let is_here = |node: &usize| self.range.contains(node) || dofs.group_of(*node).is_some();
         let mut last: Option<(u32, ElementStiffness)> = None;
         for (element, nodes) in body.mesh().elements().enumerate() {
-            if !nodes.iter().any(|node| self.nodes.contains(node)) {
+            if !nodes.iter().any(is_here) {
                 continue;
             }
             let representative = congruent.representative(element);
@@ -96,18 +107,43 @@ impl Columns<'_> {
                     element_stiffness(body, &placed, tables.at(placed.kind))
                 }
             };
-            match dofs.basis.is_nodal() {
+            match dofs.all_plain() || nodes.iter().all(|&node| dofs.is_plain(node)) {
                 true => self.add_element(nodes, dofs, body.dimension(), &stiffness, values),
                 false => {
-                    let mut changed = stiffness.clone();
-                    dofs.basis.change(nodes, &mut changed);
-                    self.add_element(nodes, dofs, body.dimension(), &changed, values);
+                    let moved_by = |&node: &usize| dofs.displaced_by(node, body.dimension());
+                    let moved_by: Vec<_> = nodes.iter().map(moved_by).collect();
+                    for (a, of_a) in moved_by.iter().enumerate() {
+                        for (b, of_b) in moved_by.iter().enumerate() {
+                            let block = stiffness.block(a.max(b), a.min(b));
+                            let entry = |i: usize, j: usize| if a < b { block[j][i] } else { block[i][j] };
+                            self.add_block((of_a, of_b), columns[0]..columns[1], entry, values);
+                        }
+                    }
                 }
             }
             last = Some((representative, stiffness));
         }
     }
 
+    /// Adds the block of two nodes to the entries of the unknowns that move them, in some of the columns.
+    fn add_block(
+        &self,
+        (of_rows, of_columns): (&[ByOne], &[ByOne]),
+        columns: Range<usize>,
+        block: impl Fn(usize, usize) -> f64,
+        values: &mut [f64],
+    ) {
+        for &(row, along) in of_rows {
+            let force = [0, 1, 2].map(|j| (0..3).map(|i| along[i] * block(i, j)).sum::<f64>());
+            for &(column, by_one) in of_columns.iter().filter(|of| of.0 <= row && columns.contains(&of.0)) {
+                let of_column = self.starts[column]..self.starts[column + 1];
+                let Ok(place) = self.rows[of_column.clone()].binary_search(&(row as u32)) else { continue };
+                values[of_column.start + place - self.first] += dot(force, by_one);
+            }
+        }
+    }
+
+    /// Adds an element with plain nodes alone.
     fn add_element(
         &self,
         nodes: &[usize],
@@ -126,19 +162,12 @@ impl Columns<'_> {
                 // The lower triangle has the later node as its row; free dofs are numbered in the order of the nodes.
                 let mirrored = nodes[a] < nodes[b];
                 let (row, column) = if mirrored { (&free[b], &free[a]) } else { (&free[a], &free[b]) };
-                if row.count == 0 || column.count == 0 || !self.nodes.contains(&nodes[a].min(nodes[b])) {
+                if row.count == 0 || column.count == 0 || !self.range.contains(&nodes[a].min(nodes[b])) {
                     continue;
                 }
                 let of_first = &rows[starts[column.first]..starts[column.first + 1]];
                 let Ok(place) = of_first.binary_search(&(row.first as u32)) else { continue };
-                let turned;
-                let block = match (free[a].frame, free[b].frame) {
-                    (None, None) => element.block(a, b),
-                    frames => {
-                        turned = turn(element.block(a, b), frames.0, frames.1);
-                        &turned
-                    }
-                };
+                let block = element.block(a, b);
                 for (j, &along) in column.axes[..column.count].iter().enumerate() {
                     // Each column of a node starts one row further down; rows of one node follow each other.
                     let start = starts[column.first + j] - first + place;
@@ -154,42 +183,47 @@ impl Columns<'_> {
     }
 }
 
-/// T_a K_ab T_b'; the rows of T are the axes of a frame.
-fn turn(block: &Block, of_rows: Option<&Frame>, of_columns: Option<&Frame>) -> Block {
-    let mut turned = *block;
-    if let Some(frame) = of_columns {
-        turned.iter_mut().for_each(|row| frame.turn_in(row));
+/// The first unknown of a group: of a node its free dofs, after the nodes the motions of those that follow together.
+fn first_column(dofs: &DofMap, mesh: &Mesh, group: usize) -> usize {
+    match group.checked_sub(mesh.nodes().len()) {
+        None => dofs.free().partition_point(|&dof| dof < group * mesh.dimension()),
+        Some(group) if group < dofs.groups() => dofs.motions(group).start,
+        Some(_) => dofs.count(),
     }
-    if let Some(frame) = of_rows {
-        for j in 0..3 {
-            let mut column = turned.map(|row| row[j]);
-            frame.turn_in(&mut column);
-            turned.iter_mut().zip(column).for_each(|(row, entry)| row[j] = entry);
-        }
-    }
-    turned
 }
 
-/// No node has visited this one yet.
+/// No group has visited this one yet.
 const NEVER: u32 = u32::MAX;
 
-/// The nodes around one node after another.
-struct Neighbours<'a> {
+/// The cells that couple unknowns: elements, then springs; and the groups of unknowns that move together with a node:
+/// the free dofs of each node, then the motions that some nodes follow.
+///
+/// A mesh has so few nodes that their numbers, and those of the cells around them, fit 32 bits.
+pub(super) struct Pattern<'a> {
     mesh: &'a Mesh,
-    around: &'a Around,
-    /// The node that has visited each node last.
+    dofs: &'a DofMap,
+    /// The nodes that each spring between nodes couples.
+    springs: Vec<Vec<usize>>,
+    around: Around,
+}
+
+/// The groups around one group after another.
+struct Neighbours<'a> {
+    pattern: &'a Pattern<'a>,
+    /// The group that has visited each group last.
     seen: Vec<u32>,
     found: Vec<usize>,
 }
 
 impl Neighbours<'_> {
-    /// The nodes with the same or a larger number that share an element with a node, unsorted.
-    fn of(&mut self, node: usize) -> &mut [usize] {
+    /// The groups with the same or a larger number that share a cell with a group, unsorted.
+    fn of(&mut self, group: usize) -> &mut [usize] {
         self.found.clear();
-        for &element in self.around.at(node) {
-            for &other in self.mesh.element(element as usize) {
-                if other >= node && self.seen[other] != node as u32 {
-                    self.seen[other] = node as u32;
+        for &cell in self.pattern.around.at(group) {
+            for &node in self.pattern.cell(cell as usize) {
+                let other = self.pattern.group(node);
+                if other >= group && self.seen[other] != group as u32 {
+                    self.seen[other] = group as u32;
                     self.found.push(other);
                 }
             }
@@ -198,55 +232,94 @@ impl Neighbours<'_> {
     }
 }
 
-/// Column starts and sorted rows of the lower triangle in the free dofs.
-///
-/// A mesh has so few nodes that their numbers, and those of the elements around them, fit 32 bits.
-pub(super) fn lower_pattern(mesh: &Mesh, dofs: &DofMap) -> (Vec<usize>, Vec<u32>) {
-    let (dimension, count) = (mesh.dimension(), mesh.nodes().len());
-    let of_elements = (0..mesh.element_count()).map(|element| mesh.element(element).iter().copied());
-    let around = Around::new(count, of_elements);
-    let neighbours = || Neighbours { mesh, around: &around, seen: vec![NEVER; count], found: Vec::new() };
-    let free_axes = |node: usize| (dimension * node..dimension * (node + 1)).filter_map(|dof| dofs.number(dof));
-    let parts = parts(count);
-    let nodes: Vec<usize> = (0..=parts).map(|part| count * part / parts).collect();
-    // The entries of the first column of each node.
-    let mut lengths = vec![0_u32; count];
-    on_parts(&mut lengths, &nodes, |part, lengths| {
-        let mut neighbours = neighbours();
-        for (node, length) in (nodes[part]..).zip(lengths) {
-            if free_axes(node).next().is_some() {
-                *length = neighbours.of(node).iter().map(|&other| free_axes(other).count() as u32).sum();
-            }
-        }
-    });
-    let (mut starts, mut entries, mut bounds) = (Vec::with_capacity(dofs.free().len() + 1), 0, Vec::new());
-    starts.push(0);
-    for (node, &length) in lengths.iter().enumerate() {
-        if nodes.get(bounds.len()) == Some(&node) {
-            bounds.push(entries);
-        }
-        for column in 0..free_axes(node).count() {
-            entries += length as usize - column;
-            starts.push(entries);
+impl<'a> Pattern<'a> {
+    pub fn of(mesh: &'a Mesh, dofs: &'a DofMap, springs: &[Springs]) -> Self {
+        let springs = springs.iter().map(|springs| springs.coupled(dofs)).collect();
+        let mut pattern = Pattern { mesh, dofs, springs, around: Around::default() };
+        let of_cell = |cell: usize| pattern.cell(cell).iter().map(|&node| pattern.group(node));
+        let cells = mesh.element_count() + pattern.springs.len();
+        pattern.around = Around::new(pattern.groups(), (0..cells).map(of_cell));
+        pattern
+    }
+
+    /// Number of groups.
+    fn groups(&self) -> usize {
+        self.mesh.nodes().len() + self.dofs.groups()
+    }
+
+    fn cell(&self, cell: usize) -> &[usize] {
+        let springs = || &*self.springs[cell - self.mesh.element_count()];
+        if cell < self.mesh.element_count() { self.mesh.element(cell) } else { springs() }
+    }
+
+    /// The group of unknowns that move a node, or its coefficient.
+    #[inline]
+    fn group(&self, node: usize) -> usize {
+        match self.dofs.groups() {
+            0 => node,
+            _ => self.dofs.group_of(node).map_or(node, |group| self.mesh.nodes().len() + group),
         }
     }
-    bounds.push(entries);
-    let mut rows = vec![0_u32; entries];
-    on_parts(&mut rows, &bounds, |part, rows| {
-        let (mut neighbours, mut rest) = (neighbours(), rows.iter_mut());
-        for node in nodes[part]..nodes[part + 1] {
-            let own = free_axes(node).count();
-            if own > 0 {
-                let around = neighbours.of(node);
-                around.sort_unstable();
-                for column in 0..own {
-                    let of_column = around.iter().flat_map(|&other| free_axes(other)).skip(column);
-                    of_column.zip(rest.by_ref()).for_each(|(row, place)| *place = row as u32);
+
+    fn first_column(&self, group: usize) -> usize {
+        first_column(self.dofs, self.mesh, group)
+    }
+
+    /// The unknowns of a group.
+    fn unknowns(&self, group: usize) -> impl Iterator<Item = usize> + use<'_> {
+        let (dimension, after) = (self.mesh.dimension(), group.checked_sub(self.mesh.nodes().len()));
+        let dofs = if after.is_none() { dimension * group..dimension * (group + 1) } else { 0..0 };
+        let motions = after.map_or(0..0, |group| self.dofs.motions(group));
+        dofs.filter_map(|dof| self.dofs.number(dof)).chain(motions)
+    }
+
+    /// Column starts and sorted rows of the lower triangle in the unknowns.
+    pub fn lower(&self) -> (Vec<usize>, Vec<u32>) {
+        let count = self.groups();
+        let neighbours = || Neighbours { pattern: self, seen: vec![NEVER; count], found: Vec::new() };
+        let parts = parts(count);
+        let groups: Vec<usize> = (0..=parts).map(|part| count * part / parts).collect();
+        // The entries of the first column of each group.
+        let mut lengths = vec![0_u32; count];
+        on_parts(&mut lengths, &groups, |part, lengths| {
+            let mut neighbours = neighbours();
+            for (group, length) in (groups[part]..).zip(lengths) {
+                if self.unknowns(group).next().is_some() {
+                    *length = neighbours.of(group).iter().map(|&other| self.unknowns(other).count() as u32).sum();
                 }
             }
+        });
+        let (mut starts, mut entries, mut bounds) = (Vec::with_capacity(self.dofs.count() + 1), 0, Vec::new());
+        starts.push(0);
+        for (group, &length) in lengths.iter().enumerate() {
+            if groups.get(bounds.len()) == Some(&group) {
+                bounds.push(entries);
+            }
+            for column in 0..self.unknowns(group).count() {
+                entries += length as usize - column;
+                starts.push(entries);
+            }
         }
-    });
-    (starts, rows)
+        bounds.push(entries);
+        // Unknowns that move no node have no entry.
+        starts.resize(self.dofs.count() + 1, entries);
+        let mut rows = vec![0_u32; entries];
+        on_parts(&mut rows, &bounds, |part, rows| {
+            let (mut neighbours, mut rest) = (neighbours(), rows.iter_mut());
+            for group in groups[part]..groups[part + 1] {
+                let own = self.unknowns(group).count();
+                if own > 0 {
+                    let around = neighbours.of(group);
+                    around.sort_unstable();
+                    for column in 0..own {
+                        let of_column = around.iter().flat_map(|&other| self.unknowns(other)).skip(column);
+                        of_column.zip(rest.by_ref()).for_each(|(row, place)| *place = row as u32);
+                    }
+                }
+            }
+        });
+        (starts, rows)
+    }
 }
 
 /// Coordinates are known to this many units in the last place: they are products and sums of the numbers of a scene.

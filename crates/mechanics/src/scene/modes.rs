@@ -153,8 +153,8 @@ impl ModalAnalysis {
         let mut all: Vec<usize> = closed.iter().chain(&undecided).copied().collect();
         all.sort_unstable();
         // A travel without mass is determined by the rows of its obstacle.
-        let unknowns = &model.parts.unknowns;
-        let travels: Vec<usize> = unknowns.pressed.iter().filter_map(|&obstacle| unknowns.travel(obstacle)).collect();
+        let parts = &model.parts;
+        let travels: Vec<usize> = parts.pressed.iter().filter_map(|&obstacle| parts.travel(obstacle)).collect();
         let threads = settings.threads.unwrap_or_else(qp::Settings::threads_of_machine);
         let lowest = |closed: &[usize]| problem.modes(&mass, (closed, &travels), count, threads, &settings.watch);
         let found = lowest(&all)?;

@@ -86,5 +86,5 @@ fn too_deep(model: &Model) -> Option<String> {
 
 /// How deep a contact row starts inside an obstacle that stands still, in length.
 fn depth_at_start(model: &Model, row: &ContactRow) -> f64 {
-    if model.parts.unknowns.pressed.contains(&row.obstacle) { 0.0 } else { -row.gap }
+    if model.parts.pressed.contains(&row.obstacle) { 0.0 } else { -row.gap }
 }

@@ -46,14 +46,14 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
         Ok(nodal)
     };
     let of_load = |nodal: &[f64]| -> Result<Effect, Why> {
-        let load = parts.unknowns.force(parts.conditions.dofs.restrict(nodal).map_err(in_words)?);
+        let load = parts.conditions.dofs.restrict(nodal).map_err(in_words)?;
         Ok(Effect::of(Change { load, ..unchanged(answer) }))
     };
     match &parameter.kind {
         Kind::Gap | Kind::GapOf(_) | Kind::InShape(..) => of_rows(scene, parameter, answer, active),
         Kind::Force(obstacle) => {
             let mut change = unchanged(answer);
-            if let Some(travel) = parts.unknowns.travel(*obstacle) {
+            if let Some(travel) = parts.travel(*obstacle) {
                 change.load[travel] = parts.share_of(*obstacle, 1.0);
             }
             Ok(Effect::of(change))
@@ -89,12 +89,8 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
 /// the body.
 fn is_proportional(answer: &Answer) -> bool {
     let parts = &answer.model().parts;
-    let is_moved = || {
-        (0..parts.conditions.dofs.nodal_count())
-            .any(|dof| parts.conditions.dofs.prescribed(dof).is_some_and(|value| value != 0.0))
-    };
     let is_one = parts.body.phases().len() == 1 && !parts.body.has_own_stress();
-    is_one && parts.conditions.springs.is_empty() && parts.conditions.rigid_faces.is_empty() && !is_moved()
+    is_one && parts.conditions.springs.is_empty() && parts.conditions.rigid_faces.is_empty() && !parts.conditions.dofs.is_moved()
 }
 
 /// No change of the problem of an answer.
@@ -139,9 +135,9 @@ fn of_rows(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usiz
         let ends = model.rows()[row].ends.iter().map(|end| end.0);
         let of_axes = ends.flat_map(|node| (0..dimension).map(move |axis| (node, axis)));
         let of_ends = of_axes.flat_map(|(node, axis)| {
-            parts.unknowns.along(&parts.conditions.dofs, node, &COORDINATES[axis][..dimension]).0
+            parts.conditions.dofs.along(node, &COORDINATES[axis][..dimension]).free
         });
-        let travel = parts.unknowns.travel(model.rows()[row].obstacle);
+        let travel = parts.travel(model.rows()[row].obstacle);
         let mut of_row: Vec<usize> = of_ends.map(|entry| entry.0).chain(travel).collect();
         of_row.sort_unstable();
         of_row.dedup();

@@ -102,7 +102,7 @@ impl Output {
                 3 => names.extend((0..3).map(|axis| format!("obstacles[{index}].moment[{axis}]"))),
                 _ => {}
             }
-            names.extend(model.parts.unknowns.pressed.contains(&index).then(|| format!("obstacles[{index}].travel")));
+            names.extend(model.parts.pressed.contains(&index).then(|| format!("obstacles[{index}].travel")));
         }
         names.extend(["largest-displacement", "strain-energy"].map(String::from));
         names.push(format!("stress@{place}:xx"));
@@ -220,7 +220,7 @@ impl Output {
                 of_rows(&coefficient, Direct::Moment(obstacle, axis))
             }
             Kind::Travel(obstacle) => {
-                let travel = model.parts.unknowns.travel(obstacle).ok_or("no force presses the obstacle")?;
+                let travel = model.parts.travel(obstacle).ok_or("no force presses the obstacle")?;
                 let mut branch = Smooth { value: answer.unknowns()[travel], ..blank() };
                 branch.by_displacement[travel] = 1.0;
                 vec![branch]
@@ -387,7 +387,7 @@ fn equivalent([xx, yy, zz, xy, yz, zx]: &Symmetric) -> f64 {
 /// The derivative with respect to the unknowns, from that with respect to the displacements of the nodes.
 fn of_nodal(model: &Model, nodal: &[f64]) -> Result<Vec<f64>, Why> {
     let parts = &model.parts;
-    Ok(parts.unknowns.force(parts.conditions.dofs.restrict(nodal).map_err(in_words)?))
+    parts.conditions.dofs.restrict(nodal).map_err(in_words)
 }
 
 impl Smooth {

@@ -18,7 +18,7 @@ use super::springs::springs;
 use super::suspect::suspect;
 use super::symmetry::planes_of_symmetry;
 use super::ties::{tied, tied_surfaces};
-use super::unknowns::Unknowns;
+use super::unknowns::following;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
@@ -42,14 +42,14 @@ type Further<'a> = (&'a str, Arc<dyn Obstacle>);
 pub fn model_of(scene: &Scene, bodies: Vec<ElasticBody>, further: &[Further]) -> Result<Model, Error> {
     let body = with_parts(scene, joined(scene, bodies)?)?;
     let (scene, body) = with_contacts(scene, body)?;
-    let conditions = conditions(&scene, &body, further)?;
+    let mut conditions = conditions(&scene, &body, further)?;
     let obstacles = placed_obstacles(&scene, &body, &conditions.dofs, further)?;
     let warnings = suspect(&scene, &body, &conditions.dofs)?;
-    let unknowns = Unknowns::of(&body, &conditions.dofs, &conditions.rigid_faces, &obstacles)?;
-    let ties = tied(&scene, &body, (&conditions.dofs, &unknowns), &conditions.points)?;
-    check_pressed(&scene, &obstacles, &unknowns)?;
+    let pressed = pressed(&scene, &obstacles)?;
+    conditions.dofs = conditions.dofs.with_further(pressed.len());
+    let ties = tied(&scene, &body, &conditions.dofs, &conditions.points)?;
     let gap = scene.gap;
-    let parts = Parts { scene: scene.into_owned(), body, conditions, obstacles, unknowns, ties, warnings };
+    let parts = Parts { scene: scene.into_owned(), body, conditions, obstacles, pressed, ties, warnings };
     let rows = rows::build(&parts, gap)?;
     check_held(&parts, &rows)?;
     let matrices = matrices(&parts)?;
@@ -63,13 +63,16 @@ fn conditions(scene: &Scene, body: &ElasticBody, further: &[Further]) -> Result<
     symmetry.hold(body, &mut held);
     let rigid_faces = rigid_faces(scene, body, &mut held)?;
     let dofs = with_contact_faces(scene, held.dofs(body.mesh())?, body, further);
+    let dofs = following(dofs, body, &rigid_faces);
     let mut load = load(scene, body)?;
     points.add_load(&mut load, body.dimension());
     Ok(Conditions { dofs, held, load, springs, symmetry, rigid_faces, points })
 }
 
-fn check_pressed(scene: &Scene, obstacles: &[PlacedObstacle], unknowns: &Unknowns) -> Result<(), Error> {
-    for &index in &unknowns.pressed {
+/// The obstacles with a travel, in order.
+fn pressed(scene: &Scene, obstacles: &[PlacedObstacle]) -> Result<Vec<usize>, Error> {
+    let pressed: Vec<usize> = (0..obstacles.len()).filter(|&index| obstacles[index].has_travel()).collect();
+    for &index in &pressed {
         let (key, message) = match (scene.dynamic().is_some(), obstacles[index].inertia()) {
             (true, None) => (
                 "force",
@@ -82,7 +85,7 @@ fn check_pressed(scene: &Scene, obstacles: &[PlacedObstacle], unknowns: &Unknown
         };
         return Err(wrong(format!("obstacles[{index}].{key}"), message));
     }
-    Ok(())
+    Ok(pressed)
 }
 
 /// The obstacles of the scene, then those of the user.
@@ -165,7 +168,7 @@ pub fn place_in_words(model: &Model, node: usize) -> String {
 /// The name of a rigid-body motion, and the advice against it.
 fn named(model: &Model, direction: &[f64]) -> Option<(String, String)> {
     let parts = &model.parts;
-    let motion = parts.conditions.dofs.expand_motion(&parts.unknowns.motion(direction).ok()?).ok()?;
+    let motion = parts.conditions.dofs.expand_motion(direction).ok()?;
     let modes = RigidBodyModes::of(&parts.body);
     let amplitudes = modes.closest(parts.body.mesh().nodes(), &motion)?;
     Some((modes.name_of(&amplitudes), modes.advice(parts, model.rows(), &[amplitudes])))
@@ -196,7 +199,7 @@ fn describe_node(model: &Model, node: usize, rows: &[usize]) -> String {
     let dimension = model.mesh().dimension();
     let node_at = node_in_words(model, node);
     let names: Vec<String> = rows.iter().map(obstacle).collect();
-    let supported = (0..dimension).all(|axis| model.parts.conditions.dofs.number(dimension * node + axis).is_none());
+    let supported = (0..dimension).all(|axis| model.parts.conditions.dofs.is_supported(dimension * node + axis));
     match names.as_slice() {
         [one] if supported => format!("{node_at} is supported inside {one}"),
         [one] => format!("{node_at} cannot leave {one}"),

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 
-use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::Boundary;
 use crate::fem::assembly::DofMap;
@@ -123,14 +122,14 @@ impl<'a> Facing<'a> {
 /// A sum of `vector . u` over nodes in the unknowns, and its prescribed part, in length.
 pub(crate) fn in_unknowns(
     terms: &[(usize, [f64; 3])],
-    (dofs, unknowns): (&DofMap, &Unknowns),
+    dofs: &DofMap,
     dimension: usize,
 ) -> (Vec<(usize, f64)>, f64) {
     let (mut entries, mut prescribed) = (Vec::new(), 0.0);
     for (node, vector) in terms {
-        let (free, part) = unknowns.along(dofs, *node, &vector[..dimension]);
-        entries.extend(free);
-        prescribed += part;
+        let along = dofs.along(*node, &vector[..dimension]);
+        entries.extend(along.free);
+        prescribed += along.prescribed;
     }
     (entries, prescribed)
 }

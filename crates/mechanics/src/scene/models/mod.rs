@@ -36,6 +36,7 @@ use model::Model;
 use resultants::Resultant;
 use rows::ContactRow;
 use set_up::{HeldNode, forces_at, held_nodes, mass_of_nodes, mass_of_unknowns, state};
+use signorini_qp as qp;
 use signorini_qp::{ContactProblem, SymmetricMatrix};
 use unknowns::Meaning;
 
@@ -106,8 +107,7 @@ impl Model {
 
     /// The meaning of each unknown of the problem, in order.
     pub fn meanings(&self) -> impl Iterator<Item = Meaning> + '_ {
-        let parts = &self.parts;
-        parts.unknowns.meanings(&parts.conditions.dofs, parts.body.dimension(), &parts.conditions.rigid_faces)
+        self.parts.meanings()
     }
 
     /// Number of copies of the modelled part in the whole, by planes of symmetry.
@@ -169,13 +169,13 @@ impl Model {
     /// The force that presses an obstacle, on the whole body; `None` if none does.
     pub fn pressing_force_on(&self, obstacle: usize) -> Option<f64> {
         let parts = self.parts.parts_of_obstacle(obstacle);
-        let force = self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown]);
+        let force = self.parts.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown]);
         force.filter(|&force| force > 0.0)
     }
 
     /// The force on each obstacle that a force presses, in their order, in force.
     pub fn pressing_forces(&self) -> Vec<f64> {
-        self.parts.unknowns.pressed.iter().filter_map(|&obstacle| self.pressing_force_on(obstacle)).collect()
+        self.parts.pressed.iter().filter_map(|&obstacle| self.pressing_force_on(obstacle)).collect()
     }
 
     /// The held nodes: supports first, then springs, then rigid faces.
@@ -214,19 +214,19 @@ impl Model {
     /// Nodal displacements, length `dim * n_nodes`, in length, from those of the free dofs; supports have their
     /// prescribed values.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
-        Ok(self.parts.conditions.dofs.expand(&self.parts.unknowns.displacement(displacement)?)?)
+        Ok(self.parts.conditions.dofs.expand(displacement)?)
     }
 
     /// Nodal velocities, length `dim * n_nodes`, in length over time, from those of the unknowns; supports stand still.
     pub fn nodal_velocity(&self, velocity: &[f64]) -> Result<Vec<f64>, Error> {
-        Ok(self.parts.conditions.dofs.expand_motion(&self.parts.unknowns.motion(velocity)?)?)
+        Ok(self.parts.conditions.dofs.expand_motion(velocity)?)
     }
 
     /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these
     /// `displacement`s; `None` for an obstacle at rest.
     pub fn travel(&self, displacement: &[f64], obstacle: usize) -> Result<Option<f64>, Error> {
-        self.parts.unknowns.motion(displacement)?;
-        Ok(self.parts.unknowns.travel(obstacle).map(|unknown| displacement[unknown]))
+        qp::LinearError::check_length("displacement", displacement.len(), self.problem.dofs(), "unknowns")?;
+        Ok(self.parts.travel(obstacle).map(|unknown| displacement[unknown]))
     }
 
     /// Contact pressure of each row, `-lambda` over the tributary area projected along the row, in force per area,

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::parts::Parts;
+use super::parts::{Conditions, Parts};
 use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
 use super::suspect::suspect_rows;
 use crate::error::Error;
 use crate::fem::geometry::distance;
-use crate::fem::{free_load, rigid_body_modes, stiffness};
+use crate::fem::assembly::{free_load, rigid_motions, stiffness_on};
 use crate::motion::Observation;
 use crate::scene::Warning;
 use crate::scene::input::entry::{finite, wrong};
@@ -67,21 +67,18 @@ pub(crate) fn check_held(parts: &Parts, built: &rows::Rows) -> Result<(), Error>
 type Matrices = (SymmetricMatrix, Vec<f64>, Option<Arc<NearNullSpace>>);
 
 pub(crate) fn matrices(parts: &Parts) -> Result<Matrices, Error> {
-    let dofs = &parts.conditions.dofs;
-    let of_body = stiffness(&parts.body, dofs).map_err(Error::from);
-    let of_free = of_body.and_then(|of_body| parts.on_springs(of_body)).map_err(|error| match error {
+    let Conditions { dofs, springs, .. } = &parts.conditions;
+    let stiffness = stiffness_on(&parts.body, dofs, springs).map_err(|error| match error.into() {
         Error::Linear(qp::LinearError::NotFinite { .. }) => {
             let message = "the stiffness that it makes with body and thickness overflows; choose other units";
             wrong("material", message)
         }
         other => other,
     })?;
-    let force = |obstacle: usize| parts.share_of(obstacle, parts.obstacles[obstacle].force().unwrap_or(0.0));
-    let load = free_load(&parts.body, dofs, &parts.acting_load()?)?;
-    let load = parts.unknowns.load(load, &of_free, force);
-    let stiffness = parts.unknowns.congruent(of_free)?;
-    let modes = rigid_body_modes(&parts.body, dofs).into_iter();
-    let modes = modes.map(|mode| parts.unknowns.of_motion(mode, |_| 0.0)).collect();
+    let load = parts.load(free_load(&parts.body, dofs, &parts.acting_load()?)?);
+    let (count, motion) = rigid_motions(&parts.body);
+    let place = |node: usize| dofs.basis.place(parts.body.mesh().nodes(), node);
+    let modes = (0..count).map(|mode| parts.nearest(|node| motion(mode, place(node)), |_| 0.0)).collect();
     Ok((stiffness, load, NearNullSpace::of_modes(modes).map(Arc::new)))
 }
 
@@ -138,8 +135,8 @@ pub(crate) fn row_shifts(model: &Model, obstacle: usize, by: f64) -> Vec<f64> {
 /// The same scene with another force on the one obstacle that a force presses.
 pub fn pressed_by(model: &Model, force: f64) -> Result<Model, Error> {
     let parts = &model.parts;
-    let &[obstacle] = parts.unknowns.pressed.as_slice() else {
-        let message = match parts.unknowns.pressed.len() {
+    let &[obstacle] = parts.pressed.as_slice() else {
+        let message = match parts.pressed.len() {
             0 => {
                 "no obstacle is pressed by a force; a sweep over forces needs the key `force` in one obstacle, such as \
                   \"force\": 100"
@@ -155,7 +152,7 @@ pub fn pressed_by(model: &Model, force: f64) -> Result<Model, Error> {
         return Err(wrong(path(), format!("{force} would pull the obstacle away: forces are 0 or positive")));
     }
     let load = model.problem.load().to_vec();
-    let load = parts.unknowns.pressed_by(load, |obstacle| parts.share_of(obstacle, force));
+    let load = parts.pressed_by(load, |obstacle| parts.share_of(obstacle, force));
     let problem = model.problem.with_load(load)?;
     Ok(Model { problem, ..model.clone() })
 }
@@ -163,18 +160,18 @@ pub fn pressed_by(model: &Model, force: f64) -> Result<Model, Error> {
 /// The solution with pressed obstacles at their first contact with the body, without a force.
 pub fn touched(model: &Model, settings: &Settings) -> Result<Solution, Error> {
     let (parts, problem) = (&model.parts, &model.problem);
-    let is_pressed = |row: usize| parts.unknowns.travel(model.rows[row].obstacle).is_some();
+    let is_pressed = |row: usize| parts.travel(model.rows[row].obstacle).is_some();
     // The obstacles are out of reach, on springs that nothing stretches.
     let away = |(row, &gap): (usize, &f64)| if is_pressed(row) { f64::INFINITY } else { gap };
     let (contact, gap) = problem.inequalities_given();
     let gap = gap.iter().enumerate().map(away).collect();
-    let load = parts.unknowns.pressed_by(problem.load().to_vec(), |_| 0.0);
-    let stiffness = parts.unknowns.on_springs(problem.stiffness())?;
+    let load = parts.pressed_by(problem.load().to_vec(), |_| 0.0);
+    let stiffness = parts.on_springs(problem.stiffness())?;
     let away = parts.tied(ContactProblem::new(stiffness, load, contact.into_owned(), gap)?)?;
     let mut solution = solve(&away, settings)?;
     let left = problem.violation(&solution.displacement);
-    for &obstacle in &parts.unknowns.pressed {
-        let Some(travel) = parts.unknowns.travel(obstacle) else { continue };
+    for &obstacle in &parts.pressed {
+        let Some(travel) = parts.travel(obstacle) else { continue };
         let rows = problem.contact().column(travel);
         // Adding zero removes the sign of a zero.
         solution.displacement[travel] = 0.0 + rows.map(|(row, lean)| -left[row] / lean).fold(f64::INFINITY, f64::min);

@@ -5,14 +5,13 @@ use super::points::ReferencePoints;
 use super::rigid_face::RigidFace;
 use super::symmetry::Symmetry;
 use super::ties::Ties;
-use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, NodalForces, Springs};
 use crate::fem::body::ElasticBody;
 use crate::scene::Warning;
 use crate::scene::input::obstacle::PlacedObstacle;
 use crate::scene::input::schema::{ContactSpec, Scene};
-use signorini_qp::{ContactProblem, SymmetricMatrix};
+use signorini_qp::ContactProblem;
 
 /// The data that do not depend on the gap.
 #[derive(Debug)]
@@ -22,7 +21,8 @@ pub struct Parts {
     pub body: ElasticBody,
     pub conditions: Conditions,
     pub obstacles: Vec<PlacedObstacle>,
-    pub unknowns: Unknowns,
+    /// The obstacles with a travel, in the order of their unknowns, which come last.
+    pub pressed: Vec<usize>,
     pub ties: Ties,
     pub warnings: Vec<Warning>,
 }
@@ -30,6 +30,7 @@ pub struct Parts {
 /// What a scene asks of its body.
 #[derive(Debug)]
 pub struct Conditions {
+    /// The unknowns.
     pub dofs: DofMap,
     /// The prescribed components of the nodes.
     pub held: Held,
@@ -66,15 +67,6 @@ impl Parts {
         }
     }
 
-    /// The stiffness of the free dofs of the bodies, with all springs of the scene added to it.
-    pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
-        let springs = &self.conditions.springs;
-        match springs.is_empty() {
-            true => Ok(of_body),
-            false => Ok(Springs::added_to(springs, &of_body, &self.conditions.dofs, self.body.dimension())?),
-        }
-    }
-
     /// The external load with the tensions of bolts, and the forces of springs on nodes with prescribed displacements.
     pub fn acting_load(&self) -> Result<Vec<f64>, Error> {
         let mut load = self.conditions.load.clone();
@@ -83,7 +75,7 @@ impl Parts {
             load.iter_mut().zip(tensions).for_each(|(load, force)| *load += force);
         }
         if !self.conditions.springs.is_empty() {
-            let lifted = self.conditions.dofs.expand(&vec![0.0; self.conditions.dofs.free().len()])?;
+            let lifted = self.conditions.dofs.expand(&vec![0.0; self.conditions.dofs.count()])?;
             load.iter_mut().zip(self.spring_forces(&lifted)).for_each(|(load, force)| *load += force);
         }
         Ok(load)

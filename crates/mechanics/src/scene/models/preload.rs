@@ -7,7 +7,6 @@
 use std::ops::Range;
 
 use super::facing::{Facing, TieRow, in_unknowns};
-use super::unknowns::Unknowns;
 use crate::error::{Error, nearly};
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
@@ -43,8 +42,8 @@ impl Shortening {
     }
 
     /// Its value at values of the unknowns, in length.
-    pub fn value(&self, places: (&DofMap, &Unknowns), dimension: usize, values: &[f64]) -> f64 {
-        let (entries, prescribed) = in_unknowns(&self.terms, places, dimension);
+    pub fn value(&self, dofs: &DofMap, dimension: usize, values: &[f64]) -> f64 {
+        let (entries, prescribed) = in_unknowns(&self.terms, dofs, dimension);
         entries.iter().fold(prescribed, |sum, &(unknown, part)| sum + part * values[unknown])
     }
 }

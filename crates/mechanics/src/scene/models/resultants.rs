@@ -303,12 +303,12 @@ pub(crate) fn face_resultants(model: &Model, forces: &[f64], unknowns: &[f64]) -
     let mut all = Vec::with_capacity(model.parts.conditions.rigid_faces.len());
     for (index, face) in model.parts.conditions.rigid_faces.iter().enumerate() {
         let sum = sum_of(model, by_node(model, &force_of_faces(model, forces, |other| other == index)?));
-        let found = model.parts.unknowns.motions(unknowns, index);
-        let amount = |(motion, unknown): (&Motion, Option<f64>)| {
-            let by_unknown = unknown.map(|unknown| unknown * face.unit(motion));
-            (motion.kind, by_unknown.or(motion.prescribed).unwrap_or(0.0))
+        let mut free = unknowns[model.dofs().motions(index)].iter();
+        let amount = |motion: &Motion| {
+            let unknown = || free.next().map(|unknown| unknown * face.unit(motion));
+            (motion.kind, motion.prescribed.or_else(unknown).unwrap_or(0.0))
         };
-        let moved: Vec<(usize, f64)> = face.motions.iter().zip(found).map(amount).collect();
+        let moved: Vec<(usize, f64)> = face.motions.iter().map(amount).collect();
         let of = |kinds: Range<usize>| {
             moved.iter().filter(|entry| kinds.contains(&entry.0)).map(|entry| entry.1).collect::<Vec<f64>>()
         };
@@ -336,8 +336,7 @@ pub(crate) fn tie_resultants(model: &Model, displacement: &[f64], of_ties: &[f64
         let on = name_of_body(model, first);
         let shortening = ties.shortenings.iter().find(|one| one.tie == index);
         let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
-        let places = (model.dofs(), &model.parts.unknowns);
-        let shortening = shortening.map(|one| one.sense * one.value(places, model.body().dimension(), unknowns));
+        let shortening = shortening.map(|one| one.sense * one.value(model.dofs(), model.body().dimension(), unknowns));
         Resultant { on, shortening, tension, ..sum.resultant(model, of) }
     };
     ties.of_tie.iter().enumerate().map(of_tie).collect()
@@ -350,7 +349,7 @@ pub(crate) fn of_bolt(model: &Model, tie: usize, of_ties: &[f64], unknowns: &[f6
     let Some(one) = ties.shortenings.iter().find(|one| one.tie == tie) else { return [0.0; 2] };
     let (forces, towards) = (model.parts.forces_of_ties(of_ties, Some(tie)), one.towards());
     let force = forces.into_values().map(|force| dot(force, towards)).sum();
-    [one.value((model.dofs(), &model.parts.unknowns), model.body().dimension(), unknowns), force]
+    [one.value(model.dofs(), model.body().dimension(), unknowns), force]
 }
 
 /// The forces from outside on the reference points, with their motions, in the order of the scene; of a point that

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::parts::Parts;
 use crate::error::Error;
+use crate::fem::assembly::Along;
 use crate::fem::geometry::dot;
 use crate::scene::Warning;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, point, wrong};
@@ -73,7 +74,7 @@ pub struct Rows {
 /// empty row with a negative gap if it is violated.
 pub(crate) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     let Found { rows, entries, gap, warnings } = found(parts, &parts.obstacles, scene_gap)?;
-    let contact = SparseMatrix::from_triplets(rows.len(), parts.unknowns.count(), &entries)?;
+    let contact = SparseMatrix::from_triplets(rows.len(), parts.conditions.dofs.count(), &entries)?;
     let across = parts.obstacles.iter().enumerate().flat_map(|one| across(one, scene_gap)).collect();
     Ok(Rows { rows, across, contact, gap, warnings })
 }
@@ -95,7 +96,7 @@ pub(crate) fn found(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64)
     let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (index, obstacle) in obstacles.iter().enumerate() {
         let found = of_obstacle(parts, (index, obstacle), scene_gap)?;
-        let travel = parts.unknowns.travel(index);
+        let travel = parts.travel(index);
         if found.is_empty() && travel.is_some() {
             let message = "no travel produces the force: on its way the obstacle meets no node of its boundary; check its place, its \
                            approach direction and its radius";
@@ -119,7 +120,7 @@ pub(crate) fn found(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64)
             let value = |node: usize| by_node.get(&node).copied().unwrap_or(row.gap);
             let mut remaining = if row.is_mean { row.gap } else { dofs.coefficient(row.node, value) };
             for &(node, share) in &row.ends {
-                let (entries, prescribed) = parts.unknowns.along(dofs, node, &row.normal[..dimension]);
+                let Along { free: entries, prescribed } = dofs.along(node, &row.normal[..dimension]);
                 remaining -= share * prescribed;
                 free.extend(entries.into_iter().map(|(column, component)| (rows.len(), column, share * component)));
             }

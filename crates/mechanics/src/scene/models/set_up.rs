@@ -91,11 +91,11 @@ pub(crate) fn mass_of_nodes(model: &Model, form: MassForm) -> Result<SparseMatri
 /// The mass of the unknowns, from that of the nodes.
 pub(crate) fn mass_of_unknowns(model: &Model, nodal_mass: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
     let parts = &model.parts;
-    let of_body = parts.unknowns.congruent(free_mass(&parts.body, &parts.conditions.dofs, nodal_mass)?)?;
+    let of_body = free_mass(&parts.body, &parts.conditions.dofs, nodal_mass)?;
     let of_obstacle = |obstacle: usize| {
         parts.share_of(obstacle, parts.obstacles[obstacle].inertia().map_or(0.0, |inertia| inertia.mass))
     };
-    parts.unknowns.with_travels(&of_body, of_obstacle)
+    parts.with_travels(&of_body, of_obstacle)
 }
 
 pub(crate) fn forces_at(model: &Model, displacement: &[f64], multiplier: &[f64]) -> Result<Forces, Error> {

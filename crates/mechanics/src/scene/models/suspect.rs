@@ -47,7 +47,7 @@ pub(crate) fn suspect(scene: &Scene, body: &ElasticBody, dofs: &DofMap) -> Resul
         let mut load = vec![0.0; body.nodal_dofs()];
         add_load(scene, body, index, &mut load)?;
         let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
-        let (whole, free) = (size(&load), size(&dofs.restrict(&load)?));
+        let (whole, free) = (size(&load), size(&dofs.part(&load, |dof| !dofs.is_supported(dof))?));
         if whole > 0.0 && free <= NOTHING * whole {
             let message = format!(
                 "loads[{index}] acts only on nodes that supports hold: the supports take it and nothing moves; load another \
@@ -139,7 +139,7 @@ pub(crate) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     let dimension = parts.body.dimension();
     let mut warnings = Vec::new();
     let is_held =
-        |node: usize| (0..dimension).all(|axis| parts.conditions.dofs.number(dimension * node + axis).is_none());
+        |node: usize| (0..dimension).all(|axis| parts.conditions.dofs.is_supported(dimension * node + axis));
     for (index, obstacle) in parts.obstacles.iter().enumerate() {
         let all = obstacle.candidates();
         let held = all.iter().filter(|candidate| is_held(candidate.0)).count();

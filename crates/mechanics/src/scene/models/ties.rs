@@ -6,7 +6,6 @@ use std::ops::Range;
 use super::facing::{Facing, TieRow, in_unknowns};
 use super::points::ReferencePoints;
 use super::preload::{Shortening, drawn, no_point, terms_of};
-use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
@@ -59,7 +58,7 @@ impl Ties {
 pub(crate) fn tied(
     scene: &Scene,
     body: &ElasticBody,
-    (dofs, unknowns): (&DofMap, &Unknowns),
+    dofs: &DofMap,
     points: &ReferencePoints,
 ) -> Result<Ties, Error> {
     if !scene.ties.is_empty() && scene.dynamic().is_some() {
@@ -99,7 +98,7 @@ pub(crate) fn tied(
         };
         let first = rows.len();
         for row in found {
-            let (free, prescribed) = in_unknowns(&row.terms, (dofs, unknowns), dimension);
+            let (free, prescribed) = in_unknowns(&row.terms, dofs, dimension);
             let left = row.value - prescribed;
             if !free.is_empty() {
                 entries.extend(free.into_iter().map(|(column, part)| (rows.len(), column, part)));
@@ -115,17 +114,17 @@ pub(crate) fn tied(
         }
         of_tie.push(first..rows.len());
     }
-    let matrix = SparseMatrix::from_triplets(rows.len(), unknowns.count(), &entries)?;
+    let matrix = SparseMatrix::from_triplets(rows.len(), dofs.count(), &entries)?;
     let tensioned: Vec<&Shortening> = shortenings.iter().filter(|one| one.force.is_some()).collect();
     let first = rows.len();
     // Number of rows that follow from no others, with zeros as values: nothing contradicts.
     let independent = |bolts: &[&Shortening]| -> Result<usize, Error> {
         let own = bolts.iter().enumerate().flat_map(|(number, bolt)| {
-            let own = in_unknowns(&bolt.terms, (dofs, unknowns), dimension).0;
+            let own = in_unknowns(&bolt.terms, dofs, dimension).0;
             own.into_iter().map(move |(column, part)| (first + number, column, part))
         });
         let all: Vec<_> = entries.iter().copied().chain(own).collect();
-        let all = SparseMatrix::from_triplets(first + bolts.len(), unknowns.count(), &all)?;
+        let all = SparseMatrix::from_triplets(first + bolts.len(), dofs.count(), &all)?;
         Ok(all.independent_rows(&[], REPEATED).len())
     };
     let alone = if tensioned.is_empty() { 0 } else { independent(&[])? };

@@ -5,14 +5,15 @@ use std::sync::Arc;
 use super::moving_supports::{MovingSupports, NodalLoads, loads_in_time};
 use crate::error::{Error, nearly};
 use crate::fem::Formulation;
-use crate::fem::assembly::{MassForm, free_mass, internal_force, least_over_lumped, stiffness};
+use crate::fem::assembly::{MassForm, free_mass, internal_force, least_over_lumped, stiffness_on};
 use crate::fem::body::{ElasticBody, Phase};
+use crate::fem::geometry::minus;
 use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, TimeFunction, frequency_bound};
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, located, number, point, refused, vector, wrong};
 use crate::scene::input::schema::analysis::PATH;
 use crate::scene::input::schema::{DynamicSpec, FieldSpec, PenetrationSpec, Scene};
 use crate::scene::models::model::row_shifts;
-use crate::scene::models::resultants::{self, without_rounding};
+use crate::scene::models::resultants::{self, at_node, without_rounding};
 use crate::scene::models::set_up::{mass_of_nodes, mass_of_unknowns};
 use crate::scene::{Model, Resultant, Warning, WatchedPoint};
 use signorini_qp as qp;
@@ -155,7 +156,7 @@ fn moving(
     loads: &NodalLoads,
 ) -> Result<DynamicProblem, Error> {
     let (parts, body) = (&model.parts, model.body());
-    let of_nodal = |nodal: &[f64]| Ok::<_, Error>(parts.unknowns.force(parts.conditions.dofs.restrict(nodal)?));
+    let of_nodal = |nodal: &[f64]| parts.conditions.dofs.restrict(nodal);
     let changing: Vec<f64> =
         loads.constant.iter().zip(&parts.conditions.load).map(|(constant, all)| constant - all).collect();
     let statics = model.problem();
@@ -203,8 +204,9 @@ fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Resul
             return Err(wrong(format!("{PATH}.initial"), message));
         }
     }
-    let unknowns = &model.parts.unknowns;
-    let mut displacement = unknowns.of_displacement(model.dofs().restrict(&displacement)?, |_| 0.0);
+    let held = model.dofs().expand(&vec![0.0; model.dofs().count()])?;
+    let from_held = |node: usize| minus(at_node(model, &displacement, node), at_node(model, &held, node));
+    let mut displacement = model.parts.nearest(from_held, |_| 0.0);
     if let Some(deepest) = deepest(model, &displacement) {
         if spec.initial_penetration == PenetrationSpec::Refuse {
             return Err(deepest);
@@ -213,7 +215,7 @@ fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Resul
         displacement = projected(model.problem(), mass, &displacement)?;
     }
     let speed = |obstacle: usize| model.obstacles()[obstacle].inertia().map_or(0.0, |inertia| inertia.speed);
-    let velocity = unknowns.of_motion(model.dofs().restrict(&velocity)?, speed);
+    let velocity = model.parts.nearest(|node| at_node(model, &velocity, node), speed);
     let problem = problem.starting_from(displacement, velocity)?;
     let energy = problem.initial_energy();
     if !energy.is_finite() {
@@ -228,11 +230,12 @@ fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Resul
 fn largest_frequency(model: &Model, form: MassForm) -> Result<f64, Error> {
     let parts = &model.parts;
     let lumped = mass_of_nodes(model, MassForm::Lumped)?;
-    let of_lumped = match parts.unknowns.has_faces() {
-        false => frequency_bound(model.problem().stiffness(), &mass_of_unknowns(model, &lumped)?.diagonal()),
-        true => {
-            let mass = free_mass(&parts.body, &parts.conditions.dofs, &lumped)?.diagonal();
-            frequency_bound(&parts.on_springs(stiffness(&parts.body, &parts.conditions.dofs)?)?, &mass)
+    let of_lumped = match parts.conditions.rigid_faces.is_empty() {
+        true => frequency_bound(model.problem().stiffness(), &mass_of_unknowns(model, &lumped)?.diagonal()),
+        false => {
+            let dofs = parts.conditions.held.dofs(parts.body.mesh())?;
+            let stiffness = stiffness_on(&parts.body, &dofs, &parts.conditions.springs)?;
+            frequency_bound(&stiffness, &free_mass(&parts.body, &dofs, &lumped)?.diagonal())
         }
     };
     Ok(of_lumped / least_over_lumped(&parts.body, form)?.sqrt())

@@ -2,7 +2,7 @@
 //! and points with output.
 
 use crate::error::Error;
-use crate::fem::assembly::{mass_columns, stiffness_columns};
+use crate::fem::assembly::{Along, mass_columns, stiffness_columns};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::along_axis;
 use crate::motion::{Balance, TimeFunction};
@@ -43,32 +43,33 @@ impl MovingSupports {
     /// The data of `model` with a nodal mass (the lower triangle, `n_nodes x n_nodes`), the damping c_m and c_k, and
     /// the loads on all nodes.
     pub fn new(model: &Model, mass: &SparseMatrix, damping: [f64; 2], loads: &NodalLoads) -> Result<Self, Error> {
-        let (body, dofs, parts) = (model.body(), model.dofs(), &model.parts);
+        let (body, dofs) = (model.body(), model.dofs());
         let dimension = body.dimension();
         // The displacement of a node along an axis, times a value, in the unknowns.
         let along = |node: usize, axis: usize, value: f64| {
-            parts.unknowns.along(dofs, node, &along_axis(axis, value)[..dimension])
+            dofs.along(node, &along_axis(axis, value)[..dimension])
         };
-        let is_held = |node: usize| (dimension * node..dimension * (node + 1)).any(|dof| dofs.number(dof).is_none());
+        let is_held = |node: usize| (dimension * node..dimension * (node + 1)).any(|dof| dofs.is_supported(dof));
         let count = if !model.parts.scene.supports.is_empty() { model.mesh().nodes().len() } else { 0 };
         let nodes: Vec<usize> = (0..count).filter(|&node| is_held(node)).collect();
         let mut holding = vec![0.0; dimension * nodes.len()];
         let (mut elastic, mut inertia): (Effects, Effects) = (Vec::new(), Vec::new());
         let of_body = stiffness_columns(body, &nodes)?;
-        let of_springs = parts
+        let of_springs = model
+            .parts
             .conditions
             .springs
             .iter()
             .flat_map(|one| one.columns(|node| nodes.binary_search(&node).ok(), dimension));
         for (row, force, value) in of_body.triplets().chain(of_springs) {
-            let (free, prescribed) = along(row / dimension, row % dimension, value);
+            let Along { free, prescribed } = along(row / dimension, row % dimension, value);
             holding[force] += prescribed;
             elastic.extend(free.into_iter().map(|(unknown, coefficient)| (unknown, force, coefficient)));
         }
         for (node, place, value) in mass_columns(body, &nodes, mass)?.triplets() {
             for axis in 0..dimension {
                 let force = dimension * place + axis;
-                let free = along(node, axis, value).0;
+                let free = along(node, axis, value).free;
                 inertia.extend(free.into_iter().map(|(unknown, coefficient)| (unknown, force, coefficient)));
             }
         }

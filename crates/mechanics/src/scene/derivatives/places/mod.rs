@@ -51,8 +51,7 @@ pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, St
     let (answer, model) = (pairing.answer, pairing.answer.model());
     let (body, parts) = (model.body(), &model.parts);
     check_multiplier(model, pairing.forces).map_err(in_words)?;
-    let motion = parts.unknowns.motion(pairing.adjoint).map_err(in_words)?;
-    let adjoint = parts.conditions.dofs.expand_motion(&motion).map_err(in_words)?;
+    let adjoint = parts.conditions.dofs.expand_motion(pairing.adjoint).map_err(in_words)?;
     let mut gradient = vec![0.0; body.nodal_dofs()];
     internal_work_by_places(body, answer.displacement(), &adjoint, &mut gradient)?;
     gradient.iter_mut().for_each(|entry| *entry = 0.0 - *entry);

@@ -333,7 +333,7 @@ fn add_row(
     if !slopes.has_fixed_normals() || row.is_mean {
         // The displacement of the node against its obstacle, whose travel is against the approach direction.
         let approach = model.obstacles()[row.obstacle].approach();
-        let unknown = model.parts.unknowns.travel(row.obstacle);
+        let unknown = model.parts.travel(row.obstacle);
         let relative = |nodal: &[f64], travel: Option<f64>| {
             let travelled = approach.map(|part| travel.unwrap_or(0.0) * part);
             let at = |axis: usize| model.dofs().coefficient(row.node, |node| at_node(model, nodal, node)[axis]);

@@ -40,7 +40,7 @@ pub(super) fn between(
     let reach = reach.unwrap_or(f64::INFINITY);
     let dimension = site.body.dimension();
     // A node that supports hold in all directions cannot make a row a bound: its function goes to its neighbours.
-    let may_carry = |node: usize| (0..dimension).any(|axis| site.dofs.number(dimension * node + axis).is_some());
+    let may_carry = |node: usize| (0..dimension).any(|axis| !site.dofs.is_supported(dimension * node + axis));
     let found = means((site.body, site.dofs), [slave, master], (reach, along, true), &may_carry, &site.path)?;
     let warnings = warnings(site, [slave, master], &found, fit);
     // In the order of the candidates of the boundary that carries the rows.

@@ -49,9 +49,9 @@ impl RigidBodyModes {
     pub fn of_parts(parts: &Parts) -> Self {
         let mut modes = Self::of(&parts.body);
         let size = parts.body.mesh().size();
-        modes.obstacles = parts.unknowns.pressed.clone();
+        modes.obstacles = parts.pressed.clone();
         let of_obstacle = |&index: &usize| UnitMotions::of_obstacle(index, parts.obstacles[index].approach(), size);
-        modes.bodies.extend(parts.unknowns.pressed.iter().map(of_obstacle));
+        modes.bodies.extend(parts.pressed.iter().map(of_obstacle));
         modes
     }
 
@@ -64,17 +64,6 @@ impl RigidBodyModes {
     /// The components of unit motions along `direction` at a place that moves with a node.
     fn along(&self, node: usize, at: [f64; 3], direction: [f64; 3]) -> Components {
         self.in_sum(&vec![(node, at, direction)])
-    }
-
-    /// The components of unit motions at a nodal dof, or its coefficient: along an axis of the node's frame if it has
-    /// one.
-    fn at_dof(&self, parts: &Parts, dof: usize) -> Components {
-        let (node, axis) = (dof / self.dimension, dof % self.dimension);
-        self.along(
-            node,
-            parts.conditions.dofs.basis.place(parts.body.mesh().nodes(), node),
-            parts.conditions.dofs.axes(node)[axis],
-        )
     }
 
     /// The components of unit motions along a contact row, positive towards closing.
@@ -122,13 +111,14 @@ impl RigidBodyModes {
 
     /// A motion in the unknowns of the model.
     fn in_unknowns(&self, parts: &Parts, motion: &[f64]) -> Vec<f64> {
-        let of_free =
-            parts.conditions.dofs.free().iter().map(|&dof| component(&self.at_dof(parts, dof), motion)).collect();
+        let place = |node: usize| parts.conditions.dofs.basis.place(parts.body.mesh().nodes(), node);
+        let along = |node: usize, axis: [f64; 3]| component(&self.along(node, place(node), axis), motion);
+        let at = |node: usize| COORDINATES.map(|axis| along(node, axis));
         let travels = self.travels(parts, motion);
         let travel = |obstacle: usize| {
             self.obstacles.iter().position(|&other| other == obstacle).map_or(0.0, |place| travels[place])
         };
-        parts.unknowns.of_motion(of_free, travel)
+        parts.nearest(at, travel)
     }
 
     pub fn names(&self, motions: &[Vec<f64>]) -> Vec<String> {
@@ -271,7 +261,7 @@ impl RigidBodyModes {
 /// surfaces at one place whatever their distance.
 fn resisted_firmly(parts: &Parts) -> Vec<Sum> {
     let (nodes, dimension) = (parts.body.mesh().nodes(), parts.body.dimension());
-    let supported = (0..parts.conditions.dofs.nodal_count()).filter(|&dof| parts.conditions.dofs.number(dof).is_none());
+    let supported = (0..parts.conditions.dofs.nodal_count()).filter(|&dof| parts.conditions.dofs.is_supported(dof));
     let of_support = |dof: usize| {
         let (node, axis) = (dof / dimension, dof % dimension);
         vec![(node, nodes[node], parts.conditions.dofs.axes(node)[axis])]
