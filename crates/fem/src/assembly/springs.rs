@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::DofMap;
+use super::{DofMap, LinearForm};
 use super::element_stiffness::Block;
 use super::load::for_each_point;
 use crate::body::ElasticBody;
@@ -18,8 +18,10 @@ pub type NodalForces = BTreeMap<usize, [f64; 3]>;
 pub struct Springs {
     /// The force on the first node against the displacement of the second node; every pair in both orders.
     pub(super) pairs: Vec<(usize, usize, Block)>,
-    /// The nodes of a spring between nodes, each with its vector in the elongation; empty for springs to the ground.
-    elongation: Vec<(usize, [f64; 3])>,
+    /// The elongation of a spring between nodes; without terms for springs to the ground.
+    elongation: LinearForm,
+    /// Of a foundation the stiffness along each axis and along the normal, in force per volume.
+    pub per_area: Option<([f64; 3], f64)>,
     /// The forces on nodes that do not move.
     strained: Vec<(usize, [f64; 3])>,
 }
@@ -45,20 +47,21 @@ impl Springs {
                 }
             }
         });
-        Springs { pairs, ..Springs::default() }
+        Springs { pairs, per_area: Some((along, normal)), ..Springs::default() }
     }
 
-    /// A spring along an elongation: the sum of the displacements of nodes along vectors, and a length.
-    pub fn between(elongation: &[(usize, [f64; 3])], longer: f64, stiffness: f64) -> Self {
-        let mut pairs = Vec::with_capacity(elongation.len() * elongation.len());
-        for (a, of_a) in elongation {
-            for (b, of_b) in elongation {
+    /// A spring along an elongation: a form in the displacements of nodes, and a length.
+    pub fn between(elongation: LinearForm, longer: f64, stiffness: f64) -> Self {
+        let terms = &elongation.terms;
+        let mut pairs = Vec::with_capacity(terms.len() * terms.len());
+        for (a, of_a) in terms {
+            for (b, of_b) in terms {
                 pairs.push((*a, *b, of_a.map(|i| of_b.map(|j| stiffness * i * j))));
             }
         }
         let force = |vector: [f64; 3]| vector.map(|part| 0.0 - stiffness * longer * part);
-        let strained = elongation.iter().map(|&(node, vector)| (node, force(vector))).collect();
-        Springs { pairs, elongation: elongation.to_vec(), strained }
+        let strained = terms.iter().map(|&(node, vector)| (node, force(vector))).collect();
+        Springs { pairs, elongation, strained, per_area: None }
     }
 
     /// The forces of the springs on their nodes at a nodal displacement.
@@ -95,11 +98,10 @@ impl Springs {
     /// The motions that the springs resist: sums of displacements of nodes along vectors, of which the longest is a
     /// unit vector.
     pub fn resisted(&self) -> Vec<Vec<(usize, [f64; 3])>> {
-        if !self.elongation.is_empty() {
-            let longest = self.elongation.iter().fold(0.0, |longest: f64, (_, vector)| longest.max(length(*vector)));
-            return vec![
-                self.elongation.iter().map(|(node, vector)| (*node, vector.map(|part| part / longest))).collect(),
-            ];
+        let terms = &self.elongation.terms;
+        if !terms.is_empty() {
+            let longest = terms.iter().fold(0.0, |longest: f64, (_, vector)| longest.max(length(*vector)));
+            return vec![terms.iter().map(|(node, vector)| (*node, vector.map(|part| part / longest))).collect()];
         }
         let own = self.pairs.iter().filter(|(a, b, _)| a == b);
         let rows = own.flat_map(|(node, _, block)| block.iter().map(move |row| (*node, *row)));
@@ -109,7 +111,7 @@ impl Springs {
 
     /// The nodes whose unknowns a spring between nodes couples.
     pub(super) fn coupled(&self, dofs: &DofMap) -> Vec<usize> {
-        self.elongation.iter().flat_map(|&(node, _)| dofs.basis.values(node).map(|(of, _)| of)).collect()
+        self.elongation.terms.iter().flat_map(|&(node, _)| dofs.basis.values(node).map(|(of, _)| of)).collect()
     }
 }
 

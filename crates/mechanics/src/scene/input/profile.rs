@@ -8,7 +8,7 @@ use crate::fem::geometry::dot;
 use signorini_motion::between;
 
 /// A factor that depends on the place, checked.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Profile {
     /// The direction along which the factor changes, of length 1.
     along: [f64; 3],

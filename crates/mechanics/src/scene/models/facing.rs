@@ -1,11 +1,10 @@
 //! Ties between two surfaces that face each other: the means of one of them over the other, and one equation.
 
 use std::collections::{BTreeMap, HashSet};
-use std::ops::Range;
 
 use crate::error::Error;
 use crate::fem::Boundary;
-use crate::fem::assembly::DofMap;
+use crate::fem::assembly::{DofMap, LinearForm};
 use crate::fem::body::ElasticBody;
 use crate::fem::mortar::{Found, MortarRow};
 use crate::fem::sum::Component;
@@ -110,37 +109,17 @@ impl<'a> Facing<'a> {
         let row = |row: &MortarRow| {
             let ends = ends(row, &dofs.basis);
             let own = row.slave.iter().filter(|end| end.1 != 0.0).count();
-            let along = along(row.node);
-            let terms = ends.into_iter().map(|(node, share)| (node, along.map(|part| share * part))).collect();
-            let at = Some(dofs.basis.place(mesh.nodes(), row.node));
-            TieRow { terms, own: 0..own, at, value: 0.0, on_points: BTreeMap::new() }
+            let form = LinearForm::along(along(row.node), &ends, own);
+            TieRow { at: Some(dofs.basis.place(mesh.nodes(), row.node)), ..TieRow::of(form, 0.0) }
         };
         found.rows.iter().map(row).collect()
     }
 }
 
-/// A sum of `vector . u` over nodes in the unknowns, and its prescribed part, in length.
-pub(crate) fn in_unknowns(
-    terms: &[(usize, [f64; 3])],
-    dofs: &DofMap,
-    dimension: usize,
-) -> (Vec<(usize, f64)>, f64) {
-    let (mut entries, mut prescribed) = (Vec::new(), 0.0);
-    for (node, vector) in terms {
-        let along = dofs.along(*node, &vector[..dimension]);
-        entries.extend(along.free);
-        prescribed += along.prescribed;
-    }
-    (entries, prescribed)
-}
-
-/// One equation: the sum of `vector . u` over its terms is `value`.
+/// One equation: a form in the displacements of nodes is `value`.
 #[derive(Clone, Debug)]
 pub struct TieRow {
-    /// Nodes with their vectors [x, y, z], dimensionless; at a node with a coefficient for the coefficient.
-    pub terms: Vec<(usize, [f64; 3])>,
-    /// The terms of the nodes of the first side.
-    pub own: Range<usize>,
+    pub form: LinearForm,
     /// The place at which two surfaces are tied; `None` for an equation between nodes.
     pub at: Option<[f64; 3]>,
     pub value: f64,
@@ -150,19 +129,13 @@ pub struct TieRow {
 }
 
 impl TieRow {
-    /// The difference of two rows of the same sides with the value 0.
-    pub fn minus(&self, other: &TieRow) -> TieRow {
-        let negative = |terms: &[(usize, [f64; 3])]| -> Vec<(usize, [f64; 3])> {
-            terms.iter().map(|&(node, vector)| (node, vector.map(|part| 0.0 - part))).collect()
-        };
-        let [(own, across), (of_own, of_across)] = [self, other].map(|row| row.terms.split_at(row.own.end));
-        let terms = [own, &negative(of_own), across, &negative(of_across)].concat();
-        TieRow { terms, own: 0..own.len() + of_own.len(), at: self.at, value: 0.0, on_points: BTreeMap::new() }
+    pub fn of(form: LinearForm, value: f64) -> Self {
+        TieRow { form, at: None, value, on_points: BTreeMap::new() }
     }
 
     /// Its nodes, each with a node of the other side.
     pub fn sides(&self) -> impl Iterator<Item = (usize, usize)> {
-        let (first, second) = self.terms.split_at(self.own.end);
+        let [first, second] = self.form.sides();
         [(first, second), (second, first)]
             .into_iter()
             .flat_map(|(side, other)| side.iter().zip(std::iter::repeat(other.first())))

@@ -62,10 +62,22 @@ struct Span {
     values: Vec<f64>,
 }
 
+/// A support of the scene, checked.
+#[derive(Debug)]
+pub struct Support {
+    /// The name of its boundary; `None` if it holds single nodes.
+    pub boundary: Option<String>,
+    /// What it prescribes, where its profile is 1.
+    pub components: Vec<Component>,
+    pub profile: Option<Profile>,
+}
+
 /// The prescribed components of all nodes; a node without one is absent.
 #[derive(Debug, Default)]
 pub struct Held {
     nodes: BTreeMap<usize, Vec<Component>>,
+    /// In the order of the scene.
+    pub supports: Vec<Support>,
 }
 
 impl Held {
@@ -266,31 +278,26 @@ pub(crate) fn held(scene: &Scene, body: &ElasticBody) -> Result<Held, Error> {
                 held.prescribe(node, Component { value: factor * component.value, ..*component });
             }
         }
+        let boundary = if let Place::Boundary(name) = &support.on { Some(name.clone()) } else { None };
+        held.supports.push(Support { boundary, components, profile });
     }
     Ok(held)
 }
 
 /// Returns `true` if a support lets a flat boundary slide along itself and prescribes nothing else: it may be a
 /// plane of symmetry.
-pub(crate) fn may_be_part(scene: &Scene, body: &ElasticBody) -> Result<bool, Error> {
-    if body.dimension() == 1 {
-        return Ok(false);
-    }
-    for (index, support) in scene.supports.iter().enumerate() {
-        let (Place::Boundary(name), [only]) = (&support.on, &components(scene, index, support)?[..]) else {
-            continue;
-        };
-        let boundary = boundary(body.mesh(), name, &format!("supports[{index}].on.boundary"))?;
+pub(crate) fn may_be_part(held: &Held, body: &ElasticBody) -> bool {
+    let slides = |support: &Support| {
+        let boundary = support.boundary.as_ref().and_then(|name| body.mesh().boundary(name));
+        let (Some(boundary), [only]) = (boundary, &support.components[..]) else { return false };
         let slides = |(_, normal): &(usize, [f64; 3])| dot(*normal, only.direction).abs() > 1.0 - FLAT;
-        if only.value == 0.0 && node_normals(body, boundary).iter().all(slides) {
-            return Ok(true);
-        }
-    }
-    Ok(false)
+        only.value == 0.0 && node_normals(body, boundary).iter().all(slides)
+    };
+    body.dimension() > 1 && held.supports.iter().any(slides)
 }
 
 /// The components prescribed by support number `index`.
-pub(crate) fn components(scene: &Scene, index: usize, support: &SupportSpec) -> Result<Vec<Component>, Error> {
+fn components(scene: &Scene, index: usize, support: &SupportSpec) -> Result<Vec<Component>, Error> {
     let path = format!("supports[{index}]");
     let by = |field| Holder::Support { index, field };
     let dimension = scene.model.dimension();

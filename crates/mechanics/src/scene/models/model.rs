@@ -232,10 +232,10 @@ pub(crate) fn contact_forces(model: &Model, multiplier: &[f64]) -> Result<Vec<f6
     let dimension = model.body().dimension();
     let mut forces = vec![0.0; model.parts.conditions.dofs.nodal_count()];
     for (row, lambda) in model.rows.iter().zip(multiplier) {
-        for &(node, share) in &row.ends {
+        row.form().forces(*lambda, |node, force| {
             let entries = &mut forces[dimension * node..dimension * (node + 1)];
-            entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += share * lambda * component);
-        }
+            entries.iter_mut().zip(force).for_each(|(entry, part)| *entry += part);
+        });
     }
     model.parts.conditions.dofs.basis.scatter(&mut forces, dimension);
     Ok(forces)

@@ -160,9 +160,9 @@ pub fn deepest_overlap(model: &Model, displacement: &[f64], unknowns: &[f64]) ->
 fn drawn_together(model: &Model, unknowns: &[f64]) -> HashMap<[usize; 2], f64> {
     let (mut drawn, dofs) = (HashMap::new(), model.dofs());
     for one in &model.parts.ties.shortenings {
-        let ends = [one.terms.first(), one.terms.last()].map(|term| model.body().region_at(term?.0));
+        let ends = [one.form.terms.first(), one.form.terms.last()].map(|term| model.body().region_at(term?.0));
         if let [Some(own), Some(other)] = ends {
-            let shortening = one.sense * one.value(dofs, model.body().dimension(), unknowns);
+            let shortening = one.sense * one.form.through(dofs, model.body().dimension()).value(unknowns);
             let known = drawn.entry([own.min(other), own.max(other)]).or_insert(0.0_f64);
             *known = known.max((1.0 + KEPT_APART) * shortening);
         }

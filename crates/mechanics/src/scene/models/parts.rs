@@ -99,11 +99,11 @@ impl Parts {
     pub fn forces_of_ties(&self, of_ties: &[f64], one: Option<usize>) -> NodalForces {
         let ties = &self.ties;
         let rows = one.map_or(0..ties.rows.len(), |tie| ties.of_tie[tie].clone());
-        let of_rows = rows.map(|row| (&ties.rows[row].terms, &ties.rows[row].own, of_ties[row]));
+        let of_rows = rows.map(|row| (&ties.rows[row].form, of_ties[row]));
         let tensions = ties.shortenings.iter().filter(|of| one.is_none_or(|tie| tie == of.tie));
         let mut forces = NodalForces::new();
-        for (terms, own, size) in of_rows.chain(tensions.filter_map(|of| Some((&of.terms, &of.own, of.force?)))) {
-            for (node, vector) in &terms[if one.is_some() { own.clone() } else { 0..terms.len() }] {
+        for (form, size) in of_rows.chain(tensions.filter_map(|of| Some((&of.form, of.force?)))) {
+            for (node, vector) in if one.is_some() { form.sides()[0] } else { &form.terms } {
                 for (of, share) in self.conditions.dofs.basis.shares(*node) {
                     let force = forces.entry(of).or_default();
                     force.iter_mut().zip(vector).for_each(|(entry, part)| *entry += share * size * part);

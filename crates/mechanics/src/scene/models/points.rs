@@ -7,7 +7,7 @@ use super::facing::TieRow;
 use super::preload::{bolt_of, point_named, terms_of};
 use super::rigid_face::{Given, NAMES, motions};
 use crate::error::Error;
-use crate::fem::assembly::Springs;
+use crate::fem::assembly::{LinearForm, Springs};
 use crate::fem::body::ElasticBody;
 use crate::fem::sum::{Component, Sum, following, mean};
 use crate::fem::tributary_areas;
@@ -295,8 +295,8 @@ impl ReferencePoints {
     /// The spring of this number, if a point is among its terms.
     pub fn spring(&self, number: usize) -> Option<Springs> {
         let (elongation, along) = self.springs.get(&number)?;
-        let terms: Vec<(usize, [f64; 3])> = elongation.vectors().into_iter().collect();
-        Some(Springs::between(&terms, elongation.constant, *along))
+        let form = LinearForm { terms: elongation.vectors().into_iter().collect(), own: 0 };
+        Some(Springs::between(form, elongation.constant, *along))
     }
 
     /// Adds the forces on nodes that do the work of those on points, `dimension` entries for each node.

@@ -4,11 +4,9 @@
 //! Each mean over the cut holds t . (u - u') = 0 along the faces. Along the direction n of the bolt, either all hold n
 //! . (u - u') = q with a prescribed q, or they are equal to each other, and the tension F does the work F q.
 
-use std::ops::Range;
-
-use super::facing::{Facing, TieRow, in_unknowns};
+use super::facing::{Facing, TieRow};
 use crate::error::{Error, nearly};
-use crate::fem::assembly::DofMap;
+use crate::fem::assembly::{DofMap, LinearForm};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{cross, dot, length, plus, shifted, unit};
 use crate::scene::Warning;
@@ -16,14 +14,12 @@ use crate::scene::input::entry::{boundary, finite, node_at, nodes_named_once, re
 use crate::scene::input::obstacle::SideOrder;
 use crate::scene::input::schema::{PointSpec, PreloadSpec, Scene, TermPlace, TermSpec, TieSpec};
 
-/// The shortening of a bolt: the sum of `vector . u` over its terms.
+/// The shortening of a bolt.
 #[derive(Clone, Debug)]
 pub struct Shortening {
     pub tie: usize,
-    /// Nodes with their vectors, as in [`TieRow`].
-    pub terms: Vec<(usize, [f64; 3])>,
-    /// The nodes of the first side of the cut.
-    pub own: Range<usize>,
+    /// Its own side is the first side of the cut.
+    pub form: LinearForm,
     /// The tension along it; `None` if it is prescribed.
     pub force: Option<f64>,
     /// 1, or -1 if the direction leads from the other side back to the first, so that a positive sum is a lengthening.
@@ -31,20 +27,9 @@ pub struct Shortening {
 }
 
 impl Shortening {
-    fn of_row(row: &TieRow, (tie, sense): (usize, f64), force: Option<f64>) -> Self {
-        Shortening { tie, terms: row.terms.clone(), own: row.own.clone(), force, sense }
-    }
-
     /// The unit vector from the first side to the other.
     pub fn towards(&self) -> [f64; 3] {
-        let own = self.terms[self.own.clone()].iter();
-        unit(own.fold([0.0; 3], |sum, (_, vector)| plus(sum, *vector)))
-    }
-
-    /// Its value at values of the unknowns, in length.
-    pub fn value(&self, dofs: &DofMap, dimension: usize, values: &[f64]) -> f64 {
-        let (entries, prescribed) = in_unknowns(&self.terms, dofs, dimension);
-        entries.iter().fold(prescribed, |sum, &(unknown, part)| sum + part * values[unknown])
+        unit(self.form.sides()[0].iter().fold([0.0; 3], |sum, (_, vector)| plus(sum, *vector)))
     }
 }
 
@@ -102,14 +87,14 @@ impl PreloadSpec {
         let shortening = match (self.force, self.shortening) {
             (Some(force), None) => {
                 finite(format!("{path}.force"), force)?;
-                along.iter_mut().for_each(|row| *row = row.minus(&first));
-                Shortening::of_row(&first, (tie, sense), Some(force))
+                along.iter_mut().for_each(|row| *row = TieRow::of(row.form.minus(&first.form), 0.0));
+                Shortening { tie, form: first.form, force: Some(force), sense }
             }
             (None, Some(shortening)) => {
                 finite(format!("{path}.shortening"), shortening)?;
                 along.insert(0, first.clone());
                 along.iter_mut().for_each(|row| row.value = shortening);
-                Shortening::of_row(&first, (tie, sense), None)
+                Shortening { tie, form: first.form, force: None, sense }
             }
             _ => return Err(wrong(path, "needs one of `force`, `shortening` and `point`")),
         };

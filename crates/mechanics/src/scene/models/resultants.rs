@@ -331,12 +331,12 @@ pub(crate) fn tie_resultants(model: &Model, displacement: &[f64], of_ties: &[f64
             let point = first.and_then(|place| points.at(place)).map(|point| format!("`{}`", point.name));
             return Resultant { on: point.or_else(|| name_of_body(model, first)), ..resultant_at(model, forces, of) };
         }
-        let first = ties.rows[rows.clone()].first().and_then(|row| Some(row.terms.first()?.0));
+        let first = ties.rows[rows.clone()].first().and_then(|row| Some(row.form.terms.first()?.0));
         let sum = sum_of(model, model.parts.forces_of_ties(of_ties, Some(index)));
         let on = name_of_body(model, first);
         let shortening = ties.shortenings.iter().find(|one| one.tie == index);
         let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
-        let shortening = shortening.map(|one| one.sense * one.value(model.dofs(), model.body().dimension(), unknowns));
+        let shortening = shortening.map(|one| one.sense * one.form.through(model.dofs(), model.body().dimension()).value(unknowns));
         Resultant { on, shortening, tension, ..sum.resultant(model, of) }
     };
     ties.of_tie.iter().enumerate().map(of_tie).collect()
@@ -349,7 +349,7 @@ pub(crate) fn of_bolt(model: &Model, tie: usize, of_ties: &[f64], unknowns: &[f6
     let Some(one) = ties.shortenings.iter().find(|one| one.tie == tie) else { return [0.0; 2] };
     let (forces, towards) = (model.parts.forces_of_ties(of_ties, Some(tie)), one.towards());
     let force = forces.into_values().map(|force| dot(force, towards)).sum();
-    [one.value(model.dofs(), model.body().dimension(), unknowns), force]
+    [one.form.through(model.dofs(), model.body().dimension()).value(unknowns), force]
 }
 
 /// The forces from outside on the reference points, with their motions, in the order of the scene; of a point that
@@ -412,7 +412,7 @@ pub(crate) fn basis_of_forces(model: &Model) -> String {
         Formulation::Bar { .. } | Formulation::Space => None,
     };
     // The supports were read when the model was built.
-    let is_part = || may_be_part(&model.parts.scene, model.body()).unwrap_or_default();
+    let is_part = || may_be_part(&model.parts.conditions.held, model.body());
     let part = match model.parts_of_whole() {
         1.0 => is_part().then(|| MESHED_PART.to_string()),
         parts => Some(format!("of the whole body, {parts} times the meshed part")),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::parts::Parts;
 use crate::error::Error;
-use crate::fem::assembly::Along;
+use crate::fem::assembly::LinearForm;
 use crate::fem::geometry::dot;
 use crate::scene::Warning;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, point, wrong};
@@ -47,6 +47,12 @@ impl ContactRow {
     pub fn projected_area(&self) -> f64 {
         let facing = dot(self.normal, self.outward);
         if facing > 0.0 { self.tributary_area * facing.min(1.0) } else { self.tributary_area }
+    }
+
+    /// The form in the displacements of nodes that it bounds.
+    #[doc(hidden)]
+    pub fn form(&self) -> LinearForm {
+        LinearForm::along(self.normal, &self.ends, 1)
     }
 
     /// Index of the node opposite to it, if the row couples a pair of nodes.
@@ -119,11 +125,9 @@ pub(crate) fn found(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64)
             // Beyond the rim of the obstacle its gap is continued with the value at the node.
             let value = |node: usize| by_node.get(&node).copied().unwrap_or(row.gap);
             let mut remaining = if row.is_mean { row.gap } else { dofs.coefficient(row.node, value) };
-            for &(node, share) in &row.ends {
-                let Along { free: entries, prescribed } = dofs.along(node, &row.normal[..dimension]);
-                remaining -= share * prescribed;
-                free.extend(entries.into_iter().map(|(column, component)| (rows.len(), column, share * component)));
-            }
+            let along = row.form().through(dofs, dimension);
+            remaining -= along.prescribed;
+            free.extend(along.free.into_iter().map(|(column, part)| (rows.len(), column, part)));
             if let Some(travel) = travel {
                 free.push((rows.len(), travel, dot(row.normal, obstacle.approach())));
             }

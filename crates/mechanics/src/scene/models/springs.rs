@@ -4,7 +4,7 @@ use super::points::ReferencePoints;
 use super::preload::{no_point, terms_of};
 use crate::error::Error;
 use crate::fem::Boundary;
-use crate::fem::assembly::{Springs, tributary_areas};
+use crate::fem::assembly::{LinearForm, Springs, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::scene::input::entry::{boundary, node_at, positive, wrong};
 use crate::scene::input::schema::tie::StiffnessOf;
@@ -46,7 +46,7 @@ impl SpringSpec {
             )),
             Place::Boundary(name) => {
                 let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
-                let (along, normal) = self.per_area(path, body, boundary)?;
+                let (along, normal) = self.spread_over(path, body, boundary)?;
                 Ok(Springs::under(body, boundary, along, normal))
             }
         }
@@ -75,7 +75,7 @@ impl SpringSpec {
     }
 
     /// The stiffness per area of springs under a boundary, along the axes and along the normal.
-    pub(crate) fn per_area(
+    fn spread_over(
         &self,
         path: &str,
         body: &ElasticBody,
@@ -92,7 +92,8 @@ impl SpringSpec {
     /// A spring along the elongation that its terms give.
     fn between(&self, path: &str, body: &ElasticBody) -> Result<Springs, Error> {
         let along = positive(&format!("{path}.along"), self.along_alone(path)?)?;
-        Ok(Springs::between(&terms_of(&self.terms, path, body, &no_point)?, 0.0, along))
+        let elongation = LinearForm { terms: terms_of(&self.terms, path, body, &no_point)?, own: 0 };
+        Ok(Springs::between(elongation, 0.0, along))
     }
 
     /// The stiffness along the elongation that terms give.

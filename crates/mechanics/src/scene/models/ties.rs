@@ -1,13 +1,12 @@
 //! Ties of a scene: linear equations E u = e between displacements.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::facing::{Facing, TieRow, in_unknowns};
+use super::facing::{Facing, TieRow};
 use super::points::ReferencePoints;
 use super::preload::{Shortening, drawn, no_point, terms_of};
 use crate::error::Error;
-use crate::fem::assembly::DofMap;
+use crate::fem::assembly::{Along, DofMap, LinearForm};
 use crate::fem::body::ElasticBody;
 use crate::fem::sum::Sum;
 use crate::scene::Warning;
@@ -98,7 +97,7 @@ pub(crate) fn tied(
         };
         let first = rows.len();
         for row in found {
-            let (free, prescribed) = in_unknowns(&row.terms, dofs, dimension);
+            let Along { free, prescribed } = row.form.through(dofs, dimension);
             let left = row.value - prescribed;
             if !free.is_empty() {
                 entries.extend(free.into_iter().map(|(column, part)| (rows.len(), column, part)));
@@ -120,7 +119,7 @@ pub(crate) fn tied(
     // Number of rows that follow from no others, with zeros as values: nothing contradicts.
     let independent = |bolts: &[&Shortening]| -> Result<usize, Error> {
         let own = bolts.iter().enumerate().flat_map(|(number, bolt)| {
-            let own = in_unknowns(&bolt.terms, dofs, dimension).0;
+            let own = bolt.form.through(dofs, dimension).free;
             own.into_iter().map(move |(column, part)| (first + number, column, part))
         });
         let all: Vec<_> = entries.iter().copied().chain(own).collect();
@@ -154,27 +153,28 @@ pub(crate) fn tied_surfaces(scene: &Scene) -> impl Iterator<Item = [&str; 2]> {
 fn of_equation(spec: &EquationSpec, path: &str, body: &ElasticBody, dofs: &DofMap) -> Result<TieRow, Error> {
     let path = format!("{path}.equation");
     finite(format!("{path}.value"), spec.value)?;
-    let (mut terms, mut own) = (Vec::new(), 0);
     let mut placed = terms_of(&spec.terms, &path, body, &no_point)?;
     let first = placed[0].0;
     // All terms of the first node are its side.
     placed.sort_by_key(|(node, _)| *node != first);
-    for (node, vector) in placed {
-        // The displacement of a node with a coefficient is a sum of coefficients.
-        terms.extend(dofs.basis.values(node).map(|(of, part)| (of, vector.map(|along| part * along))));
-        if node == first {
-            own = terms.len();
-        }
-    }
-    Ok(TieRow { terms, own: 0..own, at: None, value: spec.value, on_points: BTreeMap::new() })
+    let of_first = placed.iter().filter(|(node, _)| *node == first).count();
+    Ok(TieRow::of(in_coefficients(placed, of_first, dofs), spec.value))
 }
 
 /// The row of a sum that is zero; its own side is its first node if it `is_of_one` equation, otherwise all nodes.
 fn of_sum(sum: &Sum, dofs: &DofMap, is_of_one: bool) -> TieRow {
-    let (mut terms, mut own) = (Vec::new(), 0);
-    for (node, vector) in sum.vectors() {
-        terms.extend(dofs.basis.values(node).map(|(of, part)| (of, vector.map(|along| part * along))));
-        own = if own > 0 && is_of_one { own } else { terms.len() };
+    let placed: Vec<_> = sum.vectors().into_iter().collect();
+    let own = if is_of_one { 1 } else { placed.len() };
+    TieRow { on_points: sum.replaced.clone(), ..TieRow::of(in_coefficients(placed, own, dofs), -sum.constant) }
+}
+
+/// The form of terms at nodes, of which the first `own` are its own side: the displacement of a node with a coefficient
+/// is a sum of coefficients.
+fn in_coefficients(placed: Vec<(usize, [f64; 3])>, own: usize, dofs: &DofMap) -> LinearForm {
+    let mut form = LinearForm::default();
+    for (index, (node, vector)) in placed.into_iter().enumerate() {
+        form.terms.extend(dofs.basis.values(node).map(|(of, part)| (of, vector.map(|along| part * along))));
+        form.own = if index < own { form.terms.len() } else { form.own };
     }
-    TieRow { terms, own: 0..own, at: None, value: -sum.constant, on_points: sum.replaced.clone() }
+    form
 }

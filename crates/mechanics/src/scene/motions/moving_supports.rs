@@ -103,11 +103,11 @@ impl MovingSupports {
         let parts = self.mass.mul_transposed(&acceleration).into_iter().zip(&self.holding).zip(self.loads.mean(&loads));
         forces.iter_mut().zip(parts).for_each(|(force, ((inertia, held), load))| *force += inertia + held - load);
         for (row, lambda) in model.rows().iter().zip(multiplier) {
-            for &(node, share) in &row.ends {
-                let Ok(place) = self.nodes.binary_search(&node) else { continue };
+            row.form().forces(*lambda, |node, on_node| {
+                let Ok(place) = self.nodes.binary_search(&node) else { return };
                 let of_node = &mut forces[dimension * place..dimension * (place + 1)];
-                of_node.iter_mut().zip(row.normal).for_each(|(force, normal)| *force -= share * lambda * normal);
-            }
+                of_node.iter_mut().zip(on_node).for_each(|(force, part)| *force -= part);
+            });
         }
         move |node| {
             let place = self.nodes.binary_search(&node);

@@ -35,7 +35,7 @@ use crate::fem::body::BodyElement;
 use crate::fem::element::Cell;
 use crate::fem::geometry::{COORDINATES, Symmetric, cross, distance, dot, minus};
 use crate::fem::{Boundary, ElasticBody};
-use crate::scene::Scene;
+use crate::scene::{Model, Scene};
 use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::boundary;
 use crate::scene::input::profile::Profile;
@@ -56,7 +56,7 @@ pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, St
     internal_work_by_places(body, answer.displacement(), &adjoint, &mut gradient)?;
     gradient.iter_mut().for_each(|entry| *entry = 0.0 - *entry);
     add_loads(scene, body, &adjoint, &mut gradient).map_err(in_words)?;
-    add_springs(scene, body, [answer.displacement(), &adjoint], &mut gradient).map_err(in_words)?;
+    add_springs(scene, model, [answer.displacement(), &adjoint], &mut gradient).map_err(in_words)?;
     slopes::add(pairing, &adjoint, &mut gradient)?;
     Ok(gradient)
 }
@@ -188,15 +188,14 @@ impl Loaded<'_> {
 /// foundations under boundaries change.
 pub(crate) fn add_springs(
     scene: &Scene,
-    body: &ElasticBody,
+    model: &Model,
     fields: [&[f64]; 2],
     gradient: &mut [f64],
 ) -> Result<(), Error> {
-    for (index, spec) in scene.springs.iter().enumerate() {
-        let Some(Place::Boundary(name)) = &spec.on else { continue };
-        let path = format!("springs[{index}]");
-        let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
-        let (along, normal) = spec.per_area(&path, body, boundary)?;
+    let body = model.body();
+    for ((index, spec), springs) in scene.springs.iter().enumerate().zip(&model.parts.conditions.springs) {
+        let (Some(Place::Boundary(name)), Some((along, normal))) = (&spec.on, springs.per_area) else { continue };
+        let boundary = boundary(body.mesh(), name, &format!("springs[{index}].on.boundary"))?;
         let density = |point: &FacetPoint| {
             let [u, w] = fields.map(|field| at_point(body, field, point));
             let [of_u, of_w] = [u, w].map(|field| dot(point.normal, field));

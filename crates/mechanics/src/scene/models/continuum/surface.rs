@@ -8,12 +8,9 @@ use crate::fem::assembly::turning_traction;
 use crate::fem::geometry::{COORDINATES, cross, dot, minus, sorted, unit};
 use crate::fem::mesh::pieces::Pieces;
 use crate::scene::Model;
-use crate::scene::input::entry::boundary;
 use crate::scene::input::profile::Profile;
-use crate::scene::input::schema::condition::{LoadSpec, PressureSpec, ProfileSpec, TractionSpec};
 use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
-use crate::scene::models::held::components;
-use crate::scene::models::load::spread;
+use crate::scene::models::load::{Acting, acting, spread};
 use signorini_guarantee::{Circle, Condition, Held, Linear, Point};
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
@@ -27,7 +24,7 @@ pub(super) fn conditions(
     conditions: &mut Vec<Condition>,
 ) -> Result<HashMap<Vec<usize>, usize>, WhyNot> {
     let mut surface = Surface::of(model.mesh(), pieces);
-    add_supports(scene, model, &mut surface)?;
+    add_supports(model, &mut surface)?;
     surface.change_on_planes(|at| model.parts.conditions.symmetry.axes_at(at));
     for (index, face) in scene.rigid_faces.iter().enumerate() {
         let path = format!("rigid-faces[{index}]");
@@ -47,16 +44,15 @@ pub(super) fn conditions(
                            over a boundary";
             return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
         };
-        let of_boundary = boundary(model.mesh(), name, &format!("{path}.on.boundary"))?;
-        let (along, normal) = springs.per_area(&path, model.body(), of_boundary)?;
+        let (along, normal) = model.parts.conditions.springs[index].per_area.unwrap_or_default();
         surface.change(name, |condition, _| {
             (0..3).for_each(|axis| condition.springs.along[axis] += along[axis]);
             condition.springs.normal += normal;
             Ok(())
         })?;
     }
-    for (index, load) in scene.loads.iter().enumerate() {
-        add_load_on_surface(model, index, load, &mut surface)?;
+    for index in 0..scene.loads.len() {
+        add_load_on_surface(scene, model, index, &mut surface)?;
     }
     for (index, obstacle) in model.obstacles().iter().enumerate() {
         let name = obstacle.boundary();
@@ -97,22 +93,20 @@ pub(super) fn conditions(
     Ok(surface.numbered(conditions))
 }
 
-fn add_supports(scene: &Scene, model: &Model, surface: &mut Surface) -> Result<(), WhyNot> {
-    for (index, support) in scene.supports.iter().enumerate() {
-        let Place::Boundary(name) = &support.on else {
+fn add_supports(model: &Model, surface: &mut Surface) -> Result<(), WhyNot> {
+    for (index, support) in model.parts.conditions.held.supports.iter().enumerate() {
+        let Some(name) = &support.boundary else {
             let message = "a support at a point holds nothing in a continuum, so that there is no guaranteed bound; \
                            hold a boundary";
             return Err(none(format!("supports[{index}].on"), message));
         };
-        let path = format!("supports[{index}].profile");
-        let profile = Factor { counts_radius: false, ..Factor::of(model, support.profile.as_ref(), path)? };
-        let components = components(scene, index, support)?;
+        let (profile, path) = (support.profile.clone(), format!("supports[{index}].profile"));
+        let factor = Factor { counts_radius: false, profile, path };
         surface.change(name, |condition, facet| {
-            let factor = profile.on(facet)?;
+            let factor = factor.on(facet)?;
+            let components = support.components.iter();
             condition.held.extend(
-                components
-                    .iter()
-                    .map(|component| Held { direction: component.direction, value: factor.times(component.value) }),
+                components.map(|one| Held { direction: one.direction, value: factor.times(one.value) }),
             );
             Ok(())
         })?;
@@ -121,22 +115,22 @@ fn add_supports(scene: &Scene, model: &Model, surface: &mut Surface) -> Result<(
 }
 
 /// Adds load number `index`, if it acts on facets.
-fn add_load_on_surface(model: &Model, index: usize, load: &LoadSpec, surface: &mut Surface) -> Result<(), WhyNot> {
+fn add_load_on_surface(scene: &Scene, model: &Model, index: usize, surface: &mut Surface) -> Result<(), WhyNot> {
     let path = |field: &str| format!("loads[{index}].{field}");
-    let in_space = |value: &[f64]| [0, 1, 2].map(|axis| value.get(axis).copied().unwrap_or(0.0));
-    match load {
-        LoadSpec::Traction(TractionSpec { boundary, value, profile }) => {
-            let (factor, value) = (Factor::of(model, profile.as_ref(), path("traction.profile"))?, in_space(value));
-            surface.change(boundary, |condition, facet| {
+    let counts_radius = model.body().formulation().is_axisymmetric();
+    match acting(scene, model.body(), index)? {
+        Acting::Traction { boundary, traction, profile } => {
+            let factor = Factor { counts_radius, profile, path: path("traction.profile") };
+            surface.change(&boundary.name, |condition, facet| {
                 let factor = factor.on(facet)?;
-                condition.pull_along(value.map(|component| factor.times(component)));
+                condition.pull_along(traction.map(|component| factor.times(component)));
                 Ok(())
             })
         }
-        LoadSpec::Pressure(PressureSpec { boundary, value, profile }) => {
-            let factor = Factor::of(model, profile.as_ref(), path("pressure.profile"))?;
-            surface.change(boundary, |condition, facet| {
-                let pressure = factor.on(facet)?.times(*value);
+        Acting::Pressure { boundary, pressure, profile } => {
+            let factor = Factor { counts_radius, profile, path: path("pressure.profile") };
+            surface.change(&boundary.name, |condition, facet| {
+                let pressure = factor.on(facet)?.times(pressure);
                 match facet.inner_normal {
                     Some(normal) => condition.pull_along(normal.map(|part| pressure.times(-part))),
                     None => condition.pressure = condition.pressure.plus(pressure),
@@ -144,35 +138,27 @@ fn add_load_on_surface(model: &Model, index: usize, load: &LoadSpec, surface: &m
                 Ok(())
             })
         }
-        LoadSpec::Force(spec) => {
-            let (Some(name), path) = (&spec.boundary, path("force.boundary")) else { return Ok(()) };
-            let of_boundary = boundary(model.mesh(), name, &path)?;
-            let traction = spread(model.body(), of_boundary, in_space(&spec.value), &path)?;
-            surface.change(name, |condition, _| {
+        Acting::Spread { boundary, force } => {
+            let traction = spread(model.body(), boundary, force, &path("force.boundary"))?;
+            surface.change(&boundary.name, |condition, _| {
                 condition.pull_along(traction.map(Linear::constant));
                 Ok(())
             })
         }
-        LoadSpec::Moment(spec) => {
-            let Some(name) = &spec.boundary else { return Ok(()) };
-            let of_boundary = boundary(model.mesh(), name, &path("moment.boundary"))?;
-            let moment = match spec.value[..] {
-                [about_z] => [0.0, 0.0, about_z],
-                _ => in_space(&spec.value),
-            };
+        Acting::Moment { boundary, moment } => {
             // The model is built, so that there is one.
-            let Some((omega, centre)) = turning_traction(model.body(), of_boundary, moment) else { return Ok(()) };
+            let Some((omega, centre)) = turning_traction(model.body(), boundary, moment) else { return Ok(()) };
             let along = |axis: usize| Linear::of(|place| cross(omega, minus(place, centre))[axis]);
-            surface.change(name, |condition, _| {
+            surface.change(&boundary.name, |condition, _| {
                 condition.pull_along([0, 1, 2].map(along));
                 Ok(())
             })
         }
-        LoadSpec::NodalForces(_) => Err(none(
+        Acting::AtNodes(_) => Err(none(
             path("nodal-forces"),
             "a force on a node has no guaranteed bound: only loads on boundaries have one",
         )),
-        LoadSpec::BodyForce(_) | LoadSpec::Gravity(_) | LoadSpec::Centrifugal(_) => Ok(()),
+        Acting::BodyForce(_) | Acting::Gravity(_) | Acting::Centrifugal { .. } => Ok(()),
     }
 }
 
@@ -185,12 +171,6 @@ struct Factor {
 }
 
 impl Factor {
-    fn of(model: &Model, spec: Option<&ProfileSpec>, path: String) -> Result<Self, Error> {
-        let dimension = model.mesh().dimension();
-        let counts_radius = model.body().formulation().is_axisymmetric();
-        Ok(Factor { counts_radius, profile: spec.map(|spec| Profile::of(spec, &path, dimension)).transpose()?, path })
-    }
-
     fn on(&self, facet: &Facet) -> Result<Linear, WhyNot> {
         let Some(profile) = &self.profile else { return Ok(Linear::constant(1.0)) };
         if self.counts_radius && facet.corners.iter().any(|corner| corner[0] != facet.corners[0][0]) {

@@ -271,10 +271,10 @@ fn resisted_firmly(parts: &Parts) -> Vec<Sum> {
     // Relative to its largest coefficient, whatever its scale is.
     let of_tie = |row: &TieRow| {
         let place = |node: usize| row.at.unwrap_or_else(|| parts.conditions.dofs.basis.place(nodes, node));
-        let coefficients = row.terms.iter().flat_map(|term| term.1);
+        let coefficients = row.form.terms.iter().flat_map(|term| term.1);
         let largest = coefficients.fold(0.0, |largest: f64, part| largest.max(part.abs()));
         let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
-        row.terms.iter().map(|&(node, vector)| (node, place(node), vector.map(|part| scale * part))).collect()
+        row.form.terms.iter().map(|&(node, vector)| (node, place(node), vector.map(|part| scale * part))).collect()
     };
     let firm = supported.map(of_support).chain(springs.map(|terms| of_spring(terms).collect()));
     firm.chain(parts.conditions.rigid_faces.iter().flat_map(prescribed))
