@@ -1,7 +1,7 @@
 //! The mesh of a body: elements of groups, their nodes, their sets, its surfaces as boundaries.
 
 use super::content::Deck;
-use super::source::{Place, key};
+use super::source::{DeckPlace, key};
 use crate::element::ElementKind;
 use crate::error::{Error, nearly};
 use crate::formulation::positive;
@@ -36,7 +36,7 @@ impl Deck {
             let message = format!(
                 "node {number} has z = {z}, but the first node of the body has another; a plane body lies in z = const"
             );
-            self.source.fault(self.node_places[place], message)
+            self.fault(self.node_places[place], message)
         })?;
         let mut connectivity = Vec::with_capacity(elements.len() * kind.nodes());
         for &element in &elements {
@@ -45,7 +45,7 @@ impl Deck {
         if let Some((element, reason)) = unfit(kind, &nodes, &connectivity) {
             let number = self.elements.numbers[elements[element]];
             let place = self.element_list[elements[element]].place;
-            return Err(self.source.fault(place, format!("element {number}: {reason}")));
+            return Err(self.fault(place, format!("element {number}: {reason}")));
         }
         let mesh = Mesh::new(nodes, kind, connectivity, Vec::new())?
             .with_groups(self.groups(&elements))
@@ -62,13 +62,13 @@ impl Deck {
         let mut elements = Vec::new();
         for name in groups {
             let body = (0..self.bodies).find(|&body| Deck::body_name(body) == *name);
-            match (body, self.element_sets.named(name)) {
+            match (body, self.elements.sets.named(name)) {
                 (Some(body), _) => {
                     elements.extend((0..self.elements.len()).filter(|&element| self.body_of_element[element] == body));
                 }
                 (None, Some(set)) => elements.extend(&set.members),
                 (None, None) => {
-                    let sets = self.element_sets.all.iter().map(|set| set.name.clone());
+                    let sets = self.elements.sets.all.iter().map(|set| set.name.clone());
                     let names: Vec<String> = sets.chain((0..self.bodies).map(Deck::body_name)).collect();
                     let meant = nearly(name, names.iter().map(String::as_str));
                     return fail(format!(
@@ -95,7 +95,7 @@ impl Deck {
                 let other = self.element_list[other];
                 let [one, two] = [first, other].map(|element| element.of_type.name);
                 let message = format!("the body mixes {one} and {two}; it must have one kind of element");
-                Err(self.source.fault(other.place, message))
+                Err(self.fault(other.place, message))
             }
         }
     }
@@ -103,7 +103,7 @@ impl Deck {
     /// The element sets that have some of these elements, given in increasing order.
     fn groups(&self, elements: &[usize]) -> Vec<ElementGroup> {
         let own = |members: &[usize]| members.iter().filter_map(|member| elements.binary_search(member).ok()).collect();
-        let groups = self.element_sets.all.iter();
+        let groups = self.elements.sets.all.iter();
         let groups = groups.map(|set| ElementGroup { name: set.name.clone(), elements: own(&set.members) });
         groups.filter(|group| !group.elements.is_empty()).collect()
     }
@@ -111,7 +111,7 @@ impl Deck {
     /// The names of the nodes: sets and numbers.
     fn names(&self, places: &[usize], numbers: &[Option<usize>]) -> NodeNames {
         let of_set = |members: &[usize]| members.iter().filter_map(|&place| numbers[place]).collect::<Vec<usize>>();
-        let sets = self.node_sets.all.iter().map(|set| (set.name.clone(), of_set(&set.members)));
+        let sets = self.nodes.sets.all.iter().map(|set| (set.name.clone(), of_set(&set.members)));
         NodeNames::new(
             sets.filter(|(_, nodes)| !nodes.is_empty()),
             places.iter().map(|&place| self.nodes.numbers[place]).collect(),
@@ -124,20 +124,18 @@ impl Deck {
     }
 
     /// The place of the first element of a body, numbered from 0.
-    pub fn place_of_body(&self, body: usize) -> Place {
+    pub fn place_of_body(&self, body: usize) -> DeckPlace {
         let first = self.body_of_element.iter().position(|&own| own == body);
-        first.map_or(Place::default(), |element| self.element_list[element].place)
+        first.map_or(DeckPlace::default(), |element| self.element_list[element].place)
     }
 }
 
 impl Deck {
     /// Returns `true` if a line of one of these cards names a surface.
     fn is_in(&self, keywords: &[&str], surface: &str) -> bool {
-        let cards = self.source.cards.iter().filter(|card| keywords.iter().any(|keyword| card.is(keyword)));
-        cards.flat_map(|card| &card.lines).any(|line| {
-            let mut fields = self.source.fields(line);
-            fields.by_ref().any(|field| key(&String::from_utf8_lossy(field)) == key(surface))
-        })
+        let cards = self.source.cards().filter(|card| card.is_any(keywords));
+        let mut fields = cards.flat_map(|card| card.fields()).flatten();
+        fields.any(|field| key(&String::from_utf8_lossy(field)) == key(surface))
     }
 
     /// The mesh with the surfaces that have facets on it; `elements` are its elements in the deck, increasing. Of a
@@ -165,7 +163,7 @@ impl Deck {
                         self.elements.numbers[element],
                         surface.name
                     );
-                    return Err(self.source.fault(surface.place, message));
+                    return Err(self.fault(surface.place, message));
                 } else if !is_pressed && !self.is_in(&["DSLOAD"], &surface.name) {
                     continue;
                 }
