@@ -40,7 +40,7 @@ use amplitudes::{Amplitudes, Temperatures};
 use bodies::Body;
 use contacts::{bolts, contacts, ties};
 use coupling::couplings;
-use keywords::SceneText;
+use keywords::{SceneEntry, SceneText};
 use loads::Loads;
 use materials::Sections;
 use references::References;
@@ -55,6 +55,9 @@ pub use requests::{RequestedTable, Requests};
 
 /// The code of the warning that a deck asks for large displacements.
 pub const NONLINEAR: &str = "nonlinear";
+
+/// What it says.
+const SMALL: &str = "NLGEOM is answered with small displacements";
 
 /// More bodies than this are a mesh whose nodes were not merged.
 const MOST_BODIES: usize = 1000;
@@ -125,12 +128,15 @@ impl DeckScene {
         noted.extend(contacts.warnings);
         noted.extend(entries.warnings);
         noted.extend(deck.source.longer.get().cloned());
+        let small = large_displacements(&deck).map(|place| (NONLINEAR, place, SMALL.to_string()));
+        let noted = noted.into_iter().map(|(place, message)| ("deck", place, message));
+        let noted: Vec<_> = small.into_iter().chain(noted).collect();
         let mut text = SceneText::new(&deck, &comments(&deck, named, &noted, &passed));
         text.plain("title", &title(&deck).into());
         text.plain("units", &serde_json::json!({"length": "", "force": ""}));
         text.plain("model", &model(space).into());
         if let Some((thickness, place)) = sections.thickness.filter(|thickness| thickness.0 != 1.0) {
-            text.one("thickness", &keywords::SceneEntry::new(thickness.into(), place));
+            text.one("thickness", &SceneEntry::new(thickness.into(), place));
         }
         let bodies = (0..deck.bodies).map(|index| Body::of(&deck, index, named, &sections, &temperatures));
         add_bodies(&mut text, bodies.collect::<Result<_, _>>()?);
@@ -147,33 +153,28 @@ impl DeckScene {
             let (file, line) = deck.source.position(place);
             (file.to_path_buf(), line)
         };
-        let warning = |code, place, message: &str| (code, format!("{}: {message}", named_line(position(place))));
-        let small = "NLGEOM is answered with small displacements";
-        let nonlinear = large_displacements(&deck).map(|place| warning(NONLINEAR, place, small));
-        let noted = noted.into_iter().map(|(place, message)| warning("deck", place, &message));
-        let warnings = nonlinear.into_iter().chain(noted).collect();
+        let warning = |(code, place, message): (&'static str, DeckPlace, String)| {
+            let (file, line) = position(place);
+            (code, format!("{}:{line}: {message}", file.display()))
+        };
+        let warnings = noted.into_iter().map(warning).collect();
         let lines = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
         Ok(DeckScene { text, warnings, references: entries.nodes, deck, lines })
     }
 }
 
-/// A file with a line, as `part.inp:12`.
-fn named_line((file, line): (PathBuf, usize)) -> String {
-    format!("{}:{line}", file.display())
-}
-
 /// The comments that open the scene of a deck: where it comes from, and which cards are answered otherwise or passed
 /// over.
-fn comments(deck: &Deck, named: &str, noted: &[(DeckPlace, String)], passed: &[(String, DeckPlace)]) -> Vec<String> {
+fn comments(
+    deck: &Deck,
+    named: &str,
+    noted: &[(&str, DeckPlace, String)],
+    passed: &[(String, DeckPlace)],
+) -> Vec<String> {
     let mut comments = vec![format!("The scene of {named}; each entry names the line of the deck that it comes from.")];
-    let nonlinear =
-        large_displacements(deck).map(|place| (place, "NLGEOM is answered with small displacements".into()));
-    comments.extend(
-        nonlinear
-            .iter()
-            .chain(noted)
-            .map(|(place, message)| format!("Warning, {}: {message}", deck.source.named(*place))),
-    );
+    let warning =
+        |(_, place, message): &(&str, DeckPlace, String)| format!("Warning, {}: {message}", deck.source.named(*place));
+    comments.extend(noted.iter().map(warning));
     if !passed.is_empty() {
         let names: Vec<&str> = passed.iter().map(|(name, _)| name.as_str()).collect();
         comments.push(format!("Passed over, because it changes no answer: {}.", names.join(", ")));
@@ -185,7 +186,7 @@ fn comments(deck: &Deck, named: &str, noted: &[(DeckPlace, String)], passed: &[(
 fn add_bodies(text: &mut SceneText, bodies: Vec<Body>) {
     let mut bodies = bodies.into_iter();
     let Some(first) = bodies.next() else { return };
-    text.one("body", &keywords::SceneEntry::new(first.body, first.place));
+    text.one("body", &SceneEntry::new(first.body, first.place));
     first.material.iter().for_each(|material| text.one("material", material));
     text.list("materials", &first.materials);
     text.list("temperature", &first.temperature.into_iter().collect::<Vec<_>>());

@@ -10,20 +10,11 @@ use signorini_fem::{Error, nearly};
 
 #[derive(Clone, Debug, Default)]
 struct GivenMaterial {
-    elastic: Option<ElasticConstants>,
+    /// As a scene has it.
+    elastic: Option<Value>,
     density: Option<f64>,
     /// Along the axes of the material.
     expansion: Option<[f64; 3]>,
-}
-
-#[derive(Clone, Debug)]
-enum ElasticConstants {
-    Isotropic {
-        young: f64,
-        poisson: f64,
-    },
-    /// E1, E2, E3, nu12, nu13, nu23, G12, G13, G23.
-    Constants([f64; 9]),
 }
 
 /// A section: a set of elements with a material.
@@ -123,12 +114,7 @@ impl GivenMaterial {
     /// # Errors
     /// A sentence for an isotropic material that expands by different amounts.
     fn value(&self) -> Result<Option<Value>, String> {
-        let Some(elastic) = &self.elastic else { return Ok(None) };
-        let mut value = match elastic {
-            ElasticConstants::Isotropic { young, poisson } => json!({"young": young, "poisson": poisson}),
-            ElasticConstants::Constants([e1, e2, e3, nu12, nu13, nu23, g12, g13, g23]) => json!({"orthotropic": {
-                "young": [e1, e2, e3], "poisson": [nu12, nu23, nu13], "shear": [g12, g23, g13]}}),
-        };
+        let Some(mut value) = self.elastic.clone() else { return Ok(None) };
         if let Some(density) = self.density {
             value["density"] = density.into();
         }
@@ -273,14 +259,15 @@ fn materials(deck: &Deck, noted: &mut Vec<(DeckPlace, String)>) -> Result<HashMa
     Ok(materials)
 }
 
-fn elastic(card: DeckCard) -> Result<ElasticConstants, Error> {
+/// The elasticity of a card, as a scene has it.
+fn elastic(card: DeckCard) -> Result<Value, Error> {
     let of_type = card.value("TYPE").map_or_else(|| "ISO".into(), key);
     match of_type.as_str() {
         "ISO" | "ISOTROPIC" => {
             let mut fields = only_line(card)?;
             let (young, poisson) = (fields.finite("Young's modulus")?, fields.finite("Poisson's ratio")?);
             without_temperature(&mut fields)?;
-            Ok(ElasticConstants::Isotropic { young, poisson })
+            Ok(json!({"young": young, "poisson": poisson}))
         }
         "ENGINEERINGCONSTANTS" => {
             const NAMES: [&str; 9] = ["E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"];
@@ -296,7 +283,9 @@ fn elastic(card: DeckCard) -> Result<ElasticConstants, Error> {
             fields.end()?;
             constants[8] = second.finite(NAMES[8])?;
             without_temperature(&mut second)?;
-            Ok(ElasticConstants::Constants(constants))
+            let [e1, e2, e3, nu12, nu13, nu23, g12, g13, g23] = constants;
+            Ok(json!({"orthotropic": {
+                "young": [e1, e2, e3], "poisson": [nu12, nu23, nu13], "shear": [g12, g23, g13]}}))
         }
         _ => {
             let message = "this type of *ELASTIC is not read; there are ISO and ENGINEERING CONSTANTS";

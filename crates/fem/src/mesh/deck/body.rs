@@ -5,8 +5,8 @@ use super::source::{DeckPlace, key};
 use crate::element::ElementKind;
 use crate::error::{Error, nearly};
 use crate::formulation::positive;
-use crate::mesh::faces::chained;
-use crate::mesh::{Boundary, ElementGroup, Mesh, NodeNames, fail, flatten, unfit};
+use crate::mesh::file::{FileBody, Misfit, Numbers, boundary};
+use crate::mesh::{Boundary, ElementGroup, Mesh, NodeNames, fail};
 
 impl Deck {
     /// The mesh of the elements in the groups of these names, element sets or bodies, or, without a name, of all
@@ -17,39 +17,24 @@ impl Deck {
     pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;
         let elements = self.elements_of(groups)?;
-        let kind = self.kind(&elements)?;
-        let mut numbers: Vec<Option<usize>> = vec![None; self.nodes.len()];
-        for &element in &elements {
-            self.nodes_of(element).iter().for_each(|&node| numbers[node] = Some(0));
-        }
-        let mut nodes = Vec::new();
-        let used = numbers.iter_mut().enumerate().filter_map(|(place, number)| Some((place, number.as_mut()?)));
-        let mut places = Vec::new();
-        for (place, number) in used {
-            *number = nodes.len();
-            nodes.push(self.at[place].map(|value| value * scale));
-            places.push(place);
-        }
-        flatten(kind.dimension(), &mut nodes).map_err(|(node, _)| {
-            let place = places[node];
-            let (number, z) = (self.nodes.numbers[place], self.at[place][2]);
-            let message = format!(
-                "node {number} has z = {z}, but the first node of the body has another; a plane body lies in z = const"
-            );
-            self.fault(self.node_places[place], message)
+        let connectivity = elements.iter().flat_map(|&element| self.nodes_of(element)).copied().collect();
+        let (kind, groups) = (self.kind(&elements)?, self.groups(&elements));
+        let body = FileBody { kind, places: &self.at, connectivity, groups, turns: false };
+        let (mesh, numbers) = body.into_mesh(scale, |misfit| match misfit {
+            Misfit::OffPlane([_, place], _) => {
+                let (number, z) = (self.nodes.numbers[place], self.at[place][2]);
+                let message = format!(
+                    "node {number} has z = {z}, but the first node of the body has another; a plane body lies in z = const"
+                );
+                self.fault(self.node_places[place], message)
+            }
+            Misfit::Element(element, reason) => {
+                let number = self.elements.numbers[elements[element]];
+                self.fault(self.element_list[elements[element]].place, format!("element {number}: {reason}"))
+            }
         })?;
-        let mut connectivity = Vec::with_capacity(elements.len() * kind.nodes());
-        for &element in &elements {
-            connectivity.extend(self.nodes_of(element).iter().filter_map(|&node| numbers[node]));
-        }
-        if let Some((element, reason)) = unfit(kind, &nodes, &connectivity) {
-            let number = self.elements.numbers[elements[element]];
-            let place = self.element_list[elements[element]].place;
-            return Err(self.fault(place, format!("element {number}: {reason}")));
-        }
-        let mesh = Mesh::new(nodes, kind, connectivity, Vec::new())?
-            .with_groups(self.groups(&elements))
-            .with_node_names(self.names(&places, &numbers))
+        let mesh = mesh
+            .with_node_names(self.names(&numbers))
             .with_element_numbers(elements.iter().map(|&element| self.elements.numbers[element]).collect());
         self.with_boundaries(mesh, &elements)
     }
@@ -109,13 +94,11 @@ impl Deck {
     }
 
     /// The names of the nodes: sets and numbers.
-    fn names(&self, places: &[usize], numbers: &[Option<usize>]) -> NodeNames {
+    fn names(&self, numbers: &Numbers) -> NodeNames {
         let of_set = |members: &[usize]| members.iter().filter_map(|&place| numbers[place]).collect::<Vec<usize>>();
         let sets = self.nodes.sets.all.iter().map(|set| (set.name.clone(), of_set(&set.members)));
-        NodeNames::new(
-            sets.filter(|(_, nodes)| !nodes.is_empty()),
-            places.iter().map(|&place| self.nodes.numbers[place]).collect(),
-        )
+        let own = self.nodes.numbers.iter().zip(numbers).filter(|(_, number)| number.is_some());
+        NodeNames::new(sets.filter(|(_, nodes)| !nodes.is_empty()), own.map(|(&own, _)| own).collect())
     }
 
     /// The coordinates of a node, by its place.
@@ -151,8 +134,8 @@ impl Deck {
                 let connectivity: Vec<usize> = nodes.map(|(element, local)| mesh.element(element)[local]).collect();
                 Boundary::new(surface.name.as_str(), facet, connectivity)
             };
-            let mut boundary = boundary_of(&surface.faces);
-            if let Some(within) = mesh.inner_facet(&boundary) {
+            let mut found = boundary_of(&surface.faces);
+            if let Some(within) = mesh.inner_facet(&found) {
                 let is_pressed = self.pressures.iter().any(|pressure| pressure.surface == surface.name);
                 if self.is_in(&["CONTACTPAIR", "TIE"], &surface.name) {
                     let mut own = surface.faces.iter().filter(|face| elements.binary_search(&face.0).is_ok());
@@ -167,11 +150,9 @@ impl Deck {
                 } else if !is_pressed && !self.is_in(&["DSLOAD"], &surface.name) {
                     continue;
                 }
-                boundary = boundary_of(&self.outside_and_inside(surface).0);
+                found = boundary_of(&self.outside_and_inside(surface).0);
             }
-            if !boundary.connectivity.is_empty() {
-                boundaries.push(Boundary { connectivity: chained(facet, boundary.connectivity), ..boundary });
-            }
+            boundaries.extend(boundary(&mesh, &surface.name, found.connectivity));
         }
         mesh.boundaries = boundaries;
         Ok(mesh)

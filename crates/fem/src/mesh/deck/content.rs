@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
 use super::kinds::{DeckElementType, Space, SpringElement, SpringType, element_type, refusal};
-use super::sets::{DeckSurface, FacePressure, ByName, Numbered};
+use super::sets::{ByName, DeckSurface, FacePressure, Numbered};
 use super::source::{Card, DeckCard, DeckPlace, DeckSource, key};
 use crate::element::ElementKind;
 use crate::error::Error;
