@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 
 use signorini_fem::Error;
+use signorini_fem::geometry::between;
 use signorini_fem::mesh::deck::{Deck, DeckCard, DeckPlace, key};
 
 /// An amplitude: its points, each a time with a factor, and whether the times count from the start of the first step.
 struct Amplitude {
-    points: Vec<[f64; 2]>,
+    points: Vec<(f64, f64)>,
     is_total: bool,
 }
 
@@ -23,12 +24,12 @@ impl Amplitudes {
         let mut all = HashMap::new();
         for card in deck.source.cards_of("AMPLITUDE") {
             let name = card.named()?;
-            let mut points: Vec<[f64; 2]> = Vec::new();
+            let mut points: Vec<(f64, f64)> = Vec::new();
             for mut fields in card.fields() {
                 while fields.clone().text().is_some() {
-                    let point = [fields.finite("a time")?, fields.finite("the factor of a time")?];
-                    if points.last().is_some_and(|last| last[0] >= point[0]) {
-                        return Err(fields.fault(format!("the time {} does not lie beyond the one before", point[0])));
+                    let point = (fields.finite("a time")?, fields.finite("the factor of a time")?);
+                    if points.last().is_some_and(|last| last.0 >= point.0) {
+                        return Err(fields.fault(format!("the time {} does not lie beyond the one before", point.0)));
                     }
                     points.push(point);
                 }
@@ -52,7 +53,7 @@ impl Amplitudes {
             true => self.periods.iter().sum(),
             false => step.checked_sub(1).and_then(|step| self.periods.get(step)).copied().unwrap_or(1.0),
         };
-        Ok(at(&amplitude.points, time))
+        Ok(between(&amplitude.points, time))
     }
 }
 
@@ -71,16 +72,6 @@ pub(super) fn periods(deck: &Deck) -> Result<Vec<f64>, Error> {
         }
     }
     Ok(periods)
-}
-
-/// The value at a time: linear between the points, constant beyond them.
-fn at(points: &[[f64; 2]], time: f64) -> f64 {
-    let after = points.partition_point(|point| point[0] <= time);
-    match (after.checked_sub(1).and_then(|before| points.get(before)), points.get(after)) {
-        (Some(&[from, value]), Some(&[to, next])) => value + (next - value) * (time - from) / (to - from),
-        (Some(point), None) | (None, Some(point)) => point[1],
-        (None, None) => 1.0,
-    }
 }
 
 /// The difference of temperature of each node of the deck.
