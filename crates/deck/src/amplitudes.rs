@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 
 use signorini_fem::Error;
-use signorini_fem::mesh::deck::{Card, Deck, Place, key};
+use signorini_fem::geometry::between;
+use signorini_fem::mesh::deck::{Deck, DeckCard, DeckPlace, key};
 
 /// An amplitude: its points, each a time with a factor, and whether the times count from the start of the first step.
 struct Amplitude {
-    points: Vec<[f64; 2]>,
+    points: Vec<(f64, f64)>,
     is_total: bool,
 }
 
@@ -21,23 +22,20 @@ impl Amplitudes {
     pub fn of(deck: &Deck) -> Result<Self, Error> {
         let periods = periods(deck)?;
         let mut all = HashMap::new();
-        for card in deck.source.cards.iter().filter(|card| card.is("AMPLITUDE")) {
-            let Some(name) = card.value("NAME") else {
-                return Err(deck.source.fault(card.place, "*AMPLITUDE has no name; write NAME=NAME"));
-            };
-            let mut points: Vec<[f64; 2]> = Vec::new();
-            for line in &card.lines {
-                let mut fields = deck.source.fields(line);
+        for card in deck.source.cards_of("AMPLITUDE") {
+            let name = card.named()?;
+            let mut points: Vec<(f64, f64)> = Vec::new();
+            for mut fields in card.fields() {
                 while fields.clone().text().is_some() {
-                    let point = [fields.finite("a time")?, fields.finite("the factor of a time")?];
-                    if points.last().is_some_and(|last| last[0] >= point[0]) {
-                        return Err(fields.fault(format!("the time {} does not lie beyond the one before", point[0])));
+                    let point = (fields.finite("a time")?, fields.finite("the factor of a time")?);
+                    if points.last().is_some_and(|last| last.0 >= point.0) {
+                        return Err(fields.fault(format!("the time {} does not lie beyond the one before", point.0)));
                     }
                     points.push(point);
                 }
             }
             if points.is_empty() {
-                return Err(deck.source.fault(card.place, format!("the amplitude `{name}` has no values")));
+                return Err(card.fault(format!("the amplitude `{name}` has no values")));
             }
             all.insert(key(name), Amplitude { points, is_total: card.says("TIME", "TOTALTIME") });
         }
@@ -46,25 +44,24 @@ impl Amplitudes {
 
     /// The factor of a card: 1 without an amplitude. In a later step a load keeps the factor of the end of its own
     /// step, unless the times of the amplitude go on; temperatures follow the last step.
-    pub fn factor(&self, deck: &Deck, card: &Card) -> Result<f64, Error> {
+    pub fn factor(&self, deck: &Deck, card: DeckCard) -> Result<f64, Error> {
         let Some(name) = card.value("AMPLITUDE") else { return Ok(1.0) };
-        let missing = || deck.source.fault(card.place, format!("there is no amplitude `{name}`"));
+        let missing = || card.fault(format!("there is no amplitude `{name}`"));
         let amplitude = self.all.get(&key(name)).ok_or_else(missing)?;
         let step = if card.is("TEMPERATURE") { deck.step } else { card.step };
         let time = match amplitude.is_total {
             true => self.periods.iter().sum(),
             false => step.checked_sub(1).and_then(|step| self.periods.get(step)).copied().unwrap_or(1.0),
         };
-        Ok(at(&amplitude.points, time))
+        Ok(between(&amplitude.points, time))
     }
 }
 
 /// The time that each step takes, up to the last one that counts: the second value of *STATIC, 1 if it is left out.
 pub(super) fn periods(deck: &Deck) -> Result<Vec<f64>, Error> {
     let mut periods = vec![1.0; deck.step];
-    for card in deck.source.cards.iter().filter(|card| card.is("STATIC")) {
-        let Some(line) = card.lines.first() else { continue };
-        let mut fields = deck.source.fields(line);
+    for card in deck.source.cards_of("STATIC") {
+        let Some(mut fields) = card.fields().next() else { continue };
         fields.finite_or_zero("the first increment")?;
         let period = fields.finite_or_zero("the period of the step")?;
         if period < 0.0 {
@@ -77,37 +74,27 @@ pub(super) fn periods(deck: &Deck) -> Result<Vec<f64>, Error> {
     Ok(periods)
 }
 
-/// The value at a time: linear between the points, constant beyond them.
-fn at(points: &[[f64; 2]], time: f64) -> f64 {
-    let after = points.partition_point(|point| point[0] <= time);
-    match (after.checked_sub(1).and_then(|before| points.get(before)), points.get(after)) {
-        (Some(&[from, value]), Some(&[to, next])) => value + (next - value) * (time - from) / (to - from),
-        (Some(point), None) | (None, Some(point)) => point[1],
-        (None, None) => 1.0,
-    }
-}
-
 /// The difference of temperature of each node of the deck.
 pub(super) struct Temperatures {
     differences: Vec<f64>,
     /// The temperature of each node at the end of the step.
     pub end: Vec<f64>,
     /// The last line with a temperature; without one all differences are zero.
-    last: Option<Place>,
+    last: Option<DeckPlace>,
 }
 
 impl Temperatures {
     pub fn of(deck: &Deck, amplitudes: &Amplitudes) -> Result<Self, Error> {
         let mut start = vec![0.0; deck.nodes.len()];
-        for card in deck.source.cards.iter().filter(|card| card.is("INITIALCONDITIONS")) {
+        for card in deck.source.cards_of("INITIALCONDITIONS") {
             if card.value("TYPE").map(key).as_deref() != Some("TEMPERATURE") {
                 let message = "only *INITIAL CONDITIONS with TYPE=TEMPERATURE is read; in a scene an `initial-stress` may be given";
-                return Err(deck.source.fault(card.place, message));
+                return Err(card.fault(message));
             }
             set(deck, card, 1.0, &mut start)?;
         }
         let (mut end, mut last) = (start.clone(), None);
-        for card in deck.source.cards.iter().filter(|card| card.is("TEMPERATURE")) {
+        for card in deck.source.cards_of("TEMPERATURE") {
             if card.is_new() {
                 end.clone_from(&start);
             }
@@ -119,7 +106,7 @@ impl Temperatures {
     }
 
     /// The one difference of a body, with the line that gives it; `None` if it is zero.
-    pub fn of_body(&self, deck: &Deck, body: usize) -> Result<Option<(f64, Place)>, Error> {
+    pub fn of_body(&self, deck: &Deck, body: usize) -> Result<Option<(f64, DeckPlace)>, Error> {
         let Some(place) = self.last else { return Ok(None) };
         let mut own = (0..deck.nodes.len()).filter(|&node| deck.body_of_node[node] == Some(body));
         let Some(first) = own.next() else { return Ok(None) };
@@ -133,20 +120,19 @@ impl Temperatures {
                      changes within a body is not read: in a scene it may have a `gradient`",
                     self.differences[other]
                 );
-                Err(deck.source.fault(place, message))
+                Err(deck.fault(place, message))
             }
         }
     }
 }
 
 /// Sets the temperatures that a card gives.
-fn set(deck: &Deck, card: &Card, factor: f64, temperatures: &mut [f64]) -> Result<(), Error> {
-    for line in &card.lines {
-        let mut fields = deck.source.fields(line);
-        let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
+fn set(deck: &Deck, card: DeckCard, factor: f64, temperatures: &mut [f64]) -> Result<(), Error> {
+    for mut fields in card.fields() {
+        let target = fields.first()?;
         let value = factor * fields.finite("the temperature")?;
         fields.end()?;
-        let nodes = deck.node_sets.members(&target, &deck.nodes).map_err(|message| fields.fault(message))?;
+        let nodes = fields.placed(deck.nodes.members(&target))?;
         nodes.into_iter().for_each(|node| temperatures[node] = value);
     }
     deck.doubled.iter().for_each(|&(node, double)| temperatures[double] = temperatures[node]);

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use super::amplitudes::Temperatures;
-use super::keywords::{Entry, object};
+use super::keywords::{SceneEntry, object};
 use super::materials::{Section, Sections};
 use serde_json::{Value, json};
 use signorini_fem::Error;
-use signorini_fem::mesh::deck::{Deck, Place, Surface};
+use signorini_fem::mesh::deck::{Deck, DeckPlace, DeckSurface};
 
 /// The name of a node set or a surface of a body: in a further body it begins with the name of the body.
 fn name_in(body: usize, name: &str) -> String {
@@ -18,7 +18,7 @@ fn name_in(body: usize, name: &str) -> String {
 pub(super) fn names_of_nodes(deck: &Deck, target: &str, nodes: &[usize]) -> Vec<String> {
     let name = match target.parse::<usize>() {
         Ok(number) => number.to_string(),
-        Err(_) => deck.node_sets.named(target).map_or(target, |set| &set.name).to_string(),
+        Err(_) => deck.nodes.sets.named(target).map_or(target, |set| &set.name).to_string(),
     };
     let bodies: BTreeSet<usize> = nodes.iter().filter_map(|&node| deck.body_of_node[node]).collect();
     bodies.into_iter().map(|body| name_in(body, &name)).collect()
@@ -30,7 +30,7 @@ pub(super) fn name_of_node(deck: &Deck, node: usize) -> Option<String> {
 }
 
 /// The names of a surface in each body that has some of its faces, with the bodies.
-pub(super) fn names_of_surface(deck: &Deck, surface: &Surface) -> Vec<(usize, String)> {
+pub(super) fn names_of_surface(deck: &Deck, surface: &DeckSurface) -> Vec<(usize, String)> {
     names_of_faces(deck, &surface.name, &surface.faces)
 }
 
@@ -74,11 +74,11 @@ pub(super) fn side(deck: &Deck, name: &str) -> Result<(usize, String), String> {
 /// A body of the scene: its keys, each with the place in the deck that it comes from.
 pub(super) struct Body {
     pub name: String,
-    pub place: Place,
+    pub place: DeckPlace,
     pub body: Value,
-    pub material: Option<Entry>,
-    pub materials: Vec<Entry>,
-    pub temperature: Option<Entry>,
+    pub material: Option<SceneEntry>,
+    pub materials: Vec<SceneEntry>,
+    pub temperature: Option<SceneEntry>,
 }
 
 impl Body {
@@ -117,23 +117,23 @@ impl Body {
         };
         let first = used().next();
         let is_one = first.is_some_and(|first| used().all(|section| material(section) == material(first)));
-        let materials = used()
-            .filter(|_| !is_one)
-            .map(|section| Entry::new(json!({"group": section.group, "material": material(section)}), section.place));
+        let materials = used().filter(|_| !is_one).map(|section| {
+            SceneEntry::new(json!({"group": section.group, "material": material(section)}), section.place)
+        });
         Ok(Body {
             place: deck.place_of_body(index),
             name,
             body,
             materials: materials.collect(),
-            material: first.filter(|_| is_one).map(|section| Entry::new(material(section), section.place)),
+            material: first.filter(|_| is_one).map(|section| SceneEntry::new(material(section), section.place)),
             temperature: temperature
                 .filter(|_| warms)
-                .map(|(value, place)| Entry::new(object("value", value.into()), place)),
+                .map(|(value, place)| SceneEntry::new(object("value", value.into()), place)),
         })
     }
 
     /// The body as an entry of `further-bodies`, with the places of its keys.
-    pub fn further(&self) -> (Entry, Vec<(&'static str, Place)>) {
+    pub fn further(&self) -> (SceneEntry, Vec<(&'static str, DeckPlace)>) {
         let mut value = json!({"name": self.name, "body": self.body});
         let mut places = Vec::new();
         if let Some(material) = &self.material {
@@ -148,6 +148,6 @@ impl Body {
             value["temperature"] = json!([temperature.value]);
             places.push(("temperature", temperature.place));
         }
-        (Entry::new(value, self.place), places)
+        (SceneEntry::new(value, self.place), places)
     }
 }

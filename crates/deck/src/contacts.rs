@@ -3,16 +3,16 @@
 use std::collections::HashMap;
 
 use super::bodies::side;
-use super::keywords::{Entry, object};
+use super::keywords::{SceneEntry, object};
 use serde_json::{Value, json};
-use signorini_fem::mesh::deck::{Card, Deck, Place, key};
+use signorini_fem::mesh::deck::{Deck, DeckCard, DeckPlace, key};
 use signorini_fem::{Error, nearly};
 
 /// The contacts of a scene, and what a reader should know of them.
 pub(super) struct Contacts {
-    pub obstacles: Vec<Entry>,
-    pub ties: Vec<Entry>,
-    pub warnings: Vec<(Place, String)>,
+    pub obstacles: Vec<SceneEntry>,
+    pub ties: Vec<SceneEntry>,
+    pub warnings: Vec<(DeckPlace, String)>,
 }
 
 /// The obstacles of a scene; a deck with friction is refused unless it `may_rub`, and is then solved without it.
@@ -21,28 +21,26 @@ pub(super) fn contacts(deck: &Deck, may_rub: bool) -> Result<Contacts, Error> {
     let interactions = interactions(deck, may_rub, &mut found.warnings)?;
     let clearances = clearances(deck)?;
     let mut used = vec![false; clearances.len()];
-    for card in deck.source.cards.iter().filter(|card| card.is("CONTACTPAIR")) {
-        let fault = |message: String| Err(deck.source.fault(card.place, message));
+    for card in deck.source.cards_of("CONTACTPAIR") {
         let interaction = card.value("INTERACTION").unwrap_or_default();
         let Some(&is_tied) = interactions.get(&key(interaction)) else {
             let meant = nearly(&key(interaction), interactions.keys().map(String::as_str));
-            return fault(format!("there is no *SURFACE INTERACTION `{interaction}`{meant}"));
+            return Err(card.fault(format!("there is no *SURFACE INTERACTION `{interaction}`{meant}")));
         };
         if let Some(kind) = card.value("TYPE").filter(|kind| !IS_READ.contains(&key(kind).as_str())) {
-            return fault(format!("contacts of TYPE={kind} are not read; there are {}", IS_READ.join(", ")));
+            return Err(card.fault(format!("contacts of TYPE={kind} are not read; there are {}", IS_READ.join(", "))));
         }
-        let adjust = distance(deck, card, "ADJUST", TOUCH)?;
-        for line in &card.lines {
-            let mut fields = deck.source.fields(line);
+        let adjust = distance(card, "ADJUST", TOUCH)?;
+        for mut fields in card.fields() {
             let pair = [fields.text().unwrap_or_default(), fields.text().unwrap_or_default()];
             fields.end()?;
             if is_tied {
-                found.ties.push(surfaces(deck, &pair, adjust, line.place)?);
+                found.ties.push(surfaces(deck, &pair, adjust, fields.place)?);
                 continue;
             }
             let mut sides = Vec::with_capacity(2);
             for name in &pair {
-                sides.push(side(deck, name).map_err(|message| fields.fault(message))?);
+                sides.push(fields.placed(side(deck, name))?);
             }
             if sides[0].0 == sides[1].0 {
                 let message = format!(
@@ -68,13 +66,11 @@ pub(super) fn contacts(deck: &Deck, may_rub: bool) -> Result<Contacts, Error> {
                 found.warnings.push((card.place, message));
             }
             let obstacle = json!({"boundary": sides[0].1, "rule": "closest-point", "shape": {"body": facing}});
-            found.obstacles.push(Entry::new(obstacle, line.place));
+            found.obstacles.push(SceneEntry::new(obstacle, fields.place));
         }
     }
     match used.iter().position(|used| !used) {
-        Some(unused) => {
-            Err(deck.source.fault(clearances[unused].place, "no *CONTACT PAIR has these surfaces in this order"))
-        }
+        Some(unused) => Err(deck.fault(clearances[unused].place, "no *CONTACT PAIR has these surfaces in this order")),
         None => Ok(found),
     }
 }
@@ -86,54 +82,51 @@ const TOUCH: &str = " within which surfaces touch; *CLEARANCE says another dista
 const IS_READ: [&str; 4] = ["NODETOSURFACE", "SURFACETOSURFACE", "MORTAR", "LINMORTAR"];
 
 /// The distance that a card gives under a name; `sense` goes on with what it must be.
-fn distance(deck: &Deck, card: &Card, name: &str, sense: &str) -> Result<Option<f64>, Error> {
+fn distance(card: DeckCard, name: &str, sense: &str) -> Result<Option<f64>, Error> {
     let Some(value) = card.value(&key(name)) else { return Ok(None) };
     let message = || format!("{name}={value} is not read; it must be a positive distance{sense}");
     let distance = value.parse().ok().filter(|distance: &f64| *distance > 0.0 && distance.is_finite());
-    distance.map(Some).ok_or_else(|| deck.source.fault(card.place, message()))
+    distance.map(Some).ok_or_else(|| card.fault(message()))
 }
 
 /// The interactions by their names in capitals; `true` for those that tie.
 fn interactions(
     deck: &Deck,
     may_rub: bool,
-    warnings: &mut Vec<(Place, String)>,
+    warnings: &mut Vec<(DeckPlace, String)>,
 ) -> Result<HashMap<String, bool>, Error> {
     let mut all = HashMap::new();
     let mut last = String::new();
-    for card in &deck.source.cards {
+    for card in deck.source.cards() {
         if card.is("SURFACEINTERACTION") {
-            let Some(name) = card.value("NAME") else {
-                return Err(deck.source.fault(card.place, "*SURFACE INTERACTION has no name; write NAME=NAME"));
-            };
+            let name = card.named()?;
             last = key(name);
-            if all.insert(last.clone(), is_tied(deck, card)).is_some() {
-                return Err(deck.source.fault(card.place, format!("there are two interactions `{name}`")));
+            if all.insert(last.clone(), is_tied(card)).is_some() {
+                return Err(card.fault(format!("there are two interactions `{name}`")));
             }
-        } else if (card.is("SURFACEBEHAVIOR") || card.is("FRICTION")) && all.is_empty() {
-            return Err(deck.source.fault(card.place, format!("{} follows no *SURFACE INTERACTION", card.name)));
+        } else if card.is_any(&["SURFACEBEHAVIOR", "FRICTION"]) && all.is_empty() {
+            return Err(card.fault(format!("{} follows no *SURFACE INTERACTION", card.name)));
         } else if card.is("SURFACEBEHAVIOR") {
-            warnings.extend(behaviour(deck, card)?.map(|message| (card.place, message)));
+            warnings.extend(behaviour(card)?.map(|message| (card.place, message)));
         } else if card.is("FRICTION") && all.get(&last) == Some(&false) {
-            warnings.extend(friction(deck, card, may_rub)?.map(|message| (card.place, message)));
+            warnings.extend(friction(card, may_rub)?.map(|message| (card.place, message)));
         }
     }
     Ok(all)
 }
 
 /// Returns `true` for an interaction, by its first card, whose behaviour is to tie.
-fn is_tied(deck: &Deck, first: &Card) -> bool {
-    let own = deck.source.cards.iter().skip_while(|card| card.place != first.place).skip(1);
-    let mut own = own.take_while(|card| ["SURFACEBEHAVIOR", "FRICTION"].iter().any(|name| card.is(name)));
+fn is_tied(first: DeckCard) -> bool {
+    let own = first.source.cards().skip_while(|card| card.place != first.place).skip(1);
+    let mut own = own.take_while(|card| card.is_any(&["SURFACEBEHAVIOR", "FRICTION"]));
     own.any(|card| card.says("PRESSURE-OVERCLOSURE", "TIED"))
 }
 
 /// The warning for a contact that is soft in the deck.
-fn behaviour(deck: &Deck, card: &Card) -> Result<Option<String>, Error> {
+fn behaviour(card: DeckCard) -> Result<Option<String>, Error> {
     let law = card.value("PRESSURE-OVERCLOSURE").map_or_else(|| "HARD".into(), key);
     let mut values = Vec::new();
-    for line in &card.lines {
-        let mut fields = deck.source.fields(line);
+    for mut fields in card.fields() {
         while fields.clone().next().is_some() {
             values.push(fields.finite_or_zero("a value of the contact")?.to_string());
         }
@@ -155,15 +148,15 @@ fn behaviour(deck: &Deck, card: &Card) -> Result<Option<String>, Error> {
             let message = format!(
                 "PRESSURE-OVERCLOSURE={law} is not modelled; there are HARD, LINEAR, EXPONENTIAL, TABULAR and TIED"
             );
-            Err(deck.source.fault(card.place, message))
+            Err(card.fault(message))
         }
     }
 }
 
 /// The warning for friction that is left out.
-fn friction(deck: &Deck, card: &Card, may_rub: bool) -> Result<Option<String>, Error> {
-    let Some(line) = card.lines.first() else { return Err(deck.source.fault(card.place, "*FRICTION has no values")) };
-    let coefficient = deck.source.fields(line).finite("the coefficient of friction")?;
+fn friction(card: DeckCard, may_rub: bool) -> Result<Option<String>, Error> {
+    let Some(mut fields) = card.fields().next() else { return Err(card.fault("*FRICTION has no values")) };
+    let coefficient = fields.finite("the coefficient of friction")?;
     match coefficient {
         0.0 => Ok(None),
         _ if may_rub => Ok(Some(format!(
@@ -173,7 +166,7 @@ fn friction(deck: &Deck, card: &Card, may_rub: bool) -> Result<Option<String>, E
             let message = format!(
                 "*FRICTION of {coefficient} changes the answer and is not modelled; --without-friction solves the deck without it"
             );
-            Err(deck.source.fault(line.place, message))
+            Err(fields.fault(message))
         }
     }
 }
@@ -183,7 +176,7 @@ struct Clearance {
     /// Slave and master, in capitals.
     pair: [String; 2],
     value: f64,
-    place: Place,
+    place: DeckPlace,
 }
 
 impl Clearance {
@@ -197,13 +190,13 @@ impl Clearance {
 
 fn clearances(deck: &Deck) -> Result<Vec<Clearance>, Error> {
     let mut clearances = Vec::new();
-    for card in deck.source.cards.iter().filter(|card| card.is("CLEARANCE")) {
+    for card in deck.source.cards_of("CLEARANCE") {
         let (Some(slave), Some(master)) = (card.value("SLAVE"), card.value("MASTER")) else {
-            return Err(deck.source.fault(card.place, "*CLEARANCE needs SLAVE=NAME and MASTER=NAME"));
+            return Err(card.fault("*CLEARANCE needs SLAVE=NAME and MASTER=NAME"));
         };
         let value = card.value("VALUE").and_then(|value| value.parse::<f64>().ok()).filter(|value| value.is_finite());
         let Some(value) = value else {
-            return Err(deck.source.fault(card.place, "*CLEARANCE needs VALUE=NUMBER"));
+            return Err(card.fault("*CLEARANCE needs VALUE=NUMBER"));
         };
         clearances.push(Clearance { pair: [key(slave), key(master)], value, place: card.place });
     }
@@ -214,67 +207,33 @@ fn clearances(deck: &Deck) -> Result<Vec<Clearance>, Error> {
 // tension or the shortening. Ties: the cards *TIE.
 
 /// A cut through a bolt.
-struct Bolt {
+pub(super) struct Bolt {
     /// The node whose direction 1 is the shortening.
-    reference: usize,
-    /// The names of the two faces in the scene.
-    faces: [String; 2],
-    direction: Option<[f64; 3]>,
-    place: Place,
+    pub reference: usize,
+    /// What it is in the scene.
+    pub preload: SceneEntry,
 }
 
-pub(super) struct Bolts {
-    all: Vec<Bolt>,
-    dimension: usize,
-}
-
-impl Bolts {
-    pub fn of(deck: &Deck) -> Result<Self, Error> {
-        let dimension = deck.dimension();
-        let mut bolts = Bolts { all: Vec::new(), dimension };
-        let cards = deck.source.cards.iter().filter(|card| card.is("PRE-TENSIONSECTION"));
-        for (card, names) in cards.zip(&deck.cuts) {
-            let reference = reference(deck, card).map_err(|message| deck.source.fault(card.place, message))?;
-            if bolts.is_reference(reference) {
-                let number = deck.nodes.numbers[reference];
-                return Err(deck.source.fault(card.place, format!("node {number} is the reference of two bolts")));
-            }
-            let [one, other] = names.each_ref().map(|name| side(deck, name));
-            let fault = |message: String| deck.source.fault(card.place, message);
-            let faces = [one.map_err(fault)?.1, other.map_err(fault)?.1];
-            let direction = direction(deck, card)?;
-            bolts.all.push(Bolt { reference, faces, direction, place: card.place });
+pub(super) fn bolts(deck: &Deck) -> Result<Vec<Bolt>, Error> {
+    let mut bolts: Vec<Bolt> = Vec::new();
+    for (card, names) in deck.source.cards_of("PRE-TENSIONSECTION").zip(&deck.cuts) {
+        let reference = card.placed(reference(deck, card))?;
+        let number = deck.nodes.numbers[reference].to_string();
+        if bolts.iter().any(|bolt| bolt.reference == reference) {
+            return Err(card.fault(format!("node {number} is the reference of two bolts")));
         }
-        Ok(bolts)
+        let [boundary, to] = names.each_ref().map(|name| card.placed(side(deck, name)));
+        let mut preload = json!({"boundary": boundary?.1, "to": to?.1, "point": number});
+        if let Some(direction) = direction(card)? {
+            preload["direction"] = direction[..deck.dimension()].into();
+        }
+        bolts.push(Bolt { reference, preload: SceneEntry::new(object("preload", preload), card.place) });
     }
-
-    /// The nodes whose direction 1 is the shortening of a bolt, with the places of their cards.
-    pub fn references(&self) -> impl Iterator<Item = (usize, Place)> + '_ {
-        self.all.iter().map(|bolt| (bolt.reference, bolt.place))
-    }
-
-    /// Returns `true` for a node whose direction 1 is the shortening of a bolt.
-    pub fn is_reference(&self, node: usize) -> bool {
-        self.all.iter().any(|bolt| bolt.reference == node)
-    }
-
-    /// The preloads of the scene.
-    pub fn entries(&self, deck: &Deck) -> Vec<Entry> {
-        let entry = |bolt: &Bolt| {
-            let [boundary, to] = &bolt.faces;
-            let point = deck.nodes.numbers[bolt.reference].to_string();
-            let mut preload = json!({"boundary": boundary, "to": to, "point": point});
-            if let Some(direction) = bolt.direction {
-                preload["direction"] = direction[..self.dimension].into();
-            }
-            Entry::new(object("preload", preload), bolt.place)
-        };
-        self.all.iter().map(entry).collect()
-    }
+    Ok(bolts)
 }
 
 /// The node of a card, which belongs to no element.
-fn reference(deck: &Deck, card: &Card) -> Result<usize, String> {
+fn reference(deck: &Deck, card: DeckCard) -> Result<usize, String> {
     let Some(value) = card.value("NODE") else {
         return Err("*PRE-TENSION SECTION has no reference node; write NODE=NUMBER".into());
     };
@@ -287,44 +246,44 @@ fn reference(deck: &Deck, card: &Card) -> Result<usize, String> {
 }
 
 /// The direction of a card, from the elements of its surface to those behind.
-fn direction(deck: &Deck, card: &Card) -> Result<Option<[f64; 3]>, Error> {
-    let Some(line) = card.lines.first() else { return Ok(None) };
-    let mut fields = deck.source.fields(line);
-    let mut direction = [0.0; 3];
-    for (part, what) in direction.iter_mut().zip(["x", "y", "z"]) {
-        *part = fields.finite_or_zero(format_args!("the {what} of the direction"))?;
-    }
+fn direction(card: DeckCard) -> Result<Option<[f64; 3]>, Error> {
+    let Some(mut fields) = card.fields().next() else { return Ok(None) };
+    let direction = fields.vector("the direction")?;
     fields.end()?;
-    match (direction == [0.0; 3], card.lines.get(1)) {
+    match (direction == [0.0; 3], card.fields().nth(1)) {
         (false, None) => Ok(Some(direction)),
         (true, _) => Err(fields.fault("the direction of the bolt has no length")),
-        (_, Some(line)) => Err(deck.source.fault(line.place, "*PRE-TENSION SECTION has one line, with the direction")),
+        (_, Some(second)) => Err(second.fault("*PRE-TENSION SECTION has one line, with the direction")),
     }
 }
 
 /// The tied surfaces of a scene.
-pub(super) fn ties(deck: &Deck) -> Result<Vec<Entry>, Error> {
+pub(super) fn ties(deck: &Deck) -> Result<Vec<SceneEntry>, Error> {
     let mut ties = Vec::new();
-    for card in deck.source.cards.iter().filter(|card| card.is("TIE")) {
-        let reach = distance(deck, card, "POSITION TOLERANCE", "")?;
-        for line in &card.lines {
-            let mut fields = deck.source.fields(line);
+    for card in deck.source.cards_of("TIE") {
+        let reach = distance(card, "POSITION TOLERANCE", "")?;
+        for mut fields in card.fields() {
             let pair = [fields.text().unwrap_or_default(), fields.text().unwrap_or_default()];
             fields.end()?;
-            ties.push(surfaces(deck, &pair, reach, line.place)?);
+            ties.push(surfaces(deck, &pair, reach, fields.place)?);
         }
     }
     Ok(ties)
 }
 
 /// Two tied surfaces, slave and master, within a distance.
-pub(super) fn surfaces(deck: &Deck, pair: &[String; 2], reach: Option<f64>, place: Place) -> Result<Entry, Error> {
+pub(super) fn surfaces(
+    deck: &Deck,
+    pair: &[String; 2],
+    reach: Option<f64>,
+    place: DeckPlace,
+) -> Result<SceneEntry, Error> {
     let [slave, master] = pair.each_ref().map(|name| side(deck, name));
-    let fault = |message: String| deck.source.fault(place, message);
+    let fault = |message: String| deck.fault(place, message);
     let (slave, master) = (slave.map_err(fault)?, master.map_err(fault)?);
     let mut tied = json!({"boundary": slave.1, "to": master.1});
     if let Some(reach) = reach {
         tied["reach"] = reach.into();
     }
-    Ok(Entry::new(json!({"surfaces": tied}), place))
+    Ok(SceneEntry::new(json!({"surfaces": tied}), place))
 }

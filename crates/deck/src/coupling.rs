@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use signorini_fem::Error;
-use signorini_fem::mesh::deck::{Card, Deck, Line, Place};
+use signorini_fem::mesh::deck::{DataFields, Deck, DeckCard, DeckPlace};
 use signorini_fem::sum::{Sum, following, mean};
 
 /// A sum that is zero. Its components are those of the nodes of the deck; a node without elements has its displacements
@@ -15,12 +15,12 @@ use signorini_fem::sum::{Sum, following, mean};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Equation {
     pub sum: Sum,
-    pub place: Place,
+    pub place: DeckPlace,
 }
 
 /// How a coupling joins the nodes of its surface to the reference node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum CouplingKind {
     /// Displacements along these axes follow the rigid motion of the reference node.
     Kinematic([bool; 3]),
     /// The reference node follows the mean motion, in its displacement and in rotations about these axes.
@@ -43,41 +43,40 @@ pub(super) struct Coupling {
     /// The node whose displacements are the rotations of the reference node, if they have one of their own.
     pub rotation: Option<usize>,
     pub nodes: Joined,
-    pub kind: Kind,
-    pub place: Place,
+    pub kind: CouplingKind,
+    pub place: DeckPlace,
 }
 
 /// The couplings of a deck, rigid bodies first.
 pub(super) fn couplings(deck: &Deck) -> Result<Vec<Coupling>, Error> {
-    let rigid_bodies = deck.source.cards.iter().filter(|card| card.is("RIGIDBODY"));
-    let rigid_bodies =
-        rigid_bodies.map(|card| rigid_body(deck, card).map_err(|message| deck.source.fault(card.place, message)));
+    let rigid_bodies = deck.source.cards_of("RIGIDBODY");
+    let rigid_bodies = rigid_bodies.map(|card| card.placed(rigid_body(deck, card)));
     let mut couplings = rigid_bodies.collect::<Result<Vec<Coupling>, Error>>()?;
-    let mut open: Option<&Card> = None;
-    for card in &deck.source.cards {
-        let is_kind = card.is("KINEMATIC") || card.is("DISTRIBUTING");
+    let mut open: Option<DeckCard> = None;
+    for card in deck.source.cards() {
+        let is_kind = card.is_any(&["KINEMATIC", "DISTRIBUTING"]);
         match open.take() {
             Some(of) if is_kind => couplings.push(coupling(deck, of, card)?),
-            Some(of) => return Err(deck.source.fault(of.place, "*KINEMATIC or *DISTRIBUTING must follow *COUPLING")),
+            Some(of) => return Err(of.fault("*KINEMATIC or *DISTRIBUTING must follow *COUPLING")),
             None if is_kind => {
                 let message = format!("{} must follow *COUPLING, which names the nodes", card.name);
-                return Err(deck.source.fault(card.place, message));
+                return Err(card.fault(message));
             }
             None => open = Some(card).filter(|card| card.is("COUPLING")),
         }
     }
     match open {
-        Some(of) => Err(deck.source.fault(of.place, "*KINEMATIC or *DISTRIBUTING must follow *COUPLING")),
+        Some(of) => Err(of.fault("*KINEMATIC or *DISTRIBUTING must follow *COUPLING")),
         None => Ok(couplings),
     }
 }
 
 /// All displacements of the nodes of a card *RIGID BODY follow its reference node.
-fn rigid_body(deck: &Deck, card: &Card) -> Result<Coupling, String> {
+fn rigid_body(deck: &Deck, card: DeckCard) -> Result<Coupling, String> {
     let (name, mut nodes) = match [card.value("NSET"), card.value("ELSET")] {
-        [Some(set), None] => (set, deck.node_sets.members(set, &deck.nodes)?),
+        [Some(set), None] => (set, deck.nodes.members(set)?),
         [None, Some(set)] => {
-            let elements = deck.element_sets.members(set, &deck.elements)?;
+            let elements = deck.elements.members(set)?;
             let nodes: BTreeSet<usize> = elements.iter().flat_map(|&element| deck.nodes_of(element)).copied().collect();
             ("", nodes.into_iter().collect())
         }
@@ -89,7 +88,7 @@ fn rigid_body(deck: &Deck, card: &Card) -> Result<Coupling, String> {
     };
     let reference = |parameter: &str| match card.value(parameter) {
         None => Ok(None),
-        Some(value) => match deck.node_sets.members(value, &deck.nodes)?[..] {
+        Some(value) => match deck.nodes.members(value)?[..] {
             [node] => Ok(Some(node)),
             _ => Err(format!("{parameter}={value} is not one node")),
         },
@@ -105,40 +104,40 @@ fn rigid_body(deck: &Deck, card: &Card) -> Result<Coupling, String> {
     if nodes.iter().all(|&node| deck.body_of_node[node].is_none()) {
         return Err("the set of *RIGID BODY has no nodes of elements; nothing would follow the reference node".into());
     }
-    let (nodes, kind) = (Joined::Nodes(name.into(), nodes), Kind::Kinematic([true; 3]));
+    let (nodes, kind) = (Joined::Nodes(name.into(), nodes), CouplingKind::Kinematic([true; 3]));
     Ok(Coupling { reference: centre, rotation, nodes, kind, place: card.place })
 }
 
-fn coupling(deck: &Deck, of: &Card, kind: &Card) -> Result<Coupling, Error> {
-    let fault = |message: String| deck.source.fault(of.place, message);
+fn coupling(deck: &Deck, of: DeckCard, kind: DeckCard) -> Result<Coupling, Error> {
+    let fault = |message: String| of.fault(message);
     let wanted = |name: &str| of.value(name).filter(|value| !value.is_empty());
     let Some(target) = wanted("REFNODE") else {
         return Err(fault("*COUPLING has no reference node; write REF NODE=NUMBER".into()));
     };
-    let [reference] = deck.node_sets.members(target, &deck.nodes).map_err(fault)?[..] else {
+    let [reference] = deck.nodes.members(target).map_err(fault)?[..] else {
         return Err(fault(format!("the set `{target}` is no reference node: it must have one node")));
     };
     let Some(surface) = wanted("SURFACE") else {
         return Err(fault("*COUPLING has no surface; write SURFACE=NAME".into()));
     };
     let found = deck.surface_or(surface).map_err(fault)?;
-    let directions: Vec<[usize; 2]> = kind.lines.iter().map(|line| range(deck, line)).collect::<Result<_, _>>()?;
+    let directions: Vec<[usize; 2]> = kind.fields().map(range).collect::<Result<_, _>>()?;
     let named = |axis: usize| directions.iter().any(|[first, last]| (*first..=*last).contains(&axis));
-    let fault = |message: &str| Err(deck.source.fault(kind.place, message));
+    let fault = |message: &str| Err(kind.fault(message));
     let kind = match kind.is("KINEMATIC") {
-        true if directions.is_empty() => Kind::Kinematic([true; 3]),
-        true => Kind::Kinematic([1, 2, 3].map(named)),
+        true if directions.is_empty() => CouplingKind::Kinematic([true; 3]),
+        true => CouplingKind::Kinematic([1, 2, 3].map(named)),
         false if directions.is_empty() => return fault("*DISTRIBUTING names no directions; write 1, 3 or 1, 6"),
-        false => Kind::Distributing([4, 5, 6].map(named)),
+        false => CouplingKind::Distributing([4, 5, 6].map(named)),
     };
     match kind {
-        Kind::Kinematic([false, false, false]) => {
+        CouplingKind::Kinematic([false, false, false]) => {
             fault("*KINEMATIC names no direction 1, 2 or 3; nodes of a solid have no rotations that could follow")
         }
-        Kind::Distributing(_) if !found.bare.is_empty() => {
+        CouplingKind::Distributing(_) if !found.bare.is_empty() => {
             fault("*DISTRIBUTING needs a surface of faces, because forces are distributed over areas")
         }
-        Kind::Distributing(_) if deck.body_of_node[reference].is_some() => {
+        CouplingKind::Distributing(_) if deck.body_of_node[reference].is_some() => {
             fault("the reference node of *DISTRIBUTING must belong to no element")
         }
         _ => {
@@ -149,8 +148,7 @@ fn coupling(deck: &Deck, of: &Card, kind: &Card) -> Result<Coupling, Error> {
 }
 
 /// The first and the last direction of a line.
-fn range(deck: &Deck, line: &Line) -> Result<[usize; 2], Error> {
-    let mut fields = deck.source.fields(line);
+fn range(mut fields: DataFields) -> Result<[usize; 2], Error> {
     let first = fields.whole("the first direction")?;
     let last = if fields.clone().text().is_some() { fields.whole("the last direction")? } else { first };
     match first >= 1 && first <= last && last <= 6 {
@@ -160,21 +158,26 @@ fn range(deck: &Deck, line: &Line) -> Result<[usize; 2], Error> {
 }
 
 impl Coupling {
+    /// The nodes that move it: the reference node, and that of its rotations if it has one.
+    pub fn references(&self) -> impl Iterator<Item = usize> + use<> {
+        std::iter::once(self.reference).chain(self.rotation)
+    }
+
     /// Returns `true` if all displacements of the nodes follow.
     pub fn is_rigid(&self, deck: &Deck) -> bool {
-        matches!(self.kind, Kind::Kinematic(axes) if axes[..deck.dimension()].iter().all(|follows| *follows))
+        matches!(self.kind, CouplingKind::Kinematic(axes) if axes[..deck.dimension()].iter().all(|follows| *follows))
     }
 
     pub fn equations(&self, deck: &Deck) -> Result<Vec<Equation>, Error> {
-        let fault = |message: String| deck.source.fault(self.place, message);
+        let fault = |message: String| deck.fault(self.place, message);
         if deck.is_axisymmetric() {
             let message = "in an axisymmetric model only *RIGID BODY and *KINEMATIC with directions 1, 2 are read, on nodes of one body, with a \
                            reference node that nothing else names";
             return Err(fault(message.into()));
         }
         let sums = match self.kind {
-            Kind::Kinematic(axes) => self.kinematic(deck, axes).map_err(fault)?,
-            Kind::Distributing(about) => self.distributing(deck, about).map_err(fault)?,
+            CouplingKind::Kinematic(axes) => self.kinematic(deck, axes).map_err(fault)?,
+            CouplingKind::Distributing(about) => self.distributing(deck, about).map_err(fault)?,
         };
         Ok(sums.into_iter().map(|sum| Equation { sum, place: self.place }).collect())
     }
@@ -188,8 +191,13 @@ impl Coupling {
     }
 
     /// The rotations of this model.
-    pub fn turns(deck: &Deck) -> &'static [usize] {
+    fn turns(deck: &Deck) -> &'static [usize] {
         if deck.dimension() == 3 { &[0, 1, 2] } else { &[2] }
+    }
+
+    /// The motions of a reference node in this model: displacements along x, y and z, then rotations from 3.
+    pub fn motions(deck: &Deck) -> impl Iterator<Item = usize> + Clone {
+        (0..deck.dimension()).chain(Self::turns(deck).iter().map(|turn| 3 + turn))
     }
 
     /// u_k = U_k + (R x r)_k at each node, with r from the reference node.

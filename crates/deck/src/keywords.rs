@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value};
 use signorini_fem::Error;
-use signorini_fem::mesh::deck::{Card, Deck, Place, key};
+use signorini_fem::mesh::deck::{Deck, DeckCard, DeckPlace, cut, key};
 use signorini_fem::number;
 
 /// A keyword that is read, in capitals without blanks.
@@ -87,43 +87,41 @@ const PASSED: [&str; 22] = [
 ];
 
 /// Keywords that change the answer, with the thing that is not modelled.
-const ABSENT: [(&str, &str); 32] = [
-    ("DISTRIBUTINGCOUPLING", "write *COUPLING with *DISTRIBUTING instead, which distributes over areas"),
-    ("DASHPOT", "dampers are not modelled"),
-    ("GAP", "gap elements are not modelled"),
-    ("MASS", "point masses are not modelled"),
-    ("CYCLICSYMMETRYMODEL", "cyclic symmetry is not modelled"),
-    ("SHELLSECTION", "shells are not modelled"),
-    ("BEAMSECTION", "beams are not modelled"),
-    ("BEAMGENERALSECTION", "beams are not modelled"),
-    ("MEMBRANESECTION", "membranes are not modelled"),
-    ("FLUIDSECTION", "fluids are not modelled"),
-    ("PLASTIC", "plasticity is not modelled, every material is linear elastic"),
-    ("CYCLICHARDENING", "plasticity is not modelled, every material is linear elastic"),
-    ("CREEP", "creep is not modelled, every material is linear elastic"),
-    ("VISCO", "creep is not modelled, every material is linear elastic"),
-    ("HYPERELASTIC", "hyperelasticity is not modelled, every material is linear elastic"),
-    ("HYPERFOAM", "hyperelasticity is not modelled, every material is linear elastic"),
-    ("DEFORMATIONPLASTICITY", "plasticity is not modelled, every material is linear elastic"),
-    ("USERMATERIAL", "materials of users are not modelled"),
-    ("DYNAMIC", "motions of decks are not read; a scene has an `analysis`"),
-    ("MODALDYNAMIC", "motions of decks are not read; a scene has an `analysis`"),
-    ("STEADYSTATEDYNAMICS", "vibrations are not computed"),
+const ABSENT: [(&[&str], &str); 24] = [
+    (&["DISTRIBUTINGCOUPLING"], "write *COUPLING with *DISTRIBUTING instead, which distributes over areas"),
+    (&["DASHPOT"], "dampers are not modelled"),
+    (&["GAP"], "gap elements are not modelled"),
+    (&["MASS"], "point masses are not modelled"),
+    (&["CYCLICSYMMETRYMODEL"], "cyclic symmetry is not modelled"),
+    (&["SHELLSECTION"], "shells are not modelled"),
+    (&["BEAMSECTION", "BEAMGENERALSECTION"], "beams are not modelled"),
+    (&["MEMBRANESECTION"], "membranes are not modelled"),
+    (&["FLUIDSECTION"], "fluids are not modelled"),
     (
-        "FREQUENCY",
+        &["PLASTIC", "CYCLICHARDENING", "DEFORMATIONPLASTICITY"],
+        "plasticity is not modelled, every material is linear elastic",
+    ),
+    (&["CREEP", "VISCO"], "creep is not modelled, every material is linear elastic"),
+    (&["HYPERELASTIC", "HYPERFOAM"], "hyperelasticity is not modelled, every material is linear elastic"),
+    (&["USERMATERIAL"], "materials of users are not modelled"),
+    (&["DYNAMIC", "MODALDYNAMIC"], "motions of decks are not read; a scene has an `analysis`"),
+    (&["STEADYSTATEDYNAMICS"], "vibrations are not computed"),
+    (
+        &["FREQUENCY"],
         "natural frequencies are those of a scene; write *STATIC in its place, turn the deck into one by `signorini new`, and solve that by \
          `signorini modes`",
     ),
-    ("BUCKLE", "buckling is not computed"),
-    ("HEATTRANSFER", "heat is not modelled; temperatures may be given"),
-    ("COUPLEDTEMPERATURE-DISPLACEMENT", "heat is not modelled; temperatures may be given"),
-    ("UNCOUPLEDTEMPERATURE-DISPLACEMENT", "heat is not modelled; temperatures may be given"),
-    ("MODELCHANGE", "bodies and contacts that change between steps are not modelled"),
-    ("CHANGEFRICTION", "friction is not modelled"),
-    ("SUBMODEL", "submodels are not modelled"),
-    ("PART", "parts and instances of Abaqus are not read; write the deck for CalculiX, without *PART"),
-    ("INSTANCE", "parts and instances of Abaqus are not read; write the deck for CalculiX, without *INSTANCE"),
-    ("ASSEMBLY", "parts and instances of Abaqus are not read; write the deck for CalculiX, without *ASSEMBLY"),
+    (&["BUCKLE"], "buckling is not computed"),
+    (
+        &["HEATTRANSFER", "COUPLEDTEMPERATURE-DISPLACEMENT", "UNCOUPLEDTEMPERATURE-DISPLACEMENT"],
+        "heat is not modelled; temperatures may be given",
+    ),
+    (&["MODELCHANGE"], "bodies and contacts that change between steps are not modelled"),
+    (&["CHANGEFRICTION"], "friction is not modelled"),
+    (&["SUBMODEL"], "submodels are not modelled"),
+    (&["PART"], "parts and instances of Abaqus are not read; write the deck for CalculiX, without *PART"),
+    (&["INSTANCE"], "parts and instances of Abaqus are not read; write the deck for CalculiX, without *INSTANCE"),
+    (&["ASSEMBLY"], "parts and instances of Abaqus are not read; write the deck for CalculiX, without *ASSEMBLY"),
 ];
 
 /// The cards that have no data lines.
@@ -134,18 +132,20 @@ const OF_STEP: [&str; 6] = ["CLOAD", "DLOAD", "DSLOAD", "TEMPERATURE", "STATIC",
 
 /// Checks every card of a deck and the order of its steps; returns the names of what is passed over, each once with its
 /// first place. What may not be meant is added to `noted`.
-pub(super) fn judged(deck: &Deck, noted: &mut Vec<(Place, String)>) -> Result<Vec<(String, Place)>, Error> {
-    let mut passed: Vec<(String, Place)> = Vec::new();
-    let mut pass = |name: String, place: Place| {
+pub(super) fn judged(deck: &Deck, noted: &mut Vec<(DeckPlace, String)>) -> Result<Vec<(String, DeckPlace)>, Error> {
+    let mut passed: Vec<(String, DeckPlace)> = Vec::new();
+    let mut pass = |name: String, place: DeckPlace| {
         if passed.iter().all(|(other, _)| *other != name) {
             passed.push((name, place));
         }
     };
     // The open step, and whether it has *STATIC.
-    let (mut open, mut is_static): (Option<&Card>, bool) = (None, false);
-    for card in deck.source.cards.iter().chain(&deck.later) {
-        let fault = |message: String| Err(deck.source.fault(card.place, message));
-        if PASSED.iter().any(|keyword| card.is(keyword)) {
+    let (mut open, mut is_static): (Option<DeckCard>, bool) = (None, false);
+    let cards = deck.source.cards.iter().chain(&deck.later).map(|card| DeckCard { source: &deck.source, card });
+    let last = cards.clone().next_back().map(|card| card.place);
+    for card in cards {
+        let fault = |message: String| Err(card.fault(message));
+        if card.is_any(&PASSED) {
             pass(card.name.clone(), card.place);
             continue;
         }
@@ -155,78 +155,73 @@ pub(super) fn judged(deck: &Deck, noted: &mut Vec<(Place, String)>) -> Result<Ve
             if has(known.passed) {
                 pass(format!("{name} of {}", card.name), card.place);
             } else if !has(known.parameters) && !card.is("HEADING") {
-                return fault(format!("{} has the parameter {}, which is not read", card.name, shown(name)));
+                return fault(format!("{} has the parameter {}, which is not read", card.name, cut(name, 60)));
             } else if name == "OP" && !value.as_ref().is_some_and(|value| ["NEW", "MOD"].contains(&key(value).as_str()))
             {
                 return fault(format!("OP of {} must be NEW or MOD", card.name));
             }
         }
         let most = if card.is("STATIC") || card.is("FRICTION") { 1 } else { usize::MAX };
-        let most = if BARE.iter().any(|keyword| card.is(keyword)) { 0 } else { most };
+        let most = if card.is_any(&BARE) { 0 } else { most };
         // Behind the last step stands what nobody reads.
-        let is_end = card.is("ENDSTEP") && deck.source.cards.iter().chain(&deck.later).next_back() == Some(card);
+        let is_end = card.is("ENDSTEP") && last == Some(card.place);
         if let Some(line) = card.lines.get(most).filter(|_| is_end) {
             noted.push((line.place, "this text follows the last *END STEP, and is passed over".into()));
         } else if let Some(line) = card.lines.get(most) {
-            return Err(deck
-                .source
-                .fault(line.place, format!("this line does not belong to {}; a keyword may be missing", card.name)));
+            return Err(
+                deck.fault(line.place, format!("this line does not belong to {}; a keyword may be missing", card.name))
+            );
         }
         match open {
             None if card.is("STEP") => (open, is_static) = (Some(card), false),
-            None if OF_STEP.iter().any(|keyword| card.is(keyword)) => {
+            None if card.is_any(&OF_STEP) => {
                 return fault(format!("{} stands outside of the steps, but belongs into one", card.name));
             }
             None if card.step > 0 => {
                 return fault(format!("{} follows an *END STEP; only a *STEP may follow one", card.name));
             }
             None => {}
-            Some(step) if card.is("STEP") => return Err(without_end(deck, step)),
+            Some(step) if card.is("STEP") => return Err(without_end(step)),
             Some(step) if card.is("ENDSTEP") && !is_static => {
-                return Err(deck.source.fault(step.place, "the step has no *STATIC; only an equilibrium is solved"));
+                return Err(step.fault("the step has no *STATIC; only an equilibrium is solved"));
             }
             Some(_) if card.is("ENDSTEP") => open = None,
             Some(_) => is_static |= card.is("STATIC"),
         }
     }
-    let whole = Place { file: 0, line: 1 };
+    let whole = DeckPlace { file: 0, line: 1 };
     match open {
-        Some(step) => Err(without_end(deck, step)),
-        None if deck.steps == 0 => Err(deck.source.fault(whole, "the deck has no *STEP: it asks for no answer")),
+        Some(step) => Err(without_end(step)),
+        None if deck.steps == 0 => Err(deck.fault(whole, "the deck has no *STEP: it asks for no answer")),
         None => Ok(passed),
     }
 }
 
-fn without_end(deck: &Deck, step: &Card) -> Error {
-    deck.source.fault(step.place, "the step has no *END STEP")
+fn without_end(step: DeckCard) -> Error {
+    step.fault("the step has no *END STEP")
 }
 
 /// The sentence about a keyword that is not read.
-fn refusal(card: &Card) -> String {
-    let name = shown(&card.name);
-    match ABSENT.iter().find(|(keyword, _)| card.is(keyword)) {
+fn refusal(card: DeckCard) -> String {
+    let name = cut(&card.name, 60);
+    match ABSENT.iter().find(|(keywords, _)| card.is_any(keywords)) {
         Some((_, reason)) => format!("{name} changes the answer and is refused: {reason}"),
         None => format!("{name} is no keyword that is read; it may change the answer"),
     }
-}
-
-/// A name in a message; longer names are cut.
-fn shown(name: &str) -> String {
-    name.chars().filter(|c| !c.is_control()).take(60).collect()
 }
 
 /// The keys that begin an object; the others follow in the order of the alphabet.
 const FIRST: [&str; 6] = ["name", "on", "file", "boundary", "body", "young"];
 
 /// An entry of the scene with the place in the deck that it comes from.
-pub(super) struct Entry {
+pub(super) struct SceneEntry {
     pub value: Value,
-    pub place: Place,
+    pub place: DeckPlace,
 }
 
-impl Entry {
-    pub fn new(value: Value, place: Place) -> Self {
-        Entry { value, place }
+impl SceneEntry {
+    pub fn new(value: Value, place: DeckPlace) -> Self {
+        SceneEntry { value, place }
     }
 }
 
@@ -234,7 +229,7 @@ impl Entry {
 pub(super) struct SceneText<'a> {
     deck: &'a Deck,
     pub text: String,
-    pub places: Vec<(String, Place)>,
+    pub places: Vec<(String, DeckPlace)>,
 }
 
 impl<'a> SceneText<'a> {
@@ -252,19 +247,19 @@ impl<'a> SceneText<'a> {
         let _ = write!(self.text, ",\n  \"{key}\": {}", written(value));
     }
 
-    pub fn one(&mut self, key: &str, entry: &Entry) {
+    pub fn one(&mut self, key: &str, entry: &SceneEntry) {
         let named = self.deck.source.named(entry.place);
         let _ = write!(self.text, ",\n  // {named}\n  \"{key}\": {}", written(&entry.value));
         self.places.push((key.into(), entry.place));
     }
 
     /// Adds a list; nothing if it is empty.
-    pub fn list(&mut self, key: &str, entries: &[Entry]) {
+    pub fn list(&mut self, key: &str, entries: &[SceneEntry]) {
         if entries.is_empty() {
             return;
         }
         let _ = write!(self.text, ",\n  \"{key}\": [");
-        for (index, Entry { value, place }) in entries.iter().enumerate() {
+        for (index, SceneEntry { value, place }) in entries.iter().enumerate() {
             let (named, comma) = (self.deck.source.named(*place), if index > 0 { "," } else { "" });
             let _ = write!(self.text, "{comma}\n    // {named}\n    {}", written(value));
             self.places.push((format!("{key}[{index}]"), *place));
@@ -273,7 +268,7 @@ impl<'a> SceneText<'a> {
     }
 
     /// The whole text.
-    pub fn end(mut self) -> (String, Vec<(String, Place)>) {
+    pub fn end(mut self) -> (String, Vec<(String, DeckPlace)>) {
         self.text += "\n}\n";
         (self.text, self.places)
     }

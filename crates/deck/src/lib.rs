@@ -28,32 +28,36 @@ mod keywords;
 mod loads;
 mod materials;
 mod mpc;
+#[doc(hidden)]
 mod references;
 mod requests;
-#[doc(hidden)]
-mod rigid;
 mod supports;
+mod transforms;
 
 use std::path::{Path, PathBuf};
 
 use amplitudes::{Amplitudes, Temperatures};
 use bodies::Body;
-use contacts::{contacts, ties};
-use keywords::SceneText;
+use contacts::{bolts, contacts, ties};
+use coupling::couplings;
+use keywords::{SceneEntry, SceneText};
 use loads::Loads;
 use materials::Sections;
 use references::References;
-use rigid::{Displacements, RigidBodies, Transforms};
 use signorini_fem::Error;
-use signorini_fem::mesh::deck::{Deck, DeckElement, Place, Space};
+use signorini_fem::mesh::deck::{Deck, DeckElement, DeckPlace, Space};
 use supports::supports;
+use transforms::{Displacements, Transforms};
 
-pub use requests::{RequestedTable, Requests};
 #[doc(hidden)]
-pub use rigid::{Of, ReferenceNode};
+pub use references::{Of, ReferenceNode};
+pub use requests::{RequestedTable, Requests};
 
 /// The code of the warning that a deck asks for large displacements.
 pub const NONLINEAR: &str = "nonlinear";
+
+/// What it says.
+const SMALL: &str = "NLGEOM is answered with small displacements";
 
 /// More bodies than this are a mesh whose nodes were not merged.
 const MOST_BODIES: usize = 1000;
@@ -96,22 +100,22 @@ impl DeckScene {
     pub fn read(file: &Path, named: &str, Reading { permits, step, earlier }: Reading) -> Result<Self, Error> {
         let within = file.parent().filter(|_| !permits.contains(&"outside"));
         let deck = Deck::read(file, within, step)?;
-        let mut noted = deck.source.noted.clone();
+        let mut noted = deck.noted.clone();
         let passed = keywords::judged(&deck, &mut noted)?;
         if deck.bodies > MOST_BODIES {
             let message = format!(
                 "the deck has {} bodies that share no node; merge the nodes in the mesher: at most {MOST_BODIES} are allowed",
                 deck.bodies
             );
-            return Err(deck.source.fault(deck.place_of_body(1), message));
+            return Err(deck.fault(deck.place_of_body(1), message));
         }
         let space = space(&deck)?;
         let amplitudes = Amplitudes::of(&deck)?;
         let sections = Sections::of(&deck, space)?;
         let temperatures = Temperatures::of(&deck, &amplitudes)?;
-        let rigid_bodies = RigidBodies::of(&deck)?;
-        let transforms = Transforms::of(&deck, &rigid_bodies)?;
-        let mut references = References::of(&deck, rigid_bodies, &transforms)?;
+        let (couplings, bolts) = (couplings(&deck)?, bolts(&deck)?);
+        let transforms = Transforms::of(&deck, &couplings, &bolts)?;
+        let mut references = References::of(&deck, couplings, bolts, &transforms)?;
         noted.extend(nearest_elements(&deck));
         noted.extend(sections.noted.iter().cloned());
         let supports = supports(&deck, &amplitudes, &mut references, &transforms, earlier)?;
@@ -119,64 +123,58 @@ impl DeckScene {
         let loads = Loads::of(&deck, thickness, &amplitudes, &mut references, &transforms, &mut noted)?;
         let mut contacts = contacts(&deck, permits.contains(&"friction"))?;
         contacts.ties.extend(ties(&deck)?);
-        let mut reference_nodes = references.rigid_bodies.reference_nodes(&deck);
-        contacts.ties.extend(references.rigid_bodies.bolts.entries(&deck));
-        let rigid_faces = references.rigid_bodies.entries();
         let entries = references.entries();
-        reference_nodes.extend(entries.nodes);
         contacts.ties.extend(entries.ties);
         noted.extend(contacts.warnings);
         noted.extend(entries.warnings);
         noted.extend(deck.source.longer.get().cloned());
+        let small = large_displacements(&deck).map(|place| (NONLINEAR, place, SMALL.to_string()));
+        let noted = noted.into_iter().map(|(place, message)| ("deck", place, message));
+        let noted: Vec<_> = small.into_iter().chain(noted).collect();
         let mut text = SceneText::new(&deck, &comments(&deck, named, &noted, &passed));
         text.plain("title", &title(&deck).into());
         text.plain("units", &serde_json::json!({"length": "", "force": ""}));
         text.plain("model", &model(space).into());
         if let Some((thickness, place)) = sections.thickness.filter(|thickness| thickness.0 != 1.0) {
-            text.one("thickness", &keywords::Entry::new(thickness.into(), place));
+            text.one("thickness", &SceneEntry::new(thickness.into(), place));
         }
         let bodies = (0..deck.bodies).map(|index| Body::of(&deck, index, named, &sections, &temperatures));
         add_bodies(&mut text, bodies.collect::<Result<_, _>>()?);
         text.list("supports", &supports);
-        text.list("rigid-faces", &rigid_faces);
+        text.list("rigid-faces", &entries.rigid_faces);
         text.list("points", &entries.points);
         text.list("ties", &contacts.ties);
         text.list("springs", &entries.springs);
         text.list("loads", &loads);
         text.list("obstacles", &contacts.obstacles);
         let (text, places) = text.end();
-        let whole = (String::new(), Place { file: 0, line: 1 });
-        let position = |place: Place| {
+        let whole = (String::new(), DeckPlace { file: 0, line: 1 });
+        let position = |place: DeckPlace| {
             let (file, line) = deck.source.position(place);
             (file.to_path_buf(), line)
         };
-        let warning = |code, place, message: &str| (code, format!("{}: {message}", named_line(position(place))));
-        let small = "NLGEOM is answered with small displacements";
-        let nonlinear = large_displacements(&deck).map(|place| warning(NONLINEAR, place, small));
-        let noted = noted.into_iter().map(|(place, message)| warning("deck", place, &message));
-        let warnings = nonlinear.into_iter().chain(noted).collect();
+        let warning = |(code, place, message): (&'static str, DeckPlace, String)| {
+            let (file, line) = position(place);
+            (code, format!("{}:{line}: {message}", file.display()))
+        };
+        let warnings = noted.into_iter().map(warning).collect();
         let lines = std::iter::once(whole).chain(places).map(|(path, place)| (path, position(place))).collect();
-        Ok(DeckScene { text, warnings, references: reference_nodes, deck, lines })
+        Ok(DeckScene { text, warnings, references: entries.nodes, deck, lines })
     }
-}
-
-/// A file with a line, as `part.inp:12`.
-fn named_line((file, line): (PathBuf, usize)) -> String {
-    format!("{}:{line}", file.display())
 }
 
 /// The comments that open the scene of a deck: where it comes from, and which cards are answered otherwise or passed
 /// over.
-fn comments(deck: &Deck, named: &str, noted: &[(Place, String)], passed: &[(String, Place)]) -> Vec<String> {
+fn comments(
+    deck: &Deck,
+    named: &str,
+    noted: &[(&str, DeckPlace, String)],
+    passed: &[(String, DeckPlace)],
+) -> Vec<String> {
     let mut comments = vec![format!("The scene of {named}; each entry names the line of the deck that it comes from.")];
-    let nonlinear =
-        large_displacements(deck).map(|place| (place, "NLGEOM is answered with small displacements".into()));
-    comments.extend(
-        nonlinear
-            .iter()
-            .chain(noted)
-            .map(|(place, message)| format!("Warning, {}: {message}", deck.source.named(*place))),
-    );
+    let warning =
+        |(_, place, message): &(&str, DeckPlace, String)| format!("Warning, {}: {message}", deck.source.named(*place));
+    comments.extend(noted.iter().map(warning));
     if !passed.is_empty() {
         let names: Vec<&str> = passed.iter().map(|(name, _)| name.as_str()).collect();
         comments.push(format!("Passed over, because it changes no answer: {}.", names.join(", ")));
@@ -188,7 +186,7 @@ fn comments(deck: &Deck, named: &str, noted: &[(Place, String)], passed: &[(Stri
 fn add_bodies(text: &mut SceneText, bodies: Vec<Body>) {
     let mut bodies = bodies.into_iter();
     let Some(first) = bodies.next() else { return };
-    text.one("body", &keywords::Entry::new(first.body, first.place));
+    text.one("body", &SceneEntry::new(first.body, first.place));
     first.material.iter().for_each(|material| text.one("material", material));
     text.list("materials", &first.materials);
     text.list("temperature", &first.temperature.into_iter().collect::<Vec<_>>());
@@ -210,7 +208,7 @@ fn space(deck: &Deck) -> Result<Space, Error> {
                 of_type.name,
                 model(first)
             );
-            Err(deck.source.fault(*place, message))
+            Err(deck.fault(*place, message))
         }
     }
 }
@@ -235,7 +233,7 @@ fn title(deck: &Deck) -> String {
 }
 
 /// The elements that are answered by others, each type once.
-fn nearest_elements(deck: &Deck) -> Vec<(Place, String)> {
+fn nearest_elements(deck: &Deck) -> Vec<(DeckPlace, String)> {
     let mut seen: Vec<&str> = Vec::new();
     let mut noted = Vec::new();
     for DeckElement { of_type, kind, place, .. } in &deck.element_list {
@@ -252,7 +250,7 @@ fn nearest_elements(deck: &Deck) -> Vec<(Place, String)> {
 }
 
 /// The first step with large displacements.
-fn large_displacements(deck: &Deck) -> Option<Place> {
-    let mut steps = deck.source.cards.iter().filter(|card| card.is("STEP"));
+fn large_displacements(deck: &Deck) -> Option<DeckPlace> {
+    let mut steps = deck.source.cards_of("STEP");
     steps.find(|step| step.has("NLGEOM") && !step.says("NLGEOM", "NO")).map(|step| step.place)
 }

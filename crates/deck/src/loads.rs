@@ -1,16 +1,16 @@
 //! Loads: the cards *CLOAD, *DLOAD and *DSLOAD. Loads of one step add up; those of a later step replace them.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_faces, names_of_nodes};
-use super::keywords::{Entry, object};
+use super::keywords::{SceneEntry, object};
 use super::references::References;
-use super::rigid::Transforms;
+use super::transforms::Transforms;
 use serde_json::{Value, json};
 use signorini_fem::Error;
 use signorini_fem::geometry::{dot, unit};
-use signorini_fem::mesh::deck::{Card, Deck, Fields, Place, key};
+use signorini_fem::mesh::deck::{DataFields, Deck, DeckCard, DeckPlace, Overridden, cut, key};
 
 /// A load on the volume: it acts on all bodies.
 struct OnVolume {
@@ -18,7 +18,7 @@ struct OnVolume {
     step: usize,
     name: (String, String, Vec<f64>),
     value: Value,
-    place: Place,
+    place: DeckPlace,
     elements: Vec<bool>,
 }
 
@@ -28,10 +28,11 @@ pub(super) struct Loads<'a, 'd> {
     thickness: f64,
     references: &'a mut References<'d>,
     transforms: &'a Transforms,
-    forces: LastForces,
-    loads: Vec<Entry>,
+    /// The force that acts at each node in each direction, from 1.
+    forces: Overridden<(usize, usize)>,
+    loads: Vec<SceneEntry>,
     on_volume: Vec<OnVolume>,
-    noted: &'a mut Vec<(Place, String)>,
+    noted: &'a mut Vec<(DeckPlace, String)>,
 }
 
 impl<'a, 'd> Loads<'a, 'd> {
@@ -41,19 +42,18 @@ impl<'a, 'd> Loads<'a, 'd> {
         amplitudes: &Amplitudes,
         references: &'a mut References<'d>,
         transforms: &'a Transforms,
-        noted: &'a mut Vec<(Place, String)>,
-    ) -> Result<Vec<Entry>, Error> {
-        let forces = LastForces::of(deck);
+        noted: &'a mut Vec<(DeckPlace, String)>,
+    ) -> Result<Vec<SceneEntry>, Error> {
+        let forces = last_forces(deck);
         let (own, on_volume) = (Vec::new(), Vec::new());
         let mut loads = Loads { deck, thickness, references, transforms, forces, loads: own, on_volume, noted };
         for keyword in ["CLOAD", "DLOAD", "DSLOAD"] {
-            let cards = deck.source.cards.iter().enumerate().filter(|(_, card)| card.is(keyword));
             // The step of the card before.
             let mut before = 0;
-            for (index, card) in cards {
+            for card in deck.source.cards_of(keyword) {
                 if card.is_new() && before == card.step {
                     let message = format!("OP=NEW must stand on the first {} of the step", card.name);
-                    return Err(deck.source.fault(card.place, message));
+                    return Err(card.fault(message));
                 }
                 if card.is_new() && keyword != "CLOAD" {
                     // All loads on bodies of the steps before go, whichever of the two cards says so.
@@ -63,7 +63,7 @@ impl<'a, 'd> Loads<'a, 'd> {
                 let factor = amplitudes.factor(deck, card)?;
                 match keyword {
                     "CLOAD" => loads.add_nodal(card, factor)?,
-                    "DLOAD" => loads.add_distributed(index, card, factor)?,
+                    "DLOAD" => loads.add_distributed(card, factor)?,
                     _ => loads.add_on_surfaces(card, factor)?,
                 }
             }
@@ -73,12 +73,13 @@ impl<'a, 'd> Loads<'a, 'd> {
 
     /// Forces on nodes: node, direction, force. A later step replaces them, node by node and direction by direction, or
     /// all by OP=NEW.
-    fn add_nodal(&mut self, card: &Card, factor: f64) -> Result<(), Error> {
+    fn add_nodal(&mut self, card: DeckCard, factor: f64) -> Result<(), Error> {
         let dimension = self.deck.dimension();
         let mut forces: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-        for line in &card.lines {
-            let mut fields = self.deck.source.fields(line);
-            let (target, mut nodes) = self.nodes(&mut fields)?;
+        for mut fields in card.fields() {
+            let (target, mut nodes) = self.deck.nodes.target(&mut fields)?;
+            let repeated = self.deck.nodes.repetition(&target);
+            self.noted.extend(repeated.map(|message| (fields.place, message)));
             let direction = fields.whole("the direction")?;
             let force = factor * fields.finite("the force")?;
             fields.pass_over();
@@ -88,10 +89,10 @@ impl<'a, 'd> Loads<'a, 'd> {
             let of_bodies =
                 |nodes: &[usize]| nodes.iter().filter(|&&node| self.deck.body_of_node[node].is_some()).count();
             let all = of_bodies(&nodes);
-            nodes.retain(|&node| self.forces.acts(card.step, (node, direction)));
+            nodes.retain(|&node| self.forces.acts(&(node, direction), card.step));
             let mut on_bodies = Vec::with_capacity(nodes.len());
             for node in nodes {
-                let pressed = self.references.press(node, direction, force, line.place);
+                let pressed = self.references.press(node, direction, force, fields.place);
                 if !pressed.map_err(|message| fields.fault(message))? {
                     on_bodies.push(node);
                 }
@@ -107,7 +108,7 @@ impl<'a, 'd> Loads<'a, 'd> {
             }
             let mut plain = Vec::with_capacity(nodes.len());
             for node in nodes {
-                let axes = self.transforms.axes(self.deck, node).map_err(|message| fields.fault(message))?;
+                let axes = fields.placed(self.transforms.axes(self.deck, node))?;
                 match (axes, name_of_node(self.deck, node)) {
                     (Some(axes), Some(name)) => {
                         let sum = forces.entry(name).or_insert_with(|| vec![0.0; dimension]);
@@ -126,26 +127,17 @@ impl<'a, 'd> Loads<'a, 'd> {
             }
         }
         if !forces.is_empty() {
-            self.loads.push(Entry::new(object("nodal-forces", json!(forces)), card.place));
+            self.loads.push(SceneEntry::new(object("nodal-forces", json!(forces)), card.place));
         }
         Ok(())
     }
 
-    fn nodes(&mut self, fields: &mut Fields) -> Result<(String, Vec<usize>), Error> {
-        let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
-        let nodes = self.deck.node_sets.members(&target, &self.deck.nodes).map_err(|message| fields.fault(message))?;
-        let repeated = self.deck.node_sets.repetition(&target, &self.deck.nodes);
-        self.noted.extend(repeated.map(|message| (fields.place, message)));
-        Ok((target, nodes))
-    }
-
     /// Pressures on faces, and loads on the volume.
-    fn add_distributed(&mut self, index: usize, card: &Card, factor: f64) -> Result<(), Error> {
-        for pressure in self.deck.pressures.iter().filter(|pressure| pressure.card == index) {
+    fn add_distributed(&mut self, card: DeckCard, factor: f64) -> Result<(), Error> {
+        for pressure in self.deck.pressures.iter().filter(|pressure| pressure.card == card.place) {
             self.add_pressure(&pressure.surface, factor * pressure.value, pressure.place)?;
         }
-        for line in &card.lines {
-            let mut fields = self.deck.source.fields(line);
+        for mut fields in card.fields() {
             let target = fields.text().unwrap_or_default();
             let label = fields.text().map(|label| key(&label)).unwrap_or_default();
             let along = along(fields.clone());
@@ -154,7 +146,7 @@ impl<'a, 'd> Loads<'a, 'd> {
                 "CENTRIF" => self.centrifugal(&mut fields, factor)?,
                 _ if label.strip_prefix('P').is_some_and(|rest| rest.parse::<usize>().is_ok()) => continue,
                 _ => {
-                    let shown: String = label.chars().take(40).collect();
+                    let shown = cut(&label, 40);
                     let message = format!("the load `{shown}` is not read; there are P1 to P6, GRAV and CENTRIF");
                     return Err(fields.fault(message));
                 }
@@ -163,8 +155,7 @@ impl<'a, 'd> Loads<'a, 'd> {
             let deck = self.deck;
             let name = (key(&target), label, along);
             self.on_volume.retain(|other| other.step == card.step || other.name != name);
-            let members =
-                deck.element_sets.members(&target, &deck.elements).map_err(|message| fields.fault(message))?;
+            let members = fields.placed(deck.elements.members(&target))?;
             let mut elements = vec![false; deck.elements.len()];
             members.into_iter().for_each(|element| elements[element] = true);
             // Lines for disjoint sets are one load on all of them.
@@ -175,23 +166,15 @@ impl<'a, 'd> Loads<'a, 'd> {
                 .find(|other| other.step == card.step && other.value == value && is_apart(&other.elements))
             {
                 Some(other) => other.elements.iter_mut().zip(elements).for_each(|(other, own)| *other |= own),
-                None => self.on_volume.push(OnVolume { step: card.step, name, value, place: line.place, elements }),
+                None => self.on_volume.push(OnVolume { step: card.step, name, value, place: fields.place, elements }),
             }
         }
         Ok(())
     }
 
-    fn vector(&self, fields: &mut Fields, what: &str) -> Result<[f64; 3], Error> {
-        let mut vector = [0.0; 3];
-        for (value, axis) in vector.iter_mut().zip(["x", "y", "z"]) {
-            *value = fields.finite_or_zero(format_args!("the {axis} of {what}"))?;
-        }
-        Ok(vector)
-    }
-
-    fn gravity(&self, fields: &mut Fields, factor: f64) -> Result<Value, Error> {
+    fn gravity(&self, fields: &mut DataFields, factor: f64) -> Result<Value, Error> {
         let acceleration = factor * fields.finite("the acceleration of gravity")?;
-        let direction = unit(self.vector(fields, "the direction of gravity")?);
+        let direction = unit(fields.vector("the direction of gravity")?);
         if direction == [0.0; 3] {
             return Err(fields.fault("the direction of gravity has no length"));
         }
@@ -202,10 +185,10 @@ impl<'a, 'd> Loads<'a, 'd> {
         Ok(object("gravity", json!(vector[..self.deck.dimension()])))
     }
 
-    fn centrifugal(&self, fields: &mut Fields, factor: f64) -> Result<Value, Error> {
+    fn centrifugal(&self, fields: &mut DataFields, factor: f64) -> Result<Value, Error> {
         let square = factor * fields.finite("the square of the angular velocity")?;
-        let point = self.vector(fields, "a point on the axis")?;
-        let axis = unit(self.vector(fields, "the direction of the axis")?);
+        let point = fields.vector("a point on the axis")?;
+        let axis = unit(fields.vector("the direction of the axis")?);
         if square < 0.0 || axis == [0.0; 3] {
             return Err(
                 fields.fault("the square of the angular velocity must not be negative, and the axis needs a length")
@@ -226,9 +209,9 @@ impl<'a, 'd> Loads<'a, 'd> {
     }
 
     /// Pressures on surfaces: surface, P, pressure.
-    fn add_on_surfaces(&mut self, card: &Card, factor: f64) -> Result<(), Error> {
-        for line in card.lines.iter().filter(|line| !self.deck.replaced.contains(&line.place)) {
-            let mut fields = self.deck.source.fields(line);
+    fn add_on_surfaces(&mut self, card: DeckCard, factor: f64) -> Result<(), Error> {
+        let deck = self.deck;
+        for mut fields in card.fields().filter(|fields| !deck.replaced.contains(&fields.place)) {
             let surface = fields.text().unwrap_or_default();
             let label = fields.text().map(|label| key(&label)).unwrap_or_default();
             if label != "P" {
@@ -237,21 +220,21 @@ impl<'a, 'd> Loads<'a, 'd> {
             let value = factor * fields.finite("the pressure")?;
             fields.pass_over();
             self.deck.surface_or(&surface).map_err(|message| fields.fault(message))?;
-            self.add_pressure(&surface, value, line.place)?;
+            self.add_pressure(&surface, value, fields.place)?;
         }
         Ok(())
     }
 
     /// A pressure on a surface, in each body that has some of its faces.
-    fn add_pressure(&mut self, surface: &str, value: f64, place: Place) -> Result<(), Error> {
-        let surface = self.deck.surface_or(surface).map_err(|message| self.deck.source.fault(place, message))?;
+    fn add_pressure(&mut self, surface: &str, value: f64, place: DeckPlace) -> Result<(), Error> {
+        let surface = self.deck.surface_or(surface).map_err(|message| self.deck.fault(place, message))?;
         if !surface.bare.is_empty() {
             let message = format!("the surface `{}` consists of nodes, on which no pressure acts", surface.name);
-            return Err(self.deck.source.fault(place, message));
+            return Err(self.deck.fault(place, message));
         }
         let (outside, inside) = self.deck.outside_and_inside(surface);
         for (_, boundary) in names_of_faces(self.deck, &surface.name, &outside) {
-            self.loads.push(Entry::new(json!({"pressure": {"boundary": boundary, "value": value}}), place));
+            self.loads.push(SceneEntry::new(json!({"pressure": {"boundary": boundary, "value": value}}), place));
         }
         if inside.is_empty() {
             return Ok(());
@@ -262,30 +245,30 @@ impl<'a, 'd> Loads<'a, 'd> {
             Some((name_of_node(self.deck, node)?, force))
         });
         let forces: BTreeMap<String, Vec<f64>> = forces.collect();
-        self.loads.push(Entry::new(object("nodal-forces", json!(forces)), place));
+        self.loads.push(SceneEntry::new(object("nodal-forces", json!(forces)), place));
         Ok(())
     }
 
     /// All loads; those on the volume must act on all elements.
-    fn end(mut self) -> Result<Vec<Entry>, Error> {
+    fn end(mut self) -> Result<Vec<SceneEntry>, Error> {
         for OnVolume { value, place, elements, .. } in self.on_volume {
             if let Some(element) = elements.iter().position(|is_in| !is_in) {
                 let number = self.deck.elements.numbers[element];
                 let message = format!(
                     "this load acts on a part of the elements, not on element {number}; a load on the volume is read for all elements only"
                 );
-                return Err(self.deck.source.fault(place, message));
+                return Err(self.deck.fault(place, message));
             }
-            self.loads.push(Entry::new(value, place));
+            self.loads.push(SceneEntry::new(value, place));
         }
         Ok(self.loads)
     }
 }
 
 /// The direction of a load on the volume, and before it its point if it has one: all numbers behind its size.
-fn along(mut fields: Fields) -> Vec<f64> {
+fn along(mut fields: DataFields) -> Vec<f64> {
     fields.next();
-    let number = |fields: &mut Fields| {
+    let number = |fields: &mut DataFields| {
         fields.clone().next()?;
         Some(fields.finite_or_zero("a component").unwrap_or(0.0))
     };
@@ -297,36 +280,21 @@ fn along(mut fields: Fields) -> Vec<f64> {
     all
 }
 
-/// The step whose force acts at each node in each direction, from 1.
-pub(super) struct LastForces {
-    last: HashMap<(usize, usize), usize>,
-    /// The step that removes all forces of those before it.
-    first: usize,
-}
-
-impl LastForces {
-    pub fn of(deck: &Deck) -> Self {
-        let mut forces = LastForces { last: HashMap::new(), first: 0 };
-        if deck.step < 2 {
-            return forces;
+/// The forces that later steps replace.
+fn last_forces(deck: &Deck) -> Overridden<(usize, usize)> {
+    let mut forces = Overridden::default();
+    for card in deck.source.cards_of("CLOAD") {
+        if card.is_new() {
+            forces.clear(card.step);
         }
-        for card in deck.source.cards.iter().filter(|card| card.is("CLOAD")) {
-            if card.is_new() {
-                forces.first = card.step;
-            }
-            for line in &card.lines {
-                // A line that is wrong is refused where it is read.
-                let mut fields = deck.source.fields(line);
-                let nodes = fields.text().and_then(|target| deck.node_sets.members(&target, &deck.nodes).ok());
-                let (Some(nodes), Ok(direction)) = (nodes, fields.whole("the direction")) else { continue };
-                nodes.into_iter().for_each(|node| _ = forces.last.insert((node, direction), card.step));
-            }
+        for mut fields in card.fields() {
+            // A line that is wrong is refused where it is read.
+            let (Ok((_, nodes)), Ok(direction)) = (deck.nodes.target(&mut fields), fields.whole("the direction"))
+            else {
+                continue;
+            };
+            nodes.into_iter().for_each(|node| forces.give((node, direction), card.step));
         }
-        forces
     }
-
-    /// Returns `true` if a force that a step gives to a node in a direction acts at the end.
-    pub fn acts(&self, step: usize, at: (usize, usize)) -> bool {
-        step >= self.first && self.last.get(&at).is_none_or(|last| *last == step)
-    }
+    forces
 }

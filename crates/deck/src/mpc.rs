@@ -5,10 +5,10 @@
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, version 2.20, keyword *MPC.
 
 use super::coupling::Equation;
-use super::rigid::Transforms;
+use super::transforms::Transforms;
 use signorini_fem::Error;
 use signorini_fem::geometry::{COORDINATES, across, cross, distance, dot, length, minus, shifted, unit};
-use signorini_fem::mesh::deck::{Card, Deck, Place, SpringType, key};
+use signorini_fem::mesh::deck::{Deck, DeckCard, DeckPlace, SpringType, cut, key};
 use signorini_fem::sum::Sum;
 
 /// Nodes farther from their plane or line than this share of its extent lie outside: far above the digits of
@@ -28,13 +28,12 @@ const ABSENT: [(&str, &str); 2] = [
 pub(super) fn constraints(
     deck: &Deck,
     transforms: &Transforms,
-    warnings: &mut Vec<(Place, String)>,
+    warnings: &mut Vec<(DeckPlace, String)>,
 ) -> Result<Vec<Equation>, Error> {
     let mut equations = Vec::new();
-    for card in deck.source.cards.iter().filter(|card| card.is("MPC")) {
+    for card in deck.source.cards_of("MPC") {
         let (name, nodes) = nodes(deck, card)?;
-        let fault = |message: String| deck.source.fault(card.place, message);
-        let sums = sums(deck, transforms, &name, &nodes).map_err(fault)?;
+        let sums = card.placed(sums(deck, transforms, &name, &nodes))?;
         equations.extend(sums.into_iter().map(|sum| Equation { sum, place: card.place }));
         let message = format!(
             "{name} of *MPC is answered by linear equations for small displacements; CalculiX turns large displacements on"
@@ -45,32 +44,30 @@ pub(super) fn constraints(
 }
 
 /// The name of a constraint and its nodes, in their order.
-fn nodes(deck: &Deck, card: &Card) -> Result<(String, Vec<usize>), Error> {
+fn nodes(deck: &Deck, card: DeckCard) -> Result<(String, Vec<usize>), Error> {
     let (mut name, mut nodes) = (None, Vec::new());
-    for line in &card.lines {
-        let mut fields = deck.source.fields(line);
+    for mut fields in card.fields() {
         if name.is_none() {
             name = Some(key(&fields.text().unwrap_or_default()));
         }
         while fields.clone().next().is_some() {
             // An empty field, or node 0, fills a line.
             let Some(target) = fields.text().filter(|target| target != "0") else { continue };
-            nodes.extend(deck.node_sets.members(&target, &deck.nodes).map_err(|message| fields.fault(message))?);
+            nodes.extend(fields.placed(deck.nodes.members(&target))?);
         }
     }
     match name {
         Some(name) => Ok((name, nodes)),
-        None => Err(deck.source.fault(card.place, "*MPC has no line; it begins with PLANE, STRAIGHT or BEAM")),
+        None => Err(card.fault("*MPC has no line; it begins with PLANE, STRAIGHT or BEAM")),
     }
 }
 
 /// The sums that are zero.
 fn sums(deck: &Deck, transforms: &Transforms, name: &str, nodes: &[usize]) -> Result<Vec<Sum>, String> {
     if !["PLANE", "STRAIGHT", "BEAM"].contains(&name) {
-        let shown: String = name.chars().filter(|c| !c.is_control()).take(40).collect();
         let reason = ABSENT.iter().find(|(other, _)| *other == name).map(|(_, reason)| format!(": {reason}"));
         let reason = reason.unwrap_or_default();
-        return Err(format!("{shown} of *MPC is not read; there are PLANE, STRAIGHT and BEAM{reason}"));
+        return Err(format!("{} of *MPC is not read; there are PLANE, STRAIGHT and BEAM{reason}", cut(name, 40)));
     }
     let at = |node: usize| deck.place_of_node(node);
     let farthest = |from: &dyn Fn(usize) -> f64| nodes.iter().copied().max_by(|a, b| from(*a).total_cmp(&from(*b)));
@@ -185,7 +182,7 @@ pub(super) fn along(deck: &Deck, transforms: &Transforms, node: usize, vector: [
 
 pub(super) fn equations(deck: &Deck, transforms: &Transforms) -> Result<Vec<Equation>, Error> {
     let mut equations = Vec::new();
-    for card in deck.source.cards.iter().filter(|card| card.is("EQUATION")) {
+    for card in deck.source.cards_of("EQUATION") {
         add_equations(deck, card, transforms, &mut equations)?;
     }
     Ok(equations)
@@ -194,36 +191,34 @@ pub(super) fn equations(deck: &Deck, transforms: &Transforms) -> Result<Vec<Equa
 /// The equations of a card: their number of terms, then all terms, each a node, a direction and a coefficient.
 fn add_equations(
     deck: &Deck,
-    card: &Card,
+    card: DeckCard,
     transforms: &Transforms,
     equations: &mut Vec<Equation>,
 ) -> Result<(), Error> {
-    let mut lines = card.lines.iter();
-    while let Some(first) = lines.next() {
-        let mut fields = deck.source.fields(first);
-        let count = fields.whole("the number of terms of the equation")?;
-        fields.end()?;
+    let mut lines = card.fields();
+    while let Some(mut first) = lines.next() {
+        let count = first.whole("the number of terms of the equation")?;
+        first.end()?;
         let (mut sum, mut terms) = (Sum::default(), 0);
         while terms < count {
-            let Some(line) = lines.next() else {
+            let Some(mut fields) = lines.next() else {
                 let message = format!("the equation has {terms} terms, not {count}");
-                return Err(deck.source.fault(first.place, message));
+                return Err(first.fault(message));
             };
-            let mut fields = deck.source.fields(line);
             while terms < count && fields.clone().text().is_some() {
                 let number = fields.whole("the node of a term")?;
                 let direction = fields.whole(format_args!("the direction of node {number}"))?;
                 let coefficient = fields.finite(format_args!("the coefficient of node {number}"))?;
                 let node =
                     deck.nodes.place(number).ok_or_else(|| fields.fault(format!("the deck has no node {number}")))?;
-                let term = component(deck, transforms, node, direction).map_err(|message| fields.fault(message))?;
+                let term = fields.placed(component(deck, transforms, node, direction))?;
                 sum.add_multiple(coefficient, &term);
                 terms += 1;
             }
             fields.end()?;
         }
         if sum.terms.is_empty() {
-            return Err(deck.source.fault(first.place, "the equation has no term"));
+            return Err(first.fault("the equation has no term"));
         }
         equations.push(Equation { sum, place: first.place });
     }
@@ -236,46 +231,45 @@ pub(super) struct Spring {
     pub elongation: Sum,
     /// Positive, in force per length.
     pub stiffness: f64,
-    pub place: Place,
+    pub place: DeckPlace,
 }
 
 pub(super) fn springs(deck: &Deck, transforms: &Transforms) -> Result<Vec<Spring>, Error> {
-    let mut springs: Vec<Option<Spring>> = vec![None; deck.springs.all.len()];
-    for card in deck.source.cards.iter().filter(|card| card.is("SPRING")) {
-        let fault = |message: String| deck.source.fault(card.place, message);
+    let mut springs: Vec<Option<Spring>> = vec![None; deck.springs.len()];
+    for card in deck.source.cards_of("SPRING") {
         if deck.is_axisymmetric() {
-            return Err(fault("springs are not read in an axisymmetric model".into()));
+            return Err(card.fault("springs are not read in an axisymmetric model"));
         }
-        let set = card.value("ELSET").ok_or_else(|| fault("*SPRING names no elements; write ELSET=NAME".into()))?;
-        let members = deck.springs.sets.members(set, &deck.springs.numbers).map_err(fault)?;
-        let Some(of_type) = members.first().map(|&member| deck.springs.all[member].of_type) else { continue };
-        if members.iter().any(|&member| deck.springs.all[member].of_type != of_type) {
-            return Err(fault(format!("`{set}` has springs of several types; name a set of each")));
+        let set = card.value("ELSET").ok_or_else(|| card.fault("*SPRING names no elements; write ELSET=NAME"))?;
+        let members = card.placed(deck.spring_numbers.members(set))?;
+        let Some(of_type) = members.first().map(|&member| deck.springs[member].of_type) else { continue };
+        if members.iter().any(|&member| deck.springs[member].of_type != of_type) {
+            return Err(card.fault(format!("`{set}` has springs of several types; name a set of each")));
         }
         let (directions, stiffness) = values(deck, card, of_type)?;
         for member in members {
-            let element = &deck.springs.all[member];
-            let elongation = elongation(deck, transforms, member, directions)
-                .map_err(|message| deck.source.fault(element.place, message))?;
+            let element = &deck.springs[member];
+            let elongation = elongation(deck, transforms, member, directions);
+            let elongation = elongation.map_err(|message| deck.fault(element.place, message))?;
             springs[member] = Some(Spring { elongation, stiffness, place: element.place });
         }
     }
-    let without = || deck.springs.all.iter().zip(&springs).find(|(_, spring)| spring.is_none());
+    let without = || deck.springs.iter().zip(&springs).find(|(_, spring)| spring.is_none());
     if let Some((element, _)) = without() {
-        return Err(deck.source.fault(element.place, "this spring has no stiffness; a card *SPRING must name its set"));
+        return Err(deck.fault(element.place, "this spring has no stiffness; a card *SPRING must name its set"));
     }
     Ok(springs.into_iter().flatten().collect())
 }
 
 /// The directions, from 1, and the stiffness of a card.
-fn values(deck: &Deck, card: &Card, of_type: SpringType) -> Result<([usize; 2], f64), Error> {
-    let fault = |message: &str| Err(deck.source.fault(card.place, message));
+fn values(deck: &Deck, card: DeckCard, of_type: SpringType) -> Result<([usize; 2], f64), Error> {
+    let fault = |message: &str| Err(card.fault(message));
     let mut directions = [1; 2];
     let line = match (of_type, &card.lines[..]) {
         (SpringType::Along, [line]) => line,
         (SpringType::Along, _) => return fault("*SPRING of SPRINGA has one line, with the stiffness"),
         (_, [first, line]) => {
-            let mut fields = deck.source.fields(first);
+            let mut fields = card.source.fields(first);
             directions[0] = fields.whole("the direction at the first node")?;
             if of_type == SpringType::Between {
                 directions[1] = fields.whole("the direction at the second node")?;
@@ -289,7 +283,7 @@ fn values(deck: &Deck, card: &Card, of_type: SpringType) -> Result<([usize; 2], 
         }
         _ => return fault("*SPRING of SPRING1 and SPRING2 has two lines: the directions, then the stiffness"),
     };
-    let mut fields = deck.source.fields(line);
+    let mut fields = card.source.fields(line);
     let stiffness = fields.finite("the stiffness of the spring")?;
     match stiffness > 0.0 {
         true => Ok((directions, stiffness)),
@@ -298,7 +292,7 @@ fn values(deck: &Deck, card: &Card, of_type: SpringType) -> Result<([usize; 2], 
 }
 
 fn elongation(deck: &Deck, transforms: &Transforms, element: usize, directions: [usize; 2]) -> Result<Sum, String> {
-    let element = &deck.springs.all[element];
+    let element = &deck.springs[element];
     let (mut sum, nodes) = (Sum::default(), &element.nodes[..]);
     let vectors = match (element.of_type, nodes) {
         (SpringType::Along, &[one, two]) => {

@@ -1,126 +1,156 @@
 //! Reference nodes: components of nodes without elements, which rigid bodies, couplings, equations and springs move.
-//! Those that are in equations and springs are reference points of the scene, called by the numbers of their nodes.
+//! Rigid bodies are rigid faces of the scene: couplings whose nodes belong to one body and follow in all displacements.
+//! Nodes in equations and springs are reference points, called by their numbers.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::bodies::name_of_node;
-use super::coupling::{Coupling, Equation, Kind};
-use super::keywords::{Entry, object};
+use super::bodies::{name_of_node, names_of_nodes, names_of_surface};
+use super::contacts::Bolt;
+use super::coupling::{Coupling, CouplingKind, Equation, Joined};
+use super::keywords::{SceneEntry, object};
 use super::mpc::{Spring, constraints, equations, springs};
-use super::rigid::{Of, ReferenceNode, RigidBodies, Transforms};
+use super::transforms::Transforms;
 use serde_json::{Value, json};
 use signorini_fem::Error;
-use signorini_fem::mesh::deck::{Deck, Place};
+use signorini_fem::mesh::deck::{Deck, DeckPlace};
 use signorini_fem::sum::{Component, Sum};
 
 /// The refusal of a displacement other than 0.
 pub(super) const NO_Z: &str = "a plane model has no displacement along z";
 
 /// The keys of displacements and rotations.
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Nodes of one body that follow a reference node in all displacements.
+struct FollowingFace {
+    /// `nodes` or `boundary` of the scene, with the name.
+    on: (&'static str, Value),
+    reference: usize,
+    place: DeckPlace,
+}
 
 /// The reference nodes of a deck.
 pub(super) struct References<'a> {
     deck: &'a Deck,
-    pub rigid_bodies: RigidBodies,
+    faces: Vec<FollowingFace>,
+    bolts: Vec<Bolt>,
     equations: Vec<Equation>,
     springs: Vec<Spring>,
     /// The reference nodes that follow means, with the places of their couplings.
-    means: Vec<(usize, Place)>,
+    means: Vec<(usize, DeckPlace)>,
     /// The nodes whose displacements are rotations of reference nodes, with these.
     rotations: HashMap<usize, usize>,
     /// The components without elements that are in equations or springs.
     joined: BTreeSet<Component>,
     prescribed: BTreeMap<Component, f64>,
     /// The forces on components, each with the place of the first.
-    loads: BTreeMap<Component, (Place, f64)>,
-    warnings: Vec<(Place, String)>,
+    loads: BTreeMap<Component, (DeckPlace, f64)>,
+    warnings: Vec<(DeckPlace, String)>,
 }
 
 /// What they are in the scene.
 pub(super) struct Entries {
-    pub points: Vec<Entry>,
-    pub ties: Vec<Entry>,
-    pub springs: Vec<Entry>,
-    pub warnings: Vec<(Place, String)>,
-    /// The nodes whose displacements are rotations of points.
+    pub rigid_faces: Vec<SceneEntry>,
+    pub points: Vec<SceneEntry>,
+    pub ties: Vec<SceneEntry>,
+    pub springs: Vec<SceneEntry>,
+    pub warnings: Vec<(DeckPlace, String)>,
+    /// The reference nodes of rigid faces, and the nodes whose displacements are rotations of points.
     pub nodes: Vec<ReferenceNode>,
 }
 
 impl<'a> References<'a> {
-    pub fn of(deck: &'a Deck, mut rigid_bodies: RigidBodies, transforms: &Transforms) -> Result<Self, Error> {
-        let couplings = std::mem::take(&mut rigid_bodies.couplings);
+    pub fn of(
+        deck: &'a Deck,
+        couplings: Vec<Coupling>,
+        bolts: Vec<Bolt>,
+        transforms: &Transforms,
+    ) -> Result<Self, Error> {
         let (mut equations, springs) = (equations(deck, transforms)?, springs(deck, transforms)?);
         let mut warnings = Vec::new();
         equations.extend(constraints(deck, transforms, &mut warnings)?);
-        let own = |coupling: &Coupling| std::iter::once(coupling.reference).chain(coupling.rotation);
-        let mut named: Vec<usize> = couplings.iter().flat_map(own).collect();
+        let mut named: Vec<usize> = couplings.iter().flat_map(Coupling::references).collect();
         named.extend(terms(&equations, &springs).map(|(component, _)| component.0));
-        let (mut means, mut rotations) = (Vec::new(), HashMap::new());
+        let is_of_bolt = |node: usize| bolts.iter().any(|bolt| bolt.reference == node);
+        let (mut faces, mut means, mut rotations) = (Vec::new(), Vec::new(), HashMap::new());
         for coupling in couplings {
+            let fault = |message: String| deck.fault(coupling.place, message);
             // A rigid body has reference nodes of its own.
-            let is_alone = own(&coupling).all(|own| named.iter().filter(|&&node| node == own).count() == 1);
-            if is_alone && rigid_bodies.takes(deck, &coupling)? {
-                continue;
+            let is_alone = coupling.references().all(|own| named.iter().filter(|&&node| node == own).count() == 1);
+            let on = if is_alone { following(deck, &coupling).map_err(fault)? } else { None };
+            if let Some(shared) = coupling.references().find(|&node| on.is_some() && is_of_bolt(node)) {
+                let number = deck.nodes.numbers[shared];
+                return Err(fault(format!("node {number} is the reference of two rigid bodies, or of a bolt too")));
             }
             if let Some(node) = coupling.rotation
                 && rotations.insert(node, coupling.reference).is_some_and(|other| other != coupling.reference)
             {
-                let message = format!("node {} is the ROT NODE of two reference nodes", deck.nodes.numbers[node]);
-                return Err(deck.source.fault(coupling.place, message));
+                let number = deck.nodes.numbers[node];
+                return Err(fault(format!("node {number} is the ROT NODE of two reference nodes")));
+            }
+            if let Some(on) = on {
+                faces.push(FollowingFace { on, reference: coupling.reference, place: coupling.place });
+                continue;
             }
             equations.extend(coupling.equations(deck)?);
-            if matches!(coupling.kind, Kind::Distributing(_)) {
+            if matches!(coupling.kind, CouplingKind::Distributing(_)) {
                 means.push((coupling.reference, coupling.place));
             }
         }
-        let (prescribed, loads, joined) = (BTreeMap::new(), BTreeMap::new(), BTreeSet::new());
-        let mut references = References {
-            deck,
-            rigid_bodies,
-            equations,
-            springs,
-            means,
-            rotations,
-            joined,
-            prescribed,
-            loads,
-            warnings,
-        };
-        for (node, reference) in references.rotations.clone() {
-            (0..3).for_each(|kind| references.sums().for_each(|sum| sum.rename((node, kind), (reference, 3 + kind))));
+        let mut joined: BTreeSet<Component> = bolts.iter().map(|bolt| (bolt.reference, 0)).collect();
+        let of_equations = equations.iter_mut().map(|equation: &mut Equation| &mut equation.sum);
+        let mut springs = springs;
+        for sum in of_equations.chain(springs.iter_mut().map(|spring| &mut spring.elongation)) {
+            for (&node, &reference) in &rotations {
+                (0..3).for_each(|kind| sum.rename((node, kind), (reference, 3 + kind)));
+            }
         }
-        let References { equations, springs, rigid_bodies, joined, .. } = &mut references;
-        for (component, place) in terms(equations, springs).filter(|one| is_loose(deck, one.0)) {
-            if rigid_bodies.is_reference(component.0) {
+        for (component, place) in terms(&equations, &springs).filter(|one| is_loose(deck, one.0)) {
+            if is_of_bolt(component.0) {
                 let number = deck.nodes.numbers[component.0];
                 let message = format!(
                     "node {number} is the reference of a bolt; equations and springs do not contain such a node: prescribe its force or \
                      its displacement"
                 );
-                return Err(deck.source.fault(place, message));
+                return Err(deck.fault(place, message));
             }
             joined.insert(component);
         }
-        joined.extend(rigid_bodies.bolts.references().map(|(node, _)| (node, 0)));
-        Ok(references)
+        for face in &faces {
+            joined.extend(Coupling::motions(deck).map(|kind| (face.reference, kind)));
+        }
+        let (prescribed, loads) = (BTreeMap::new(), BTreeMap::new());
+        Ok(References { deck, faces, bolts, equations, springs, means, rotations, joined, prescribed, loads, warnings })
+    }
+
+    fn is_rigid(&self, node: usize) -> bool {
+        self.faces.iter().any(|face| face.reference == node)
     }
 
     /// The component that a direction of a node names, from 1.
     ///
     /// # Errors
-    /// A sentence for one that its rotations or its bolt do not have.
+    /// A sentence for one that a rigid body, its rotations or its bolt do not have.
     fn component(&self, node: usize, direction: usize) -> Result<Component, String> {
-        match self.rotations.get(&node) {
-            None if direction > 1 && self.rigid_bodies.bolts.is_reference(node) => {
-                Err(format!("direction {direction} of this node is none of a bolt, which has direction 1 alone"))
-            }
-            None => Ok((node, direction - 1)),
-            Some(&reference) if direction <= 3 => Ok((reference, direction + 2)),
-            Some(_) => Err(format!(
-                "direction {direction} of a ROT NODE is none; its directions 1 to 3 are the rotations about x, y and z"
-            )),
+        let component = match self.rotations.get(&node) {
+            None => (node, direction - 1),
+            Some(&reference) => (reference, direction + 2),
+        };
+        if self.is_rigid(component.0) {
+            return match Coupling::motions(self.deck).any(|kind| kind == component.1) {
+                true => Ok(component),
+                false => Err(format!("a rigid body of this model has no motion in direction {direction} of this node")),
+            };
         }
+        if direction > 1 && self.bolts.iter().any(|bolt| bolt.reference == node) {
+            return Err(format!("direction {direction} of this node is none of a bolt, which has direction 1 alone"));
+        }
+        if component.1 > 5 {
+            return Err(format!(
+                "direction {direction} of a ROT NODE is none; its directions 1 to 3 are the rotations about x, y and z"
+            ));
+        }
+        Ok(component)
     }
 
     /// Prescribes a direction of a node, from 1; `false` for a component that is left to the elements of the node.
@@ -128,9 +158,6 @@ impl<'a> References<'a> {
     /// # Errors
     /// A sentence for a direction that the rigid bodies of this model do not have.
     pub fn prescribe(&mut self, node: usize, direction: usize, value: f64) -> Result<bool, String> {
-        if self.rigid_bodies.prescribe(node, direction, value)? {
-            return Ok(true);
-        }
         let component = match self.component(node, direction) {
             Ok(component) => component,
             Err(message) => return if value == 0.0 { Ok(true) } else { Err(message) },
@@ -150,10 +177,7 @@ impl<'a> References<'a> {
     ///
     /// # Errors
     /// A sentence for a component that nothing follows.
-    pub fn press(&mut self, node: usize, direction: usize, force: f64, place: Place) -> Result<bool, String> {
-        if self.rigid_bodies.press(node, direction, force)? {
-            return Ok(true);
-        }
+    pub fn press(&mut self, node: usize, direction: usize, force: f64, place: DeckPlace) -> Result<bool, String> {
         let component = self.component(node, direction)?;
         let is_joined = self.joined.contains(&component);
         if self.deck.body_of_node[node].is_some() && !is_joined {
@@ -170,7 +194,7 @@ impl<'a> References<'a> {
         Ok(true)
     }
 
-    /// The reference points of the scene, with the ties and springs at them.
+    /// The rigid faces and the reference points of the scene, with the ties and springs at these.
     pub fn entries(mut self) -> Entries {
         for (node, place) in &self.means {
             if self.prescribed.keys().any(|component| component.0 == *node && self.joined.contains(component)) {
@@ -178,51 +202,69 @@ impl<'a> References<'a> {
                 self.warnings.push((*place, message.into()));
             }
         }
-        let whole = Place { file: 0, line: 1 };
-        let mut places: BTreeMap<usize, Place> = self.prescribed.keys().map(|component| (component.0, whole)).collect();
+        let whole = DeckPlace { file: 0, line: 1 };
+        let mut places: BTreeMap<usize, DeckPlace> =
+            self.prescribed.keys().map(|component| (component.0, whole)).collect();
         let named = terms(&self.equations, &self.springs).filter(|one| self.joined.contains(&one.0));
         places.extend(named.map(|(component, place)| (component.0, place)).collect::<Vec<_>>().into_iter().rev());
-        places.extend(self.rigid_bodies.bolts.references());
+        places.extend(self.bolts.iter().map(|bolt| (bolt.reference, bolt.preload.place)));
         places.extend(self.loads.iter().map(|(component, (place, _))| (component.0, *place)));
-        let points = places.into_iter().map(|(node, place)| Entry::new(self.point(node), place)).collect();
-        let tie = |Equation { sum, place }: &Equation| Entry::new(object("equation", self.tie(sum)), *place);
-        let spring = |Spring { elongation, stiffness, place }: &Spring| {
-            Entry::new(json!({"terms": self.terms(elongation), "along": stiffness}), *place)
-        };
-        let (ties, springs) = (self.equations.iter().map(tie).collect(), self.springs.iter().map(spring).collect());
+        places.retain(|&node, _| !self.is_rigid(node));
+        let dimension = self.deck.dimension();
+        let at = |node: usize| json!(self.deck.place_of_node(node)[..dimension]);
         let number = |node: usize| self.deck.nodes.numbers[node];
-        let turns = |(&node, &point): (&usize, &usize)| ReferenceNode {
-            number: number(node),
-            of: Of::Turns { point: number(point) },
+        let point = |(node, place): (usize, DeckPlace)| {
+            let point = json!({"name": number(node).to_string(), "at": at(node)});
+            SceneEntry::new(self.moved(point, node), place)
         };
-        let nodes = self.rotations.iter().map(turns).collect();
-        Entries { points, ties, springs, warnings: self.warnings, nodes }
+        let face = |FollowingFace { on, reference, place }: &FollowingFace| {
+            let face = json!({on.0: on.1, "centre": at(*reference)});
+            SceneEntry::new(self.moved(face, *reference), *place)
+        };
+        let tie = |Equation { sum, place }: &Equation| SceneEntry::new(object("equation", self.tie(sum)), *place);
+        let spring = |Spring { elongation, stiffness, place }: &Spring| {
+            SceneEntry::new(json!({"terms": self.terms(elongation), "along": stiffness}), *place)
+        };
+        let of_face = |reference: usize, first: usize| {
+            let face = self.faces.iter().position(|face| face.reference == reference)?;
+            Some(Of::Face { face, first, centre: self.deck.place_of_node(reference) })
+        };
+        let centres = self.faces.iter().filter_map(|face| Some((face.reference, of_face(face.reference, 0)?)));
+        let turns = self
+            .rotations
+            .iter()
+            .map(|(&node, &reference)| (node, of_face(reference, 3).unwrap_or(Of::Turns { point: number(reference) })));
+        let nodes = centres.chain(turns).map(|(node, of)| ReferenceNode { number: number(node), of });
+        Entries {
+            rigid_faces: self.faces.iter().map(face).collect(),
+            points: places.into_iter().map(point).collect(),
+            springs: self.springs.iter().map(spring).collect(),
+            nodes: nodes.collect(),
+            ties: {
+                let ties: Vec<SceneEntry> = self.equations.iter().map(tie).collect();
+                self.bolts.into_iter().map(|bolt| bolt.preload).chain(ties).collect()
+            },
+            warnings: self.warnings,
+        }
     }
 
-    fn point(&self, node: usize) -> Value {
-        let (dimension, turns) = (self.deck.dimension(), Coupling::turns(self.deck));
-        let at = self.deck.place_of_node(node);
-        let mut point = json!({"name": self.deck.nodes.numbers[node].to_string(), "at": at[..dimension]});
-        let force = |kind: usize| self.loads.get(&(node, kind)).map_or(0.0, |load| load.1);
-        let turns: Vec<usize> = turns.iter().map(|turn| 3 + turn).collect();
-        for kind in (0..dimension).chain(turns.iter().copied()) {
+    /// A rigid face or a reference point with the prescribed motions of its node, its force and its moment.
+    fn moved(&self, mut entry: Value, node: usize) -> Value {
+        for kind in Coupling::motions(self.deck) {
             if let Some(value) = self.prescribed.get(&(node, kind)) {
-                let of = if kind < 3 { &mut point } else { &mut point["rotation"] };
+                let of = if kind < 3 { &mut entry } else { &mut entry["rotation"] };
                 of[AXES[kind % 3]] = (*value).into();
             }
         }
-        let loads: [(&str, Vec<f64>); 2] =
-            [("force", (0..dimension).map(force).collect()), ("moment", turns.into_iter().map(force).collect())];
-        for (name, parts) in loads.into_iter().filter(|(_, parts)| parts.iter().any(|&part| part != 0.0)) {
-            point[name] = parts.into();
+        let load = |kind: usize| self.loads.get(&(node, kind)).map_or(0.0, |load| load.1);
+        let (force, moment): (Vec<usize>, Vec<usize>) = Coupling::motions(self.deck).partition(|kind| *kind < 3);
+        for (name, kinds) in [("force", force), ("moment", moment)] {
+            let parts: Vec<f64> = kinds.into_iter().map(load).collect();
+            if parts.iter().any(|&part| part != 0.0) {
+                entry[name] = parts.into();
+            }
         }
-        point
-    }
-
-    /// All sums of components: those of equations and springs.
-    fn sums(&mut self) -> impl Iterator<Item = &mut Sum> {
-        let equations = self.equations.iter_mut().map(|equation| &mut equation.sum);
-        equations.chain(self.springs.iter_mut().map(|spring| &mut spring.elongation))
+        entry
     }
 
     fn terms(&self, sum: &Sum) -> Vec<Value> {
@@ -250,8 +292,33 @@ impl<'a> References<'a> {
     }
 }
 
+/// The nodes of a coupling as a scene names them, if they belong to one body and all follow in all directions.
+fn following(deck: &Deck, coupling: &Coupling) -> Result<Option<(&'static str, Value)>, String> {
+    let mut nodes = coupling.nodes(deck)?;
+    nodes.retain(|&node| node != coupling.reference || deck.body_of_node[node].is_some());
+    let body = nodes.first().and_then(|&node| deck.body_of_node[node]);
+    if body.is_none() || nodes.iter().any(|&node| deck.body_of_node[node] != body) || !coupling.is_rigid(deck) {
+        return Ok(None);
+    }
+    let by_number = || nodes.iter().filter_map(|&node| name_of_node(deck, node)).collect::<Vec<String>>();
+    Ok(Some(match &coupling.nodes {
+        Joined::Surface(name) => {
+            let surface = deck.surface_or(name)?;
+            // A boundary has the faces on the outside alone.
+            match surface.bare.is_empty() && deck.outside_and_inside(surface).1.is_empty() {
+                true => ("boundary", names_of_surface(deck, surface).remove(0).1.into()),
+                false => ("nodes", by_number().into()),
+            }
+        }
+        Joined::Nodes(set, _) if deck.nodes.sets.named(set).is_some() => {
+            ("nodes", names_of_nodes(deck, set, &nodes).remove(0).into())
+        }
+        Joined::Nodes(..) => ("nodes", by_number().into()),
+    }))
+}
+
 /// The components in equations and springs, with the places of these.
-fn terms<'a>(equations: &'a [Equation], springs: &'a [Spring]) -> impl Iterator<Item = (Component, Place)> + 'a {
+fn terms<'a>(equations: &'a [Equation], springs: &'a [Spring]) -> impl Iterator<Item = (Component, DeckPlace)> + 'a {
     let of_equations = equations.iter().map(|one| (&one.sum, one.place));
     let sums = of_equations.chain(springs.iter().map(|one| (&one.elongation, one.place)));
     sums.flat_map(|(sum, place)| sum.terms.keys().map(move |&component| (component, place)))
@@ -260,4 +327,21 @@ fn terms<'a>(equations: &'a [Equation], springs: &'a [Spring]) -> impl Iterator<
 /// Returns `true` for a component that no element has.
 fn is_loose(deck: &Deck, (node, kind): Component) -> bool {
     kind >= 3 || deck.body_of_node[node].is_none()
+}
+
+/// A reference node that is no reference point of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReferenceNode {
+    pub number: usize,
+    pub of: Of,
+}
+
+/// The entry of the scene that a reference node moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Of {
+    /// A rigid face about a centre. The directions of the node name its motions from this one: 0 for displacements, 3
+    /// for rotations.
+    Face { face: usize, first: usize, centre: [f64; 3] },
+    /// The rotations of the reference point of this number.
+    Turns { point: usize },
 }

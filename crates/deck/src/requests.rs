@@ -4,9 +4,12 @@
 use std::collections::{BTreeSet, HashMap};
 
 use super::amplitudes::{Amplitudes, Temperatures, periods};
-use super::rigid::{ReferenceNode, RigidBodies, Transforms};
+use super::contacts::bolts;
+use super::coupling::couplings;
+use super::references::ReferenceNode;
+use super::transforms::Transforms;
 use signorini_fem::Error;
-use signorini_fem::mesh::deck::{Card, Deck, Place, key};
+use signorini_fem::mesh::deck::{Deck, DeckCard, DeckPlace, key};
 
 /// The results that a deck asks for, under the labels of CalculiX in capitals.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,12 +59,7 @@ pub struct RequestedTable {
     pub contact: Option<[String; 2]>,
 }
 
-/// The cards that ask for fields.
-const FIELDS: [&str; 6] = ["NODEFILE", "ELFILE", "CONTACTFILE", "NODEOUTPUT", "ELEMENTOUTPUT", "CONTACTOUTPUT"];
-
-/// The cards that ask for tables.
-const TABLES: [&str; 3] = ["NODEPRINT", "ELPRINT", "CONTACTPRINT"];
-
+/// The cards of each kind of request: three kinds ask for fields, the others for tables.
 const KINDS: [&[&str]; 6] = [
     &["NODEFILE", "NODEOUTPUT"],
     &["ELFILE", "ELEMENTOUTPUT"],
@@ -79,57 +77,50 @@ impl Requests {
     pub fn of(deck: &Deck, references: Vec<ReferenceNode>) -> Result<Self, Error> {
         let end = Temperatures::of(deck, &Amplitudes::of(deck)?)?.end;
         let temperatures = deck.nodes.numbers.iter().copied().zip(end).collect();
-        let transforms = Transforms::of(deck, &RigidBodies::of(deck)?)?;
+        let transforms = Transforms::of(deck, &couplings(deck)?, &bolts(deck)?)?;
         let (fields, tables, others) = (BTreeSet::new(), Vec::new(), Vec::new());
         let (axes, periods) = (transforms.by_number(deck), periods(deck)?);
         let (time, period) = (periods.iter().sum(), periods.last().copied().unwrap_or(1.0));
         let (step, steps) = (deck.step, deck.steps);
         let mut requests =
             Requests { fields, tables, others, temperatures, axes, step, steps, references, time, period };
-        let is_one_of = |card: &Card, keywords: &[&str]| keywords.iter().any(|keyword| card.is(keyword));
-        for (index, card) in deck.source.cards.iter().enumerate() {
-            // The requests of a kind in a later step replace those of the steps before it.
-            let of_kind = KINDS.iter().find(|keywords| is_one_of(card, keywords));
-            let is_replaced = |keywords: &&[&str]| {
-                deck.source.cards[index..].iter().any(|other| other.step > card.step && is_one_of(other, keywords))
-            };
-            if of_kind.is_some_and(is_replaced) {
-                continue;
-            }
-            if is_one_of(card, &FIELDS) {
-                requests.fields.extend(labels(deck, card).into_iter().map(|(label, _)| label));
-                if card.says("GLOBAL", "NO") && !requests.axes.is_empty() {
-                    requests.others.push(format!("GLOBAL=NO of {} ({})", card.name, deck.source.named(card.place)));
+        for card in deck.source.cards() {
+            let place = || format!("{} ({})", card.name, deck.source.named(card.place));
+            match KINDS.iter().position(|keywords| card.is_any(keywords)) {
+                // The requests of a kind in a later step replace those of the steps before it.
+                Some(kind) if deck.source.cards().any(|other| other.step > card.step && other.is_any(KINDS[kind])) => {}
+                Some(kind) if kind >= 3 => requests.add_tables(deck, card)?,
+                Some(_) => {
+                    requests.fields.extend(labels(card).into_iter().map(|(label, _)| label));
+                    if card.says("GLOBAL", "NO") && !requests.axes.is_empty() {
+                        requests.others.push(format!("GLOBAL=NO of {}", place()));
+                    }
                 }
-            } else if is_one_of(card, &OTHERS) {
-                requests.others.push(format!("{} ({})", card.name, deck.source.named(card.place)));
-            } else if is_one_of(card, &TABLES) {
-                requests.add_tables(deck, card)?;
+                None if card.is_any(&OTHERS) => requests.others.push(place()),
+                None => {}
             }
         }
         Ok(requests)
     }
 
-    fn add_tables(&mut self, deck: &Deck, card: &Card) -> Result<(), Error> {
-        let fault = |message: String| deck.source.fault(card.place, message);
-        let (parameter, sets, of) = match card {
-            _ if card.is("NODEPRINT") => ("NSET", Some(&deck.node_sets), &deck.nodes),
-            _ if card.is("ELPRINT") => ("ELSET", Some(&deck.element_sets), &deck.elements),
-            _ => ("", None, &deck.elements),
+    fn add_tables(&mut self, deck: &Deck, card: DeckCard) -> Result<(), Error> {
+        let of = match card {
+            _ if card.is("NODEPRINT") => Some(("NSET", &deck.nodes)),
+            _ if card.is("ELPRINT") => Some(("ELSET", &deck.elements)),
+            _ => None,
         };
         let (mut set, mut numbers) = (String::new(), Vec::new());
-        if let Some(sets) = sets {
+        if let Some((parameter, of)) = of {
             let Some(name) = card.value(parameter) else {
-                return Err(fault(format!("{} names no set; write {parameter}=NAME", card.name)));
+                return Err(card.fault(format!("{} names no set; write {parameter}=NAME", card.name)));
             };
             let place = deck.source.named(card.place);
-            if card.is("ELPRINT") && deck.springs.has(name) {
+            if card.is("ELPRINT") && deck.spring_numbers.has(name) {
                 self.others.push(format!("values of springs ({place})"));
                 return Ok(());
             }
             set = key(name);
-            let members = sets.members(name, of).map_err(fault)?;
-            numbers = members.iter().map(|&member| of.numbers[member]).collect();
+            numbers = card.placed(of.members(name))?.into_iter().map(|member| of.numbers[member]).collect();
         }
         let contact = match [card.value("SLAVE"), card.value("MASTER")] {
             [Some(slave), Some(master)] => Some([slave.to_string(), master.to_string()]),
@@ -139,9 +130,9 @@ impl Requests {
             None | Some("NO") => (true, false),
             Some("YES") => (true, true),
             Some("ONLY") => (false, true),
-            Some(other) => return Err(fault(format!("TOTALS={other} of {} must be NO, YES or ONLY", card.name))),
+            Some(other) => return Err(card.fault(format!("TOTALS={other} of {} must be NO, YES or ONLY", card.name))),
         };
-        for (label, place) in labels(deck, card) {
+        for (label, place) in labels(card) {
             let (place, set, numbers) = (deck.source.named(place), set.clone(), numbers.clone());
             let (is_local, contact) = (!card.says("GLOBAL", "YES"), contact.clone());
             self.tables.push(RequestedTable { label, place, set, numbers, parts, totals, is_local, contact });
@@ -150,15 +141,12 @@ impl Requests {
     }
 }
 
-fn labels(deck: &Deck, card: &Card) -> Vec<(String, Place)> {
+fn labels(card: DeckCard) -> Vec<(String, DeckPlace)> {
     let mut labels = Vec::new();
-    for line in &card.lines {
-        for field in deck.source.fields(line) {
-            let label = key(&String::from_utf8_lossy(field));
-            if !label.is_empty() {
-                labels.push((label, line.place));
-            }
-        }
+    for fields in card.fields() {
+        let place = fields.place;
+        let all = fields.map(|field| key(&String::from_utf8_lossy(field)));
+        labels.extend(all.filter(|label| !label.is_empty()).map(|label| (label, place)));
     }
     labels
 }

@@ -1,19 +1,14 @@
 //! Supports: the cards *BOUNDARY.
 
-use std::collections::HashMap;
-
 use super::amplitudes::Amplitudes;
 use super::bodies::{name_of_node, names_of_nodes};
-use super::keywords::Entry;
-use super::references::{NO_Z, References};
-use super::rigid::{Displacements, Transforms};
+use super::keywords::SceneEntry;
+use super::references::{AXES, NO_Z, References};
+use super::transforms::{Axes, Displacements, Transforms};
 use serde_json::{Value, json};
 use signorini_fem::Error;
 use signorini_fem::geometry::{COORDINATES, dot};
-use signorini_fem::mesh::deck::{Card, Deck, Place, key};
-
-/// The directions of a node in a scene; those of a deck are numbered from 1.
-const AXES: [&str; 3] = ["x", "y", "z"];
+use signorini_fem::mesh::deck::{Deck, DeckCard, DeckPlace, Overridden, key};
 
 /// Names of dofs in decks of Abaqus, with the first directions that they hold.
 const NAMED: [(&str, &[usize]); 5] =
@@ -30,7 +25,7 @@ struct Boundaries<'a> {
 
 /// A line: the displacements that it prescribes for some nodes.
 struct Prescribed {
-    card: usize,
+    card: DeckPlace,
     target: String,
     nodes: Vec<usize>,
     /// `true` if these are a part of the nodes of the target.
@@ -38,15 +33,15 @@ struct Prescribed {
     values: [Option<f64>; 3],
     /// Rotations, which only reference nodes have.
     turns: [Option<f64>; 3],
-    place: Place,
+    place: DeckPlace,
 }
 
 /// A support that grows: lines of one card that hold the same nodes, or other nodes alike.
 struct Merged {
-    card: usize,
+    card: DeckPlace,
     values: [Option<f64>; 3],
     targets: Vec<String>,
-    place: Place,
+    place: DeckPlace,
 }
 
 impl Merged {
@@ -74,20 +69,21 @@ pub(super) fn supports(
     references: &mut References,
     transforms: &Transforms,
     earlier: &[Displacements],
-) -> Result<Vec<Entry>, Error> {
+) -> Result<Vec<SceneEntry>, Error> {
     let mut lines = Vec::new();
     for line in in_force(&Boundaries { deck, amplitudes, transforms, earlier })? {
         lines.extend(off_references(deck, line, references)?);
     }
-    replace(&mut lines);
-    let (mut supports, mut turned): (Vec<Merged>, Vec<Entry>) = (Vec::new(), Vec::new());
+    let lines = in_the_end(lines);
+    let (mut supports, mut turned): (Vec<Merged>, Vec<SceneEntry>) = (Vec::new(), Vec::new());
     for line in lines.iter().filter(|line| line.values.iter().any(Option::is_some)) {
         let in_axes = in_local_axes(deck, line, transforms)?;
+        let is_turned = |node: &usize| in_axes.iter().any(|one| one.0 == *node);
+        turned.extend(in_axes.iter().flat_map(|(node, axes)| along_axes(deck, line, *node, axes)));
         let targets = match in_axes.is_empty() && !line.is_part {
             true => names_of_nodes(deck, &line.target, &line.nodes),
             false => {
-                let plain = line.nodes.iter().filter(|node| !in_axes.iter().any(|one| one.node == **node));
-                turned.extend(in_axes.iter().flat_map(|one| one.entries(line)));
+                let plain = line.nodes.iter().filter(|node| !is_turned(node));
                 plain.filter_map(|&node| name_of_node(deck, node)).collect()
             }
         };
@@ -102,44 +98,30 @@ pub(super) fn supports(
             }
         }
     }
-    let plain = supports.into_iter().map(|one| Entry::new(support(&one.values, one.targets), one.place));
+    let plain = supports.into_iter().map(|one| SceneEntry::new(support(&one.values, one.targets), one.place));
     Ok(plain.chain(turned).collect())
 }
 
-/// A node that a line holds along local axes.
-struct Local {
-    node: usize,
-    name: String,
-    axes: [[f64; 3]; 3],
-    dimension: usize,
+/// A support for each axis along which a line holds a node.
+fn along_axes(deck: &Deck, line: &Prescribed, node: usize, axes: &Axes) -> Vec<SceneEntry> {
+    let held = line.values.iter().zip(axes).filter_map(|(value, axis)| Some(((*value)?, axis)));
+    let entry = |(value, axis): (f64, &[f64; 3])| {
+        let on = json!({"nodes": name_of_node(deck, node)});
+        SceneEntry::new(json!({"on": on, "normal": axis[..deck.dimension()], "value": value}), line.place)
+    };
+    held.map(entry).collect()
 }
 
-impl Local {
-    /// A support for each held axis.
-    fn entries(&self, line: &Prescribed) -> Vec<Entry> {
-        let held = line.values.iter().zip(&self.axes).filter_map(|(value, axis)| Some(((*value)?, axis)));
-        let entry = |(value, axis): (f64, &[f64; 3])| {
-            let value = json!({"on": {"nodes": self.name}, "normal": axis[..self.dimension], "value": value});
-            Entry::new(value, line.place)
-        };
-        held.map(entry).collect()
+/// The nodes of a line that have local axes, with these. A node that does not move at all needs none.
+fn in_local_axes(deck: &Deck, line: &Prescribed, transforms: &Transforms) -> Result<Vec<(usize, Axes)>, Error> {
+    if line.values[..deck.dimension()].iter().all(|value| *value == Some(0.0)) {
+        return Ok(Vec::new());
     }
-}
-
-/// The nodes of a line that have local axes. A node that does not move at all needs none.
-fn in_local_axes(deck: &Deck, line: &Prescribed, transforms: &Transforms) -> Result<Vec<Local>, Error> {
-    let dimension = deck.dimension();
-    let mut found = Vec::new();
-    if line.values[..dimension].iter().all(|value| *value == Some(0.0)) {
-        return Ok(found);
-    }
-    for &node in &line.nodes {
-        let axes = transforms.axes(deck, node).map_err(|message| deck.source.fault(line.place, message))?;
-        if let (Some(axes), Some(name)) = (axes, name_of_node(deck, node)) {
-            found.push(Local { node, name, axes, dimension });
-        }
-    }
-    Ok(found)
+    let of_node = |&node: &usize| match transforms.axes(deck, node) {
+        Ok(axes) => axes.filter(|_| deck.body_of_node[node].is_some()).map(|axes| Ok((node, axes))),
+        Err(message) => Some(Err(deck.fault(line.place, message))),
+    };
+    line.nodes.iter().filter_map(of_node).collect()
 }
 
 /// The rest of a line after its reference nodes are prescribed; `None` if nothing is left.
@@ -149,7 +131,7 @@ fn off_references(deck: &Deck, line: Prescribed, references: &mut References) ->
         let mut is_reference = false;
         for (axis, value) in line.values.iter().chain(&line.turns).enumerate() {
             if let Some(value) = *value {
-                let fault = |message: String| deck.source.fault(line.place, message);
+                let fault = |message: String| deck.fault(line.place, message);
                 is_reference |= references.prescribe(node, axis + 1, value).map_err(fault)?;
             }
         }
@@ -159,11 +141,11 @@ fn off_references(deck: &Deck, line: Prescribed, references: &mut References) ->
         }
     }
     if !nodes.is_empty() && line.turns.iter().flatten().any(|&value| value != 0.0) {
-        return Err(deck.source.fault(line.place, "a node of a solid has no rotation that could be prescribed"));
+        return Err(deck.fault(line.place, "a node of a solid has no rotation that could be prescribed"));
     }
     let mut line = Prescribed { nodes, ..line };
     if !line.nodes.is_empty() && names_z_of_plane(deck, &mut line.values) {
-        return Err(deck.source.fault(line.place, NO_Z));
+        return Err(deck.fault(line.place, NO_Z));
     }
     Ok((!line.nodes.is_empty()).then_some(line))
 }
@@ -174,7 +156,7 @@ fn in_force(given: &Boundaries) -> Result<Vec<Prescribed>, Error> {
     let mut lines: Vec<Prescribed> = Vec::new();
     // The number of lines before the last step that has begun.
     let mut of_model = None;
-    for (index, card) in deck.source.cards.iter().enumerate() {
+    for card in deck.source.cards() {
         if card.is("STEP") {
             of_model = Some(lines.len());
         }
@@ -182,16 +164,16 @@ fn in_force(given: &Boundaries) -> Result<Vec<Prescribed>, Error> {
             continue;
         }
         if card.value("TYPE").is_some_and(|value| key(value) != "DISPLACEMENT") {
-            return Err(deck.source.fault(card.place, "only displacements are prescribed in an equilibrium"));
+            return Err(card.fault("only displacements are prescribed in an equilibrium"));
         }
         if card.is_new() {
             if of_model.is_some_and(|before| lines.len() > before) {
-                return Err(deck.source.fault(card.place, "OP=NEW must stand on the first *BOUNDARY of the step"));
+                return Err(card.fault("OP=NEW must stand on the first *BOUNDARY of the step"));
             }
             lines.clear();
             of_model = of_model.map(|_| 0);
         }
-        for line in read(deck, card, index, amplitudes.factor(deck, card)?)? {
+        for line in read(deck, card, amplitudes.factor(deck, card)?)? {
             match card.has("FIXED") {
                 true => lines.extend(given.fixed(line, card.step)?),
                 false => lines.push(line),
@@ -212,14 +194,13 @@ impl Boundaries<'_> {
                      write the displacement itself, without FIXED",
                     step - 1
                 );
-                self.deck.source.fault(line.place, message)
+                self.deck.fault(line.place, message)
             })?),
         };
         let of_node = |&node: &usize| {
             let number = self.deck.nodes.numbers[node];
             let at = before.and_then(|before| before.get(&number)).copied().unwrap_or_default();
-            let axes =
-                self.transforms.axes(self.deck, node).map_err(|message| self.deck.source.fault(line.place, message));
+            let axes = self.transforms.axes(self.deck, node).map_err(|message| self.deck.fault(line.place, message));
             let along = axes?.unwrap_or(COORDINATES).map(|axis| dot(axis, [at[0], at[1], at[2]]));
             let held = |given: [Option<f64>; 3], at: [f64; 3]| [0, 1, 2].map(|axis| given[axis].map(|_| at[axis]));
             let (values, turns) = (held(line.values, along), held(line.turns, [at[3], at[4], at[5]]));
@@ -244,12 +225,10 @@ fn support(values: &[Option<f64>; 3], mut targets: Vec<String>) -> Value {
 }
 
 /// The lines of a card: nodes, first dof, last dof, displacement.
-fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Prescribed>, Error> {
+fn read(deck: &Deck, card: DeckCard, factor: f64) -> Result<Vec<Prescribed>, Error> {
     let mut lines = Vec::with_capacity(card.lines.len());
-    for line in &card.lines {
-        let mut fields = deck.source.fields(line);
-        let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
-        let nodes = deck.node_sets.members(&target, &deck.nodes).map_err(|message| fields.fault(message))?;
+    for mut fields in card.fields() {
+        let (target, nodes) = deck.nodes.target(&mut fields)?;
         let label = fields.clone().text().map(|text| key(&text)).unwrap_or_default();
         let (mut values, mut turns) = ([None; 3], [None; 3]);
         if let Some((_, axes)) = NAMED.iter().find(|(name, _)| *name == label) {
@@ -278,7 +257,7 @@ fn read(deck: &Deck, card: &Card, index: usize, factor: f64) -> Result<Vec<Presc
             }
         }
         fields.pass_over();
-        lines.push(Prescribed { card: index, target, nodes, is_part: false, values, turns, place: line.place });
+        lines.push(Prescribed { card: card.place, target, nodes, is_part: false, values, turns, place: fields.place });
     }
     Ok(lines)
 }
@@ -289,37 +268,30 @@ fn names_z_of_plane(deck: &Deck, values: &mut [Option<f64>; 3]) -> bool {
     is_plane && values[2].take().is_some_and(|value| value != 0.0)
 }
 
-/// A later line replaces the displacements of its nodes in earlier lines: these keep their other nodes.
-fn replace(lines: &mut Vec<Prescribed>) {
-    let mut last: HashMap<(usize, usize), usize> = HashMap::new();
+/// The lines as they act in the end. A later line replaces the displacements of its nodes in earlier lines: these keep
+/// their other nodes.
+fn in_the_end(lines: Vec<Prescribed>) -> Vec<Prescribed> {
+    let mut last = Overridden::default();
     for (index, line) in lines.iter().enumerate() {
         for axis in (0..3).filter(|&axis| line.values[axis].is_some()) {
-            line.nodes.iter().for_each(|&node| _ = last.insert((node, axis), index));
+            line.nodes.iter().for_each(|&node| last.give((node, axis), index));
         }
     }
     let mut left = Vec::with_capacity(lines.len());
-    for (index, mut line) in std::mem::take(lines).into_iter().enumerate() {
+    for (index, mut line) in lines.into_iter().enumerate() {
         let mut parts = Vec::new();
         for axis in 0..3 {
-            let nodes: Vec<usize> =
-                line.nodes.iter().copied().filter(|&node| last.get(&(node, axis)) == Some(&index)).collect();
+            let acts = |node: &usize| last.acts(&(*node, axis), index);
+            let nodes: Vec<usize> = line.nodes.iter().copied().filter(acts).collect();
             if nodes.len() < line.nodes.len() {
                 let mut values = [None; 3];
                 values[axis] = line.values[axis].take();
-                let (target, place) = (line.target.clone(), line.place);
-                parts.push(Prescribed {
-                    nodes,
-                    values,
-                    target,
-                    place,
-                    is_part: true,
-                    turns: [None; 3],
-                    card: line.card,
-                });
+                let (target, is_part, turns) = (line.target.clone(), true, [None; 3]);
+                parts.push(Prescribed { nodes, values, target, is_part, turns, ..line });
             }
         }
         left.push(line);
         left.extend(parts.into_iter().filter(|part| !part.nodes.is_empty()));
     }
-    *lines = left;
+    left
 }

@@ -145,6 +145,17 @@ pub fn rotation(a: f64, b: f64, both: f64) -> (f64, f64) {
     (cosine, tangent * cosine)
 }
 
+/// The value at `t` of straight lines between points `(t, value)`, t increasing; constant before the first and after
+/// the last, 1 without points.
+pub fn between(points: &[(f64, f64)], t: f64) -> f64 {
+    let after = points.partition_point(|&(at, _)| at <= t);
+    match (after.checked_sub(1).and_then(|before| points.get(before)), points.get(after)) {
+        (Some(&(from, first)), Some(&(to, last))) => first + (last - first) * (t - from) / (to - from),
+        (Some(&(_, value)), None) | (None, Some(&(_, value))) => value,
+        (None, None) => 1.0,
+    }
+}
+
 /// Nodes in increasing order: the same for a face of any orientation.
 pub fn sorted(nodes: impl IntoIterator<Item = usize>) -> Vec<usize> {
     let mut nodes: Vec<usize> = nodes.into_iter().collect();

@@ -36,8 +36,6 @@ mod step;
 pub use integrator::Integrator;
 #[doc(hidden)]
 pub use integrator::bytes_of_motion;
-#[doc(hidden)]
-pub use problem::between;
 pub use problem::{DynamicProblem, TimeFunction};
 #[doc(hidden)]
 pub use scheme::{MOST_IN_CONTACT, frequency_bound};

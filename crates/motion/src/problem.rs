@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use signorini_fem::geometry::between;
 use signorini_qp as qp;
 use signorini_qp::Error;
 use signorini_qp::{ContactProblem, SparseMatrix, SymmetricMatrix, dot};
@@ -345,16 +346,5 @@ impl TimeFunction {
                 inside => (PI * inside).sin(),
             },
         }
-    }
-}
-
-/// The value at `t` of straight lines between points `(t, value)`, t increasing; constant before the first and after
-/// the last, 1 without points.
-pub fn between(points: &[(f64, f64)], t: f64) -> f64 {
-    let after = points.partition_point(|&(at, _)| at <= t);
-    match (after.checked_sub(1).and_then(|before| points.get(before)), points.get(after)) {
-        (Some(&(from, first)), Some(&(to, last))) => first + (last - first) * (t - from) / (to - from),
-        (Some(&(_, value)), None) | (None, Some(&(_, value))) => value,
-        (None, None) => 1.0,
     }
 }

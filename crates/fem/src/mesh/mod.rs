@@ -5,6 +5,7 @@ pub mod bisection;
 mod boundary;
 pub mod deck;
 mod faces;
+mod file;
 pub mod gmsh;
 pub mod pieces;
 
@@ -13,7 +14,6 @@ pub use axis::{Axis, Zone};
 pub use boundary::Boundary;
 pub use boundary::{ElementGroup, NodeNames};
 
-use crate::element::{Cell, NonPositiveJacobian, Rule, Tabulated};
 use crate::error::Error;
 use crate::geometry::distance;
 use std::collections::HashSet;
@@ -347,35 +347,6 @@ pub fn extent(nodes: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
         }
     }
     (low, high)
-}
-
-/// A node of a mesh file is outside the plane if it is farther from it than this times the size of the body: far above
-/// the rounding of a mesh generator and far below the size of any cell.
-const FLAT: f64 = 1e-9;
-
-/// Puts nodes that lie in a plane z = const, or on a line along x, at 0 there; the first that does not, and the axis.
-fn flatten(dimension: usize, nodes: &mut [[f64; 3]]) -> Result<(), (usize, usize)> {
-    let Some(&first) = nodes.first() else { return Ok(()) };
-    let away = |at: &[f64; 3], axis: usize| (at[axis] - first[axis]).abs();
-    let size = nodes.iter().flat_map(|at| [0, 1, 2].map(|axis| away(at, axis))).fold(0.0, f64::max);
-    for (node, at) in nodes.iter_mut().enumerate() {
-        for axis in dimension..3 {
-            if away(at, axis) > FLAT * size {
-                return Err((node, axis));
-            }
-            at[axis] = 0.0;
-        }
-    }
-    Ok(())
-}
-
-/// The first element that is inverted or without volume, and why.
-fn unfit(kind: ElementKind, nodes: &[[f64; 3]], connectivity: &[usize]) -> Option<(usize, NonPositiveJacobian)> {
-    let table = Tabulated::new(kind.reference(), Rule::Straight);
-    connectivity.chunks_exact(kind.nodes()).enumerate().find_map(|(element, own)| {
-        let cell = Cell::at(kind.reference(), |local| nodes[own[local]]);
-        Some((element, cell.check(&table).err()?))
-    })
 }
 
 /// An [`Error::Mesh`].

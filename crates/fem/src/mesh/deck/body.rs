@@ -1,12 +1,12 @@
 //! The mesh of a body: elements of groups, their nodes, their sets, its surfaces as boundaries.
 
 use super::content::Deck;
-use super::source::{Place, key};
+use super::source::{DeckPlace, key};
 use crate::element::ElementKind;
 use crate::error::{Error, nearly};
 use crate::formulation::positive;
-use crate::mesh::faces::chained;
-use crate::mesh::{Boundary, ElementGroup, Mesh, NodeNames, fail, flatten, unfit};
+use crate::mesh::file::{FileBody, Misfit, Numbers, boundary};
+use crate::mesh::{Boundary, ElementGroup, Mesh, NodeNames, fail};
 
 impl Deck {
     /// The mesh of the elements in the groups of these names, element sets or bodies, or, without a name, of all
@@ -17,39 +17,24 @@ impl Deck {
     pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;
         let elements = self.elements_of(groups)?;
-        let kind = self.kind(&elements)?;
-        let mut numbers: Vec<Option<usize>> = vec![None; self.nodes.len()];
-        for &element in &elements {
-            self.nodes_of(element).iter().for_each(|&node| numbers[node] = Some(0));
-        }
-        let mut nodes = Vec::new();
-        let used = numbers.iter_mut().enumerate().filter_map(|(place, number)| Some((place, number.as_mut()?)));
-        let mut places = Vec::new();
-        for (place, number) in used {
-            *number = nodes.len();
-            nodes.push(self.at[place].map(|value| value * scale));
-            places.push(place);
-        }
-        flatten(kind.dimension(), &mut nodes).map_err(|(node, _)| {
-            let place = places[node];
-            let (number, z) = (self.nodes.numbers[place], self.at[place][2]);
-            let message = format!(
-                "node {number} has z = {z}, but the first node of the body has another; a plane body lies in z = const"
-            );
-            self.source.fault(self.node_places[place], message)
+        let connectivity = elements.iter().flat_map(|&element| self.nodes_of(element)).copied().collect();
+        let (kind, groups) = (self.kind(&elements)?, self.groups(&elements));
+        let body = FileBody { kind, places: &self.at, connectivity, groups, turns: false };
+        let (mesh, numbers) = body.into_mesh(scale, |misfit| match misfit {
+            Misfit::OffPlane([_, place], _) => {
+                let (number, z) = (self.nodes.numbers[place], self.at[place][2]);
+                let message = format!(
+                    "node {number} has z = {z}, but the first node of the body has another; a plane body lies in z = const"
+                );
+                self.fault(self.node_places[place], message)
+            }
+            Misfit::Element(element, reason) => {
+                let number = self.elements.numbers[elements[element]];
+                self.fault(self.element_list[elements[element]].place, format!("element {number}: {reason}"))
+            }
         })?;
-        let mut connectivity = Vec::with_capacity(elements.len() * kind.nodes());
-        for &element in &elements {
-            connectivity.extend(self.nodes_of(element).iter().filter_map(|&node| numbers[node]));
-        }
-        if let Some((element, reason)) = unfit(kind, &nodes, &connectivity) {
-            let number = self.elements.numbers[elements[element]];
-            let place = self.element_list[elements[element]].place;
-            return Err(self.source.fault(place, format!("element {number}: {reason}")));
-        }
-        let mesh = Mesh::new(nodes, kind, connectivity, Vec::new())?
-            .with_groups(self.groups(&elements))
-            .with_node_names(self.names(&places, &numbers))
+        let mesh = mesh
+            .with_node_names(self.names(&numbers))
             .with_element_numbers(elements.iter().map(|&element| self.elements.numbers[element]).collect());
         self.with_boundaries(mesh, &elements)
     }
@@ -62,13 +47,13 @@ impl Deck {
         let mut elements = Vec::new();
         for name in groups {
             let body = (0..self.bodies).find(|&body| Deck::body_name(body) == *name);
-            match (body, self.element_sets.named(name)) {
+            match (body, self.elements.sets.named(name)) {
                 (Some(body), _) => {
                     elements.extend((0..self.elements.len()).filter(|&element| self.body_of_element[element] == body));
                 }
                 (None, Some(set)) => elements.extend(&set.members),
                 (None, None) => {
-                    let sets = self.element_sets.all.iter().map(|set| set.name.clone());
+                    let sets = self.elements.sets.all.iter().map(|set| set.name.clone());
                     let names: Vec<String> = sets.chain((0..self.bodies).map(Deck::body_name)).collect();
                     let meant = nearly(name, names.iter().map(String::as_str));
                     return fail(format!(
@@ -95,7 +80,7 @@ impl Deck {
                 let other = self.element_list[other];
                 let [one, two] = [first, other].map(|element| element.of_type.name);
                 let message = format!("the body mixes {one} and {two}; it must have one kind of element");
-                Err(self.source.fault(other.place, message))
+                Err(self.fault(other.place, message))
             }
         }
     }
@@ -103,19 +88,17 @@ impl Deck {
     /// The element sets that have some of these elements, given in increasing order.
     fn groups(&self, elements: &[usize]) -> Vec<ElementGroup> {
         let own = |members: &[usize]| members.iter().filter_map(|member| elements.binary_search(member).ok()).collect();
-        let groups = self.element_sets.all.iter();
+        let groups = self.elements.sets.all.iter();
         let groups = groups.map(|set| ElementGroup { name: set.name.clone(), elements: own(&set.members) });
         groups.filter(|group| !group.elements.is_empty()).collect()
     }
 
     /// The names of the nodes: sets and numbers.
-    fn names(&self, places: &[usize], numbers: &[Option<usize>]) -> NodeNames {
+    fn names(&self, numbers: &Numbers) -> NodeNames {
         let of_set = |members: &[usize]| members.iter().filter_map(|&place| numbers[place]).collect::<Vec<usize>>();
-        let sets = self.node_sets.all.iter().map(|set| (set.name.clone(), of_set(&set.members)));
-        NodeNames::new(
-            sets.filter(|(_, nodes)| !nodes.is_empty()),
-            places.iter().map(|&place| self.nodes.numbers[place]).collect(),
-        )
+        let sets = self.nodes.sets.all.iter().map(|set| (set.name.clone(), of_set(&set.members)));
+        let own = self.nodes.numbers.iter().zip(numbers).filter(|(_, number)| number.is_some());
+        NodeNames::new(sets.filter(|(_, nodes)| !nodes.is_empty()), own.map(|(&own, _)| own).collect())
     }
 
     /// The coordinates of a node, by its place.
@@ -124,20 +107,18 @@ impl Deck {
     }
 
     /// The place of the first element of a body, numbered from 0.
-    pub fn place_of_body(&self, body: usize) -> Place {
+    pub fn place_of_body(&self, body: usize) -> DeckPlace {
         let first = self.body_of_element.iter().position(|&own| own == body);
-        first.map_or(Place::default(), |element| self.element_list[element].place)
+        first.map_or(DeckPlace::default(), |element| self.element_list[element].place)
     }
 }
 
 impl Deck {
     /// Returns `true` if a line of one of these cards names a surface.
     fn is_in(&self, keywords: &[&str], surface: &str) -> bool {
-        let cards = self.source.cards.iter().filter(|card| keywords.iter().any(|keyword| card.is(keyword)));
-        cards.flat_map(|card| &card.lines).any(|line| {
-            let mut fields = self.source.fields(line);
-            fields.by_ref().any(|field| key(&String::from_utf8_lossy(field)) == key(surface))
-        })
+        let cards = self.source.cards().filter(|card| card.is_any(keywords));
+        let mut fields = cards.flat_map(|card| card.fields()).flatten();
+        fields.any(|field| key(&String::from_utf8_lossy(field)) == key(surface))
     }
 
     /// The mesh with the surfaces that have facets on it; `elements` are its elements in the deck, increasing. Of a
@@ -153,8 +134,8 @@ impl Deck {
                 let connectivity: Vec<usize> = nodes.map(|(element, local)| mesh.element(element)[local]).collect();
                 Boundary::new(surface.name.as_str(), facet, connectivity)
             };
-            let mut boundary = boundary_of(&surface.faces);
-            if let Some(within) = mesh.inner_facet(&boundary) {
+            let mut found = boundary_of(&surface.faces);
+            if let Some(within) = mesh.inner_facet(&found) {
                 let is_pressed = self.pressures.iter().any(|pressure| pressure.surface == surface.name);
                 if self.is_in(&["CONTACTPAIR", "TIE"], &surface.name) {
                     let mut own = surface.faces.iter().filter(|face| elements.binary_search(&face.0).is_ok());
@@ -165,15 +146,13 @@ impl Deck {
                         self.elements.numbers[element],
                         surface.name
                     );
-                    return Err(self.source.fault(surface.place, message));
+                    return Err(self.fault(surface.place, message));
                 } else if !is_pressed && !self.is_in(&["DSLOAD"], &surface.name) {
                     continue;
                 }
-                boundary = boundary_of(&self.outside_and_inside(surface).0);
+                found = boundary_of(&self.outside_and_inside(surface).0);
             }
-            if !boundary.connectivity.is_empty() {
-                boundaries.push(Boundary { connectivity: chained(facet, boundary.connectivity), ..boundary });
-            }
+            boundaries.extend(boundary(&mesh, &surface.name, found.connectivity));
         }
         mesh.boundaries = boundaries;
         Ok(mesh)

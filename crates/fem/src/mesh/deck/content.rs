@@ -3,9 +3,9 @@
 use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 
-use super::kinds::{DeckElementType, Space, SpringElement, SpringElements, SpringType, element_type, refusal};
-use super::sets::{FacePressure, Numbered, Sets, Surfaces};
-use super::source::{Card, Place, Source, key};
+use super::kinds::{DeckElementType, Space, SpringElement, SpringType, element_type, refusal};
+use super::sets::{ByName, DeckSurface, FacePressure, Numbered};
+use super::source::{Card, DeckCard, DeckPlace, DeckSource, key};
 use crate::element::ElementKind;
 use crate::error::Error;
 use crate::geometry::{length, minus};
@@ -13,12 +13,14 @@ use crate::mesh::MAX_NODES;
 use signorini_linear::Forest;
 
 /// An input deck, read with the files that it includes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Deck {
-    pub source: Source,
+    pub source: DeckSource,
+    /// What is read, but may not be meant: a sentence with its place.
+    pub noted: Vec<(DeckPlace, String)>,
     pub nodes: Numbered,
     pub(super) at: Vec<[f64; 3]>,
-    pub(super) node_places: Vec<Place>,
+    pub(super) node_places: Vec<DeckPlace>,
     pub elements: Numbered,
     pub element_list: Vec<DeckElement>,
     /// The nodes of all elements, by their places from 0.
@@ -27,14 +29,13 @@ pub struct Deck {
     pub doubled: Vec<(usize, usize)>,
     /// The surfaces on both sides of each cut.
     pub cuts: Vec<[String; 2]>,
-    pub node_sets: Sets,
-    pub element_sets: Sets,
-    pub surfaces: Surfaces,
-    pub springs: SpringElements,
+    pub surfaces: ByName<DeckSurface>,
+    pub springs: Vec<SpringElement>,
+    pub spring_numbers: Numbered,
     /// The faces that the cards *DLOAD press.
     pub pressures: Vec<FacePressure>,
     /// The lines of *DSLOAD whose faces a later step presses anew, or frees.
-    pub replaced: HashSet<Place>,
+    pub replaced: HashSet<DeckPlace>,
     /// The step whose loads act, from 1, and the number of steps.
     pub step: usize,
     pub steps: usize,
@@ -52,7 +53,7 @@ pub struct DeckElement {
     pub of_type: &'static DeckElementType,
     /// The element of this library for it; any for one that is left out.
     pub kind: ElementKind,
-    pub place: Place,
+    pub place: DeckPlace,
     /// Index of the first node of the element in the connectivity of the deck.
     pub(super) start: usize,
 }
@@ -61,91 +62,63 @@ impl Deck {
     /// Reads a deck up to the end of a step, from 1, or of the last one. The files that it includes must lie in the
     /// folder `within` or below it; anywhere without one.
     pub fn read(path: &Path, within: Option<&Path>, step: Option<usize>) -> Result<Self, Error> {
-        let mut source = Source::read(path, within)?;
-        let mut cards = std::mem::take(&mut source.cards);
+        let mut source = DeckSource::read(path, within)?;
+        let steps = source.cards.last().map_or(0, |last| last.step);
         let mut deck = Deck {
-            source,
-            nodes: Numbered::default(),
-            at: Vec::new(),
-            node_places: Vec::new(),
-            elements: Numbered::default(),
-            element_list: Vec::new(),
-            connectivity: Vec::new(),
-            doubled: Vec::new(),
-            cuts: Vec::new(),
-            node_sets: Sets::new("node"),
-            element_sets: Sets::new("element"),
-            surfaces: Surfaces::default(),
-            springs: SpringElements::new(),
-            pressures: Vec::new(),
-            replaced: HashSet::new(),
-            step: 0,
-            steps: 0,
-            later: Vec::new(),
-            body_of_element: Vec::new(),
-            body_of_node: Vec::new(),
-            bodies: 0,
+            nodes: Numbered::new("node"),
+            elements: Numbered::new("element"),
+            spring_numbers: Numbered::new("element"),
+            noted: std::mem::take(&mut source.noted),
+            step: step.unwrap_or(steps),
+            steps,
+            ..Deck::default()
         };
-        for card in &mut cards {
-            deck.steps += usize::from(card.is("STEP"));
-            card.step = deck.steps;
+        if step.is_some_and(|step| !(1..=steps).contains(&step)) {
+            let message = format!("the deck has no step {}; its steps are 1 to {steps}", deck.step);
+            return Err(source.fault(DeckPlace { file: 0, line: 1 }, message));
         }
-        deck.step = step.unwrap_or(deck.steps);
-        if step.is_some_and(|step| !(1..=deck.steps).contains(&step)) {
-            let message = format!("the deck has no step {}; its steps are 1 to {}", deck.step, deck.steps);
-            return Err(deck.source.fault(Place { file: 0, line: 1 }, message));
-        }
-        deck.later = cards.split_off(cards.partition_point(|card| card.step <= deck.step));
-        for card in &cards {
+        deck.later = source.cards.split_off(source.cards.partition_point(|card| card.step <= deck.step));
+        for card in source.cards() {
             if card.is("NODE") {
                 deck.read_nodes(card)?;
             } else if card.is("ELEMENT") {
                 deck.read_elements(card)?;
             }
         }
-        deck.replace_numbers()?;
-        cards.iter().filter(|card| card.is("ELEMENT")).try_for_each(|card| deck.read_springs(card))?;
-        for card in &cards {
+        deck.replace_numbers(&source)?;
+        source.cards_of("ELEMENT").try_for_each(|card| deck.read_springs(card))?;
+        for card in source.cards() {
             if card.is("NSET") {
                 deck.add_nodes_of_elements(card)?;
-                deck.node_sets.read(&deck.source, card, &deck.nodes)?;
-            } else if card.is("ELSET") && deck.begins_with_spring(card) {
-                deck.springs.sets.read(&deck.source, card, &deck.springs.numbers)?;
+                deck.nodes.read(card)?;
             } else if card.is("ELSET") {
-                deck.element_sets.read(&deck.source, card, &deck.elements)?;
+                // A set that begins with a spring, or with a set of them, has springs alone.
+                let first = card.fields().next().and_then(|mut fields| fields.text());
+                match first.is_some_and(|target| deck.spring_numbers.has(&target)) {
+                    true => deck.spring_numbers.read(card)?,
+                    false => deck.elements.read(card)?,
+                }
             }
         }
-        deck.leave_out(&cards)?;
-        for card in &cards {
-            if card.is("SURFACE") {
-                deck.read_surface(card)?;
-            }
-        }
-        for (index, card) in cards.iter().enumerate().filter(|(_, card)| card.is("DLOAD")) {
-            deck.read_pressures(index, card)?;
-        }
+        deck.leave_out(&source)?;
+        source.cards_of("SURFACE").try_for_each(|card| deck.read_surface(card))?;
+        source.cards_of("DLOAD").try_for_each(|card| deck.read_pressures(card))?;
         if deck.step > 1 {
-            deck.replace_pressures(&cards)?;
+            deck.replace_pressures(&source)?;
         }
-        for card in cards.iter().filter(|card| card.is("PRE-TENSIONSECTION")) {
-            deck.cut(card)?;
-        }
+        source.cards_of("PRE-TENSIONSECTION").try_for_each(|card| deck.cut(card))?;
         deck.find_bodies();
-        deck.source.cards = cards;
+        deck.source = source;
         Ok(deck)
     }
 
-    fn read_nodes(&mut self, card: &Card) -> Result<(), Error> {
+    fn read_nodes(&mut self, card: DeckCard) -> Result<(), Error> {
         let mut members = Vec::with_capacity(card.lines.len());
         // The first such line is named.
         let mut again = None;
-        for line in &card.lines {
-            let mut fields = self.source.fields(line);
+        for mut fields in card.fields() {
             let number = fields.whole("the number of a node")?;
-            let mut at = [0.0; 3];
-            for (value, name) in at.iter_mut().zip(["x", "y", "z"]) {
-                *value = fields.finite_or_zero(format_args!("the {name} of node {number}"))?;
-            }
+            let at = fields.vector(format_args!("node {number}"))?;
             fields.pass_over();
             let place = match self.nodes.place(number) {
                 Some(place) => place,
@@ -155,7 +128,7 @@ impl Deck {
                 None => {
                     self.nodes.add(number);
                     self.at.push(at);
-                    self.node_places.push(line.place);
+                    self.node_places.push(fields.place);
                     self.nodes.len() - 1
                 }
             };
@@ -163,40 +136,37 @@ impl Deck {
             if moved > 0.0 && again.is_none() {
                 let message =
                     format!("node {number} is given twice, {moved:.6e} apart; the last place counts, as in CalculiX");
-                again = Some((line.place, message));
+                again = Some((fields.place, message));
             }
-            (self.at[place], self.node_places[place]) = (at, line.place);
+            (self.at[place], self.node_places[place]) = (at, fields.place);
             members.push(place);
         }
-        self.source.noted.extend(again);
-        if let Some(set) = self.node_sets.name_in(&self.source, card)? {
+        self.noted.extend(again);
+        if let Some(set) = self.nodes.name_in(card)? {
             members.sort_unstable();
             members.dedup();
-            self.node_sets.extend(set, members);
+            self.nodes.extend(set, members);
         }
         Ok(())
     }
 
     /// Adds the nodes of a set of elements to the set of nodes that a card makes of them.
-    fn add_nodes_of_elements(&mut self, card: &Card) -> Result<(), Error> {
-        let (Some(elements), Some(name)) = (card.value("ELSET"), self.node_sets.name_in(&self.source, card)?) else {
-            return Ok(());
-        };
-        let members = self.element_sets.members(elements, &self.elements);
-        let members = members.map_err(|message| self.source.fault(card.place, message))?;
+    fn add_nodes_of_elements(&mut self, card: DeckCard) -> Result<(), Error> {
+        let (Some(elements), Some(name)) = (card.value("ELSET"), self.nodes.name_in(card)?) else { return Ok(()) };
+        let members = card.placed(self.elements.members(elements))?;
         let nodes: BTreeSet<usize> = members.iter().flat_map(|&element| self.nodes_of(element)).copied().collect();
-        self.node_sets.extend(name, nodes);
+        self.nodes.extend(name, nodes);
         Ok(())
     }
 
     /// Leaves out lines and sheets that no section names and that lie on elements of more dimensions, as mesh
     /// generators write them beside a body. Their sets lose them; sets of their nodes stay.
-    fn leave_out(&mut self, cards: &[Card]) -> Result<(), Error> {
+    fn leave_out(&mut self, source: &DeckSource) -> Result<(), Error> {
         let dimension = |element: usize| self.element_list[element].of_type.dimension();
         let most = (0..self.elements.len()).map(dimension).max().unwrap_or_default();
         let mut named = vec![false; self.elements.len()];
-        for card in cards.iter().filter(|card| card.is("SOLIDSECTION")) {
-            let set = card.value("ELSET").and_then(|name| self.element_sets.named(name));
+        for card in source.cards_of("SOLIDSECTION") {
+            let set = card.value("ELSET").and_then(|name| self.elements.sets.named(name));
             set.into_iter().flat_map(|set| &set.members).for_each(|&element| named[element] = true);
         }
         let is_beside = |element: usize| dimension(element) < most && !named[element];
@@ -210,22 +180,20 @@ impl Deck {
         if let Some(wrong) =
             kept.iter().map(|&element| self.element_list[element]).find(|one| one.of_type.kind().is_none())
         {
-            let is_card = |card: &&Card| {
-                card.is("ELEMENT") && card.value("TYPE").is_some_and(|own| key(own) == wrong.of_type.name)
-            };
-            let place = cards.iter().find(is_card).map_or(wrong.place, |card| card.place);
+            let mut own = source.cards_of("ELEMENT").filter(|card| card.says("TYPE", wrong.of_type.name));
+            let place = own.next().map_or(wrong.place, |card| card.place);
             let message = format!(
                 "{}; such elements are left out if no section names them and all their nodes belong to the body",
                 refusal(wrong.of_type.name)
             );
-            return Err(self.source.fault(place, message));
+            return Err(source.fault(place, message));
         }
         let Some(&first) = out.first() else { return Ok(()) };
         let types: BTreeSet<&str> = out.iter().map(|&element| self.element_list[element].of_type.name).collect();
         let types = types.into_iter().collect::<Vec<_>>().join(", ");
         let message =
             format!("{} elements of {types} lie on the body, no section names them: they are left out", out.len());
-        self.source.noted.push((self.element_list[first].place, message));
+        self.noted.push((self.element_list[first].place, message));
         let (list, connectivity) = (std::mem::take(&mut self.element_list), std::mem::take(&mut self.connectivity));
         let mut places = vec![None; list.len()];
         for (place, &element) in kept.iter().enumerate() {
@@ -235,24 +203,22 @@ impl Deck {
             self.connectivity.extend(&connectivity[start..start + of_type.nodes]);
         }
         self.elements.renumber(&places);
-        self.element_sets.renumber(&places);
         Ok(())
     }
 
-    fn read_elements(&mut self, card: &Card) -> Result<(), Error> {
+    fn read_elements(&mut self, card: DeckCard) -> Result<(), Error> {
         let Some(name) = card.value("TYPE") else {
-            return Err(self.source.fault(card.place, "*ELEMENT has no type; write TYPE=C3D10 or another"));
+            return Err(card.fault("*ELEMENT has no type; write TYPE=C3D10 or another"));
         };
         if SpringType::named(&key(name)).is_some() {
             return Ok(());
         }
-        let of_type = element_type(&key(name)).map_err(|message| self.source.fault(card.place, message))?;
+        let of_type = card.placed(element_type(&key(name)))?;
         let kind = of_type.kind().unwrap_or(ElementKind::ALL[0]);
         let first = self.elements.len();
         // An element may go on in the next lines.
-        let mut open: Option<(usize, Place)> = None;
-        for line in &card.lines {
-            let mut fields = self.source.fields(line);
+        let mut open: Option<(usize, DeckPlace)> = None;
+        for mut fields in card.fields() {
             let (number, place) = match open {
                 Some(open) => open,
                 None => {
@@ -261,8 +227,8 @@ impl Deck {
                         return Err(fields.fault(format!("element {number} is given twice")));
                     }
                     let start = self.connectivity.len();
-                    self.element_list.push(DeckElement { of_type, kind, place: line.place, start });
-                    (number, line.place)
+                    self.element_list.push(DeckElement { of_type, kind, place: fields.place, start });
+                    (number, fields.place)
                 }
             };
             let wanted = (self.element_list.len() - first) * of_type.nodes + self.element_list[first].start;
@@ -276,20 +242,19 @@ impl Deck {
         if let Some((number, place)) = open {
             let found = self.connectivity.len() - self.element_list.last().map_or(0, |element| element.start);
             let message = format!("element {number} has {found} nodes, but {} has {}", of_type.name, of_type.nodes);
-            return Err(self.source.fault(place, message));
+            return Err(card.source.fault(place, message));
         }
-        if let Some(set) = self.element_sets.name_in(&self.source, card)? {
-            self.element_sets.extend(set, first..self.elements.len());
+        if let Some(set) = self.elements.name_in(card)? {
+            self.elements.extend(set, first..self.elements.len());
         }
         Ok(())
     }
 
     /// Reads a card *ELEMENT of springs; all nodes are read before.
-    fn read_springs(&mut self, card: &Card) -> Result<(), Error> {
+    fn read_springs(&mut self, card: DeckCard) -> Result<(), Error> {
         let Some(of_type) = card.value("TYPE").and_then(|name| SpringType::named(&key(name))) else { return Ok(()) };
-        let first = self.springs.all.len();
-        for line in &card.lines {
-            let mut fields = self.source.fields(line);
+        let first = self.springs.len();
+        for mut fields in card.fields() {
             let number = fields.whole("the number of an element")?;
             let mut nodes = Vec::with_capacity(of_type.nodes());
             for _ in 0..of_type.nodes() {
@@ -298,36 +263,29 @@ impl Deck {
                 nodes.push(self.nodes.place(node).ok_or_else(missing)?);
             }
             fields.end()?;
-            if self.elements.place(number).is_some() || !self.springs.numbers.add(number) {
+            if self.elements.place(number).is_some() || !self.spring_numbers.add(number) {
                 return Err(fields.fault(format!("element {number} is given twice")));
             }
-            self.springs.all.push(SpringElement { of_type, nodes, place: line.place });
+            self.springs.push(SpringElement { of_type, nodes, place: fields.place });
         }
-        if let Some(set) = self.springs.sets.name_in(&self.source, card)? {
-            self.springs.sets.extend(set, first..self.springs.all.len());
+        if let Some(set) = self.spring_numbers.name_in(card)? {
+            self.spring_numbers.extend(set, first..self.springs.len());
         }
         Ok(())
     }
 
-    /// Returns `true` for a card *ELSET that begins with a spring, or with a set of them.
-    fn begins_with_spring(&self, card: &Card) -> bool {
-        let first = card.lines.first().and_then(|line| self.source.fields(line).text());
-        first.is_some_and(|target| self.springs.has(&target))
-    }
-
     /// Replaces the numbers of nodes in elements by their places.
-    fn replace_numbers(&mut self) -> Result<(), Error> {
+    fn replace_numbers(&mut self, source: &DeckSource) -> Result<(), Error> {
         if self.elements.len() == 0 {
-            return Err(self
-                .source
-                .fault(Place { file: 0, line: 1 }, "the deck has no elements; a body needs at least one"));
+            let message = "the deck has no elements; a body needs at least one";
+            return Err(source.fault(DeckPlace { file: 0, line: 1 }, message));
         }
         for (index, element) in self.element_list.iter().enumerate() {
             let number = self.elements.numbers[index];
             for node in &mut self.connectivity[element.start..element.start + element.of_type.nodes] {
                 *node = self.nodes.place(*node).ok_or_else(|| {
                     let message = format!("element {number} names node {node}, which does not exist");
-                    self.source.fault(element.place, message)
+                    source.fault(element.place, message)
                 })?;
             }
         }
@@ -350,6 +308,11 @@ impl Deck {
         let (bodies, count) = forest.into_trees();
         self.body_of_node = first_at.into_iter().map(|first| first.map(|element| bodies[element])).collect();
         (self.body_of_element, self.bodies) = (bodies, count);
+    }
+
+    /// An error at a place of the deck.
+    pub fn fault(&self, place: DeckPlace, message: impl Into<String>) -> Error {
+        self.source.fault(place, message)
     }
 
     /// Number of coordinates of the elements.

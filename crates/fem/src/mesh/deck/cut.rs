@@ -3,8 +3,8 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::content::Deck;
-use super::sets::Surface;
-use super::source::Card;
+use super::sets::DeckSurface;
+use super::source::DeckCard;
 use crate::error::Error;
 use crate::geometry::sorted;
 use crate::mesh::MAX_NODES;
@@ -13,17 +13,17 @@ impl Deck {
     /// Cuts a body along the surface of a card: the elements with its faces get nodes of their own, which have numbers
     /// after all others, and the elements behind the cut keep the nodes of the deck. The faces behind it are a surface
     /// as well.
-    pub(super) fn cut(&mut self, card: &Card) -> Result<(), Error> {
-        let fault = |deck: &Deck, message: String| Err(deck.source.fault(card.place, message));
+    pub(super) fn cut(&mut self, card: DeckCard) -> Result<(), Error> {
+        let fault = |message: String| Err(card.fault(message));
         let Some(name) = card.value("SURFACE") else {
-            return fault(self, "*PRE-TENSION SECTION is read with a surface of faces; write SURFACE=NAME".into());
+            return fault("*PRE-TENSION SECTION is read with a surface of faces; write SURFACE=NAME".into());
         };
-        let Surface { name, faces, .. } = match self.surface_or(name) {
+        let DeckSurface { name, faces, .. } = match self.surface_or(name) {
             Ok(surface) => surface.clone(),
-            Err(message) => return fault(self, message),
+            Err(message) => return fault(message),
         };
         if faces.is_empty() {
-            return fault(self, format!("the surface `{name}` has no faces; name faces of elements (TYPE=ELEMENT)"));
+            return fault(format!("the surface `{name}` has no faces; name faces of elements (TYPE=ELEMENT)"));
         }
         let is_cut: HashSet<usize> = faces.iter().flat_map(|&face| self.nodes_of_face(face)).collect();
         let around: Vec<usize> = (0..self.elements.len())
@@ -50,7 +50,7 @@ impl Deck {
                     "face {} of element {number} in the surface `{name}` lies on the outside: a cut leads through a body",
                     face + 1
                 );
-                return fault(self, message);
+                return fault(message);
             };
             behind.push(other);
             edge.insert(nodes);
@@ -71,7 +71,7 @@ impl Deck {
             let message = format!(
                 "the surface `{name}` does not cut through its body: a way around it leads to element {number} on its other side"
             );
-            return fault(self, message);
+            return fault(message);
         }
         self.double(&faces, &before, card)?;
         behind.sort_unstable();
@@ -79,13 +79,14 @@ impl Deck {
         while self.surfaces.named(&across).is_some() {
             across.push('-');
         }
-        self.surfaces.add(Surface { name: across.clone(), place: card.place, faces: behind, bare: Vec::new() });
+        let surface = DeckSurface { name: across.clone(), place: card.place, faces: behind, bare: Vec::new() };
+        self.surfaces.add(&across, surface);
         self.cuts.push([name, across]);
         Ok(())
     }
 
     /// Gives elements nodes of their own on some faces.
-    fn double(&mut self, faces: &[(usize, usize)], elements: &BTreeSet<usize>, card: &Card) -> Result<(), Error> {
+    fn double(&mut self, faces: &[(usize, usize)], elements: &BTreeSet<usize>, card: DeckCard) -> Result<(), Error> {
         let mut double_of: HashMap<usize, usize> = HashMap::new();
         let last = self.nodes.numbers.iter().copied().max().unwrap_or(0);
         for node in faces.iter().flat_map(|&face| self.nodes_of_face(face)).collect::<Vec<_>>() {
@@ -96,7 +97,7 @@ impl Deck {
                 let message = format!(
                     "the nodes of a cut have no numbers after {last}, or exceed the {MAX_NODES} nodes that are allowed"
                 );
-                return Err(self.source.fault(card.place, message));
+                return Err(card.fault(message));
             };
             double_of.insert(node, self.nodes.len());
             self.doubled.push((node, self.nodes.len()));

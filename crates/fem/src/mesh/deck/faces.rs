@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use super::content::Deck;
-use super::sets::{FacePressure, Surface};
-use super::source::{Card, Place, key};
+use super::sets::{DeckSurface, FacePressure, Overridden};
+use super::source::{DeckCard, DeckPlace, DeckSource, cut, key};
 use crate::element::{Cell, Tabulated};
 use crate::error::{Error, nearly};
 use crate::geometry::{length, sorted};
@@ -14,9 +14,9 @@ use crate::geometry::{length, sorted};
 type Face = (usize, usize);
 
 /// Faces under one pressure in a card *DLOAD.
-struct Pressed {
+struct PressedFaces {
     value: f64,
-    place: Place,
+    place: DeckPlace,
     /// A name of their surface, if they are faces of one set.
     name: Option<String>,
     faces: Vec<Face>,
@@ -26,29 +26,28 @@ struct Pressed {
 const MOST_PRESSURES: usize = 1000;
 
 impl Deck {
-    pub(super) fn read_surface(&mut self, card: &Card) -> Result<(), Error> {
+    pub(super) fn read_surface(&mut self, card: DeckCard) -> Result<(), Error> {
         let Some(name) = card.value("NAME").filter(|name| !name.is_empty()) else {
-            return Err(self.source.fault(card.place, "*SURFACE has no name; write NAME=NAME"));
+            return Err(card.fault("*SURFACE has no name; write NAME=NAME"));
         };
         if self.surfaces.named(name).is_some() {
-            return Err(self.source.fault(card.place, format!("there are two surfaces `{name}`")));
+            return Err(card.fault(format!("there are two surfaces `{name}`")));
         }
         let (mut faces, mut nodes) = (Vec::new(), Vec::new());
         let of_nodes = card.says("TYPE", "NODE");
         if !of_nodes && card.value("TYPE").is_some_and(|value| key(value) != "ELEMENT") {
             let message = "a surface consists of faces (TYPE=ELEMENT) or of nodes (TYPE=NODE)";
-            return Err(self.source.fault(card.place, message));
+            return Err(card.fault(message));
         }
-        for line in &card.lines {
-            let mut fields = self.source.fields(line);
-            let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
+        for mut fields in card.fields() {
             if of_nodes {
-                nodes.extend(self.node_sets.members(&target, &self.nodes).map_err(|message| fields.fault(message))?);
+                nodes.extend(self.nodes.target(&mut fields)?.1);
                 continue;
             }
+            let target = fields.first()?;
             let label = fields.text().unwrap_or_default();
             fields.end()?;
-            faces.extend(self.faces(&target, &label, 'S').map_err(|message| fields.fault(message))?);
+            faces.extend(fields.placed(self.faces(&target, &label, 'S'))?);
         }
         if of_nodes {
             faces = self.faces_on(&nodes);
@@ -56,11 +55,12 @@ impl Deck {
         faces.sort_unstable();
         faces.dedup();
         if faces.is_empty() && nodes.is_empty() {
-            return Err(self.source.fault(card.place, format!("the surface `{name}` is empty")));
+            return Err(card.fault(format!("the surface `{name}` is empty")));
         }
         let covered: HashSet<usize> = faces.iter().flat_map(|&face| self.nodes_of_face(face)).collect();
         nodes.retain(|node| !covered.contains(node));
-        self.surfaces.add(Surface { name: name.into(), place: card.place, faces, bare: nodes });
+        let surface = DeckSurface { name: name.into(), place: card.place, faces, bare: nodes };
+        self.surfaces.add(name, surface);
         Ok(())
     }
 
@@ -88,7 +88,7 @@ impl Deck {
 
     /// The faces of an element, or of the elements of a set: `S1` or `P1` and so on.
     fn faces(&self, target: &str, label: &str, letter: char) -> Result<Vec<(usize, usize)>, String> {
-        let elements = self.element_sets.members(target, &self.elements)?;
+        let elements = self.elements.members(target)?;
         if elements.is_empty() {
             return Err(format!(
                 "the set `{target}` has no elements of a body; name faces of the elements of the body"
@@ -102,7 +102,7 @@ impl Deck {
                 Some(number) => faces.push((element, number - 1)),
                 None => {
                     let (name, number) = (self.element_list[element].of_type.name, self.elements.numbers[element]);
-                    let shown: String = label.chars().take(40).collect();
+                    let shown = cut(label, 40);
                     return Err(format!(
                         "`{shown}` is no face of element {number}; {name} has {letter}1 to {letter}{count}"
                     ));
@@ -113,7 +113,7 @@ impl Deck {
     }
 
     /// The faces of a surface on the outside of the bodies, and those that two elements share.
-    pub fn outside_and_inside(&self, surface: &Surface) -> (Vec<Face>, Vec<Face>) {
+    pub fn outside_and_inside(&self, surface: &DeckSurface) -> (Vec<Face>, Vec<Face>) {
         let nodes: Vec<usize> = surface.faces.iter().flat_map(|&face| self.nodes_of_face(face)).collect();
         let outside: HashSet<Face> = self.faces_on(&nodes).into_iter().collect();
         surface.faces.iter().partition(|face| outside.contains(face))
@@ -121,43 +121,42 @@ impl Deck {
 
     /// Makes a surface of the faces of each value of a card *DLOAD. A face that occurs again is in a second surface:
     /// pressures add up.
-    pub(super) fn read_pressures(&mut self, index: usize, card: &Card) -> Result<(), Error> {
-        let mut groups: Vec<Pressed> = Vec::new();
-        for line in &card.lines {
-            let mut fields = self.source.fields(line);
-            let target = fields.text().ok_or_else(|| fields.fault("a set or a number must begin this line"))?;
+    pub(super) fn read_pressures(&mut self, card: DeckCard) -> Result<(), Error> {
+        let mut groups: Vec<PressedFaces> = Vec::new();
+        for mut fields in card.fields() {
+            let target = fields.first()?;
             let label = key(&fields.text().unwrap_or_default());
             if label.strip_prefix('P').is_none_or(|rest| rest.parse::<usize>().is_err()) {
                 continue;
             }
             let value = fields.finite("the pressure")?;
             fields.end()?;
-            let faces = self.faces(&target, &label, 'P').map_err(|message| fields.fault(message))?;
-            let repeated = self.element_sets.repetition(&target, &self.elements);
-            self.source.noted.extend(repeated.map(|message| (line.place, message)));
+            let faces = fields.placed(self.faces(&target, &label, 'P'))?;
+            let repeated = self.elements.repetition(&target);
+            self.noted.extend(repeated.map(|message| (fields.place, message)));
             match groups.last_mut().filter(|group| group.value == value) {
                 Some(group) => {
                     group.name = None;
                     group.faces.extend(faces);
                 }
                 None => {
-                    let name = self.element_sets.named(&target).map(|set| format!("{}-{label}", set.name));
-                    groups.push(Pressed { value, place: line.place, name, faces });
+                    let name = self.elements.sets.named(&target).map(|set| format!("{}-{label}", set.name));
+                    groups.push(PressedFaces { value, place: fields.place, name, faces });
                 }
             }
         }
-        groups.into_iter().try_for_each(|group| self.add_pressed(index, group))
+        groups.into_iter().try_for_each(|group| self.add_pressed(card, group))
     }
 
     /// Adds the surfaces of some pressed faces.
-    fn add_pressed(&mut self, card: usize, group: Pressed) -> Result<(), Error> {
-        let Pressed { value, place, name, mut faces } = group;
+    fn add_pressed(&mut self, card: DeckCard, group: PressedFaces) -> Result<(), Error> {
+        let PressedFaces { value, place, name, mut faces } = group;
         faces.sort_unstable();
         while !faces.is_empty() {
             if self.pressures.len() >= MOST_PRESSURES {
                 let message =
                     format!("the deck has more than the {MOST_PRESSURES} different pressures that are allowed");
-                return Err(self.source.fault(place, message));
+                return Err(card.source.fault(place, message));
             }
             // The further occurrences of a face.
             let mut again = Vec::new();
@@ -174,35 +173,32 @@ impl Deck {
             let mut names = name.iter().cloned().chain(numbered).filter(|name| self.surfaces.named(name).is_none());
             let surface = names.next().unwrap_or_default();
             drop(names);
-            self.pressures.push(FacePressure { card, surface: surface.clone(), place, value });
             let own = std::mem::replace(&mut faces, again);
-            self.surfaces.add(Surface { name: surface, place, faces: own, bare: Vec::new() });
+            self.surfaces.add(&surface, DeckSurface { name: surface.clone(), place, faces: own, bare: Vec::new() });
+            self.pressures.push(FacePressure { card: card.place, step: card.step, surface, place, value });
         }
         Ok(())
     }
 
     /// Takes the faces of pressures away that a later step presses anew, or frees by OP=NEW.
-    pub(super) fn replace_pressures(&mut self, cards: &[Card]) -> Result<(), Error> {
-        let is_distributed = |card: &&Card| card.is("DLOAD") || card.is("DSLOAD");
-        let first = cards.iter().filter(is_distributed).filter(|card| card.is_new()).map(|card| card.step).max();
-        let of_surfaces: Vec<(usize, Place, String)> = cards
-            .iter()
-            .filter(|card| card.is("DSLOAD"))
-            .flat_map(|card| card.lines.iter().map(|line| (card.step, line)))
-            .filter_map(|(step, line)| Some((step, line.place, self.source.fields(line).text()?)))
+    pub(super) fn replace_pressures(&mut self, source: &DeckSource) -> Result<(), Error> {
+        let mut pressures = Overridden::default();
+        let emptying = source.cards().filter(|card| card.is_any(&["DLOAD", "DSLOAD"]) && card.is_new());
+        emptying.for_each(|card| pressures.clear(card.step));
+        let of_surfaces: Vec<(usize, DeckPlace, String)> = source
+            .cards_of("DSLOAD")
+            .flat_map(|card| card.fields().map(move |fields| (card.step, fields)))
+            .filter_map(|(step, mut fields)| Some((step, fields.place, fields.text()?)))
             .collect();
-        let of_faces = self.pressures.iter().map(|one| (cards[one.card].step, one.place, one.surface.clone()));
-        let pressed: Vec<(usize, Place, String)> = of_faces.chain(of_surfaces).collect();
-        let mut last: HashMap<Face, usize> = HashMap::new();
+        let of_faces = self.pressures.iter().map(|one| (one.step, one.place, one.surface.clone()));
+        let pressed: Vec<(usize, DeckPlace, String)> = of_faces.chain(of_surfaces).collect();
         for (step, _, name) in &pressed {
-            for &face in self.surfaces.named(name).into_iter().flat_map(|surface| &surface.faces) {
-                let own = last.entry(face).or_default();
-                *own = (*own).max(*step);
-            }
+            let surface = self.surfaces.named(name).into_iter();
+            surface.flat_map(|surface| &surface.faces).for_each(|&face| pressures.give(face, *step));
         }
         for (index, (step, place, name)) in pressed.iter().enumerate() {
             let Some(surface) = self.surfaces.named_mut(name) else { continue };
-            let acts = |face: &Face| last[face] == *step && first.is_none_or(|first| first <= *step);
+            let acts = |face: &Face| pressures.acts(face, *step);
             if index < self.pressures.len() {
                 surface.faces.retain(acts);
                 continue;
@@ -213,7 +209,7 @@ impl Deck {
                     let message = format!(
                         "a later step presses a part of `{name}` anew; press the whole surface, or its parts in both steps"
                     );
-                    return Err(self.source.fault(*place, message));
+                    return Err(source.fault(*place, message));
                 }
                 _ => {}
             }
@@ -222,18 +218,17 @@ impl Deck {
     }
 
     /// The surface of this name, or a sentence without one.
-    pub fn surface_or(&self, name: &str) -> Result<&Surface, String> {
+    pub fn surface_or(&self, name: &str) -> Result<&DeckSurface, String> {
         self.surfaces.named(name).ok_or_else(|| {
             let meant = nearly(name, self.surfaces.all.iter().map(|surface| surface.name.as_str()));
-            let shown: String = name.chars().take(80).collect();
-            format!("there is no surface `{shown}`{meant}")
+            format!("there is no surface `{}`{meant}", cut(name, 80))
         })
     }
 }
 
 impl Deck {
     /// The nodes of a surface, by their places, increasing.
-    pub fn nodes_of_surface(&self, surface: &Surface) -> Vec<usize> {
+    pub fn nodes_of_surface(&self, surface: &DeckSurface) -> Vec<usize> {
         let of_faces = surface.faces.iter().flat_map(|&face| self.nodes_of_face(face));
         of_faces.chain(surface.bare.iter().copied()).collect::<BTreeSet<_>>().into_iter().collect()
     }

@@ -4,8 +4,7 @@
 //! G. Dhondt, *CalculiX CrunchiX User's Manual*, chapter "Element types": nodes and faces have the order of this
 //! library.
 
-use super::sets::{Numbered, Sets};
-use super::source::Place;
+use super::source::DeckPlace;
 use crate::element::ElementKind;
 
 /// The space that the elements of a deck are made for.
@@ -163,27 +162,5 @@ pub struct SpringElement {
     pub of_type: SpringType,
     /// Its nodes, by their places; one or two.
     pub nodes: Vec<usize>,
-    pub place: Place,
-}
-
-/// All spring elements, with their numbers and sets.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpringElements {
-    pub numbers: Numbered,
-    pub sets: Sets,
-    pub all: Vec<SpringElement>,
-}
-
-impl SpringElements {
-    pub fn new() -> Self {
-        SpringElements { numbers: Numbered::default(), sets: Sets::new("element"), all: Vec::new() }
-    }
-
-    /// Returns `true` for the number of a spring, and for the name of a set of them.
-    pub fn has(&self, target: &str) -> bool {
-        match target.parse() {
-            Ok(number) => self.numbers.place(number).is_some(),
-            Err(_) => self.sets.named(target).is_some(),
-        }
-    }
+    pub place: DeckPlace,
 }

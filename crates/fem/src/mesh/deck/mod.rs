@@ -18,5 +18,5 @@ mod source;
 
 pub use content::{Deck, DeckElement};
 pub use kinds::{Space, SpringType};
-pub use sets::Surface;
-pub use source::{Card, Fields, Line, Place, key};
+pub use sets::{DeckSurface, Overridden};
+pub use source::{DataFields, DeckCard, DeckPlace, cut, key};

@@ -1,53 +1,37 @@
-//! Named sets of nodes or of elements, and surfaces of faces.
+//! ByName sets of nodes or of elements, and surfaces of faces.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 
-use super::source::{Card, Fields, Place, Source, key};
+use super::source::{DataFields, DeckCard, DeckPlace, cut, key};
 use crate::error::{Error, nearly};
 
-/// The things of a deck that have numbers, nodes or elements: their numbers, and their places in the deck.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Numbered {
-    /// The number of each, in the order of the deck.
-    pub numbers: Vec<usize>,
-    places: HashMap<usize, usize>,
+/// Things with names; names that differ only in case or blanks are one name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ByName<T> {
+    pub all: Vec<T>,
+    places: HashMap<String, usize>,
 }
 
-impl Numbered {
-    /// Adds the thing of this number; `false` if there is one.
-    pub fn add(&mut self, number: usize) -> bool {
-        if self.places.contains_key(&number) {
-            return false;
-        }
-        self.places.insert(number, self.numbers.len());
-        self.numbers.push(number);
-        true
+impl<T> Default for ByName<T> {
+    fn default() -> Self {
+        ByName { all: Vec::new(), places: HashMap::new() }
+    }
+}
+
+impl<T> ByName<T> {
+    pub fn named(&self, name: &str) -> Option<&T> {
+        self.places.get(&key(name)).map(|&place| &self.all[place])
     }
 
-    /// Leaves out those that have no new place; the others keep their order.
-    pub fn renumber(&mut self, places: &[Option<usize>]) {
-        let all = std::mem::take(self);
-        let kept = all.numbers.into_iter().zip(places).filter(|(_, place)| place.is_some());
-        kept.for_each(|(number, _)| _ = self.add(number));
+    pub fn named_mut(&mut self, name: &str) -> Option<&mut T> {
+        self.places.get(&key(name)).map(|&place| &mut self.all[place])
     }
 
-    pub fn len(&self) -> usize {
-        self.numbers.len()
-    }
-
-    /// The place of a number, from 0.
-    pub fn place(&self, number: usize) -> Option<usize> {
-        self.places.get(&number).copied()
-    }
-
-    /// The places of the numbers from `first` to `last` in steps of `step` that there are.
-    fn range(&self, first: usize, last: usize, step: usize) -> Vec<usize> {
-        let steps = (last - first) / step;
-        if steps < self.numbers.len() {
-            return (0..=steps).filter_map(|count| self.place(first + count * step)).collect();
-        }
-        let is_in = |number: usize| (first..=last).contains(&number) && (number - first).is_multiple_of(step);
-        (0..self.numbers.len()).filter(|&place| is_in(self.numbers[place])).collect()
+    /// Adds a thing under a name that is new.
+    pub fn add(&mut self, name: &str, thing: T) {
+        self.places.insert(key(name), self.all.len());
+        self.all.push(thing);
     }
 }
 
@@ -60,28 +44,58 @@ pub struct NamedSet {
     pub repeated: Option<usize>,
 }
 
-/// Sets of one kind of thing; names that differ only in case or blanks are one name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sets {
+/// The things of a deck that have numbers, nodes or elements: their numbers, their places in the deck, and their sets.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Numbered {
     /// `node` or `element`.
     of: &'static str,
-    pub all: Vec<NamedSet>,
-    places: HashMap<String, usize>,
+    /// The number of each, in the order of the deck.
+    pub numbers: Vec<usize>,
+    places: HashMap<usize, usize>,
+    pub sets: ByName<NamedSet>,
 }
 
-impl Sets {
+impl Numbered {
     pub fn new(of: &'static str) -> Self {
-        Sets { of, all: Vec::new(), places: HashMap::new() }
+        Numbered { of, ..Numbered::default() }
+    }
+
+    /// Adds the thing of this number; `false` if there is one.
+    pub fn add(&mut self, number: usize) -> bool {
+        if self.places.contains_key(&number) {
+            return false;
+        }
+        self.places.insert(number, self.numbers.len());
+        self.numbers.push(number);
+        true
+    }
+
+    /// Leaves out those that have no new place, also in sets; the others keep their order.
+    pub fn renumber(&mut self, places: &[Option<usize>]) {
+        self.places.clear();
+        let all = std::mem::take(&mut self.numbers).into_iter().zip(places);
+        all.filter(|(_, place)| place.is_some()).for_each(|(number, _)| _ = self.add(number));
+        for set in &mut self.sets.all {
+            set.members = set.members.iter().filter_map(|&member| places[member]).collect();
+            set.repeated = set.repeated.and_then(|member| places[member]);
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// The place of a number, from 0.
+    pub fn place(&self, number: usize) -> Option<usize> {
+        self.places.get(&number).copied()
     }
 
     /// Adds members to the set of this name, which begins if it is new.
     pub fn extend(&mut self, name: &str, members: impl IntoIterator<Item = usize>) {
-        let next = self.all.len();
-        let place = *self.places.entry(key(name)).or_insert(next);
-        if place == next {
-            self.all.push(NamedSet { name: name.into(), members: Vec::new(), repeated: None });
+        if self.sets.named(name).is_none() {
+            self.sets.add(name, NamedSet { name: name.into(), members: Vec::new(), repeated: None });
         }
-        let NamedSet { members: own, repeated, .. } = &mut self.all[place];
+        let Some(NamedSet { members: own, repeated, .. }) = self.sets.named_mut(name) else { return };
         own.extend(members);
         own.sort_unstable();
         *repeated = repeated.or(own.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0]));
@@ -89,25 +103,13 @@ impl Sets {
     }
 
     /// A sentence for a set that is loaded, although a member is given in it several times.
-    pub fn repetition(&self, target: &str, of: &Numbered) -> Option<String> {
-        let NamedSet { name, repeated, .. } = self.named(target)?;
-        let number = of.numbers[(*repeated)?];
+    pub fn repetition(&self, target: &str) -> Option<String> {
+        let NamedSet { name, repeated, .. } = self.sets.named(target)?;
+        let number = self.numbers[(*repeated)?];
         Some(format!(
             "{} {number} is in the set `{name}` several times; it is loaded once, CalculiX loads it each time",
             self.of
         ))
-    }
-
-    /// Renumbers the members; those without a new place are left out.
-    pub fn renumber(&mut self, places: &[Option<usize>]) {
-        for set in &mut self.all {
-            set.members = set.members.iter().filter_map(|&member| places[member]).collect();
-            set.repeated = set.repeated.and_then(|member| places[member]);
-        }
-    }
-
-    pub fn named(&self, name: &str) -> Option<&NamedSet> {
-        self.places.get(&key(name)).map(|&place| &self.all[place])
     }
 
     fn parameter(&self) -> &'static str {
@@ -115,33 +117,30 @@ impl Sets {
     }
 
     /// The name of the set that a card makes or extends, if it names one; a number is no name.
-    pub fn name_in<'a>(&self, source: &Source, card: &'a Card) -> Result<Option<&'a str>, Error> {
+    pub fn name_in<'a>(&self, card: DeckCard<'a>) -> Result<Option<&'a str>, Error> {
         match card.value(self.parameter()).filter(|name| !name.is_empty()) {
             Some(name) if name.parse::<usize>().is_ok() => {
-                let message = format!("a set of {}s is called {name}; a name must not be a number", self.of);
-                Err(source.fault(card.place, message))
+                Err(card.fault(format!("a set of {}s is called {name}; a name must not be a number", self.of)))
             }
             name => Ok(name),
         }
     }
 
     /// Reads a card *NSET or *ELSET: numbers, names of earlier sets, or ranges of numbers.
-    pub fn read(&mut self, source: &Source, card: &Card, of: &Numbered) -> Result<(), Error> {
-        let Some(name) = self.name_in(source, card)? else {
-            let message = format!("{} has no name; write {}=NAME", card.name, self.parameter());
-            return Err(source.fault(card.place, message));
+    pub fn read(&mut self, card: DeckCard) -> Result<(), Error> {
+        let Some(name) = self.name_in(card)? else {
+            return Err(card.fault(format!("{} has no name; write {}=NAME", card.name, self.parameter())));
         };
         let (mut members, mut repeated) = (Vec::new(), None);
-        for line in &card.lines {
-            let mut fields = source.fields(line);
+        for mut fields in card.fields() {
             if card.has("GENERATE") {
-                members.extend(self.range(&mut fields, of)?);
+                members.extend(self.range(&mut fields)?);
                 continue;
             }
             while fields.clone().next().is_some() {
                 if let Some(target) = fields.text() {
-                    members.extend(self.members(&target, of).map_err(|message| fields.fault(message))?);
-                    repeated = repeated.or(self.named(&target).and_then(|set| set.repeated));
+                    members.extend(fields.placed(self.members(&target))?);
+                    repeated = repeated.or(self.sets.named(&target).and_then(|set| set.repeated));
                 }
             }
         }
@@ -150,7 +149,7 @@ impl Sets {
     }
 
     /// The members of a range: first, last, step.
-    fn range(&self, fields: &mut Fields, of: &Numbered) -> Result<Vec<usize>, Error> {
+    fn range(&self, fields: &mut DataFields) -> Result<Vec<usize>, Error> {
         let (first, last) =
             (fields.whole("the first number of the range")?, fields.whole("the last number of the range")?);
         let step = if fields.clone().text().is_some() { fields.whole("the step of the range")? } else { 1 };
@@ -158,11 +157,15 @@ impl Sets {
         if step == 0 || last < first {
             return Err(fields.fault(format!("the range from {first} to {last} in steps of {step} has no number")));
         }
-        match of.range(first, last, step) {
-            members if members.is_empty() => {
-                Err(fields.fault(format!("the deck has no {} from {first} to {last} in steps of {step}", self.of)))
-            }
-            members => Ok(members),
+        let steps = (last - first) / step;
+        let is_in = |number: usize| (first..=last).contains(&number) && (number - first).is_multiple_of(step);
+        let members: Vec<usize> = match steps < self.numbers.len() {
+            true => (0..=steps).filter_map(|count| self.place(first + count * step)).collect(),
+            false => (0..self.numbers.len()).filter(|&place| is_in(self.numbers[place])).collect(),
+        };
+        match members.is_empty() {
+            true => Err(fields.fault(format!("the deck has no {} from {first} to {last} in steps of {step}", self.of))),
+            false => Ok(members),
         }
     }
 
@@ -170,61 +173,83 @@ impl Sets {
     ///
     /// # Errors
     /// A sentence if there is none.
-    pub fn members(&self, target: &str, of: &Numbered) -> Result<Vec<usize>, String> {
+    pub fn members(&self, target: &str) -> Result<Vec<usize>, String> {
         if let Ok(number) = target.parse() {
             let missing = || format!("the deck has no {} {number}", self.of);
-            return of.place(number).map(|place| vec![place]).ok_or_else(missing);
+            return self.place(number).map(|place| vec![place]).ok_or_else(missing);
         }
-        match self.named(target) {
+        match self.sets.named(target) {
             Some(set) => Ok(set.members.clone()),
             None => {
-                let meant = nearly(target, self.all.iter().map(|set| set.name.as_str()));
-                let shown: String = target.chars().take(80).collect();
-                Err(format!("there is no set of {}s `{shown}` above this line{meant}", self.of))
+                let meant = nearly(target, self.sets.all.iter().map(|set| set.name.as_str()));
+                Err(format!("there is no set of {}s `{}` above this line{meant}", self.of, cut(target, 80)))
             }
+        }
+    }
+
+    /// The set or the number that begins a line, with its members.
+    pub fn target(&self, fields: &mut DataFields) -> Result<(String, Vec<usize>), Error> {
+        let target = fields.first()?;
+        let members = fields.placed(self.members(&target))?;
+        Ok((target, members))
+    }
+
+    /// Returns `true` for the number of one of the things, and for the name of a set of them.
+    pub fn has(&self, target: &str) -> bool {
+        match target.parse() {
+            Ok(number) => self.place(number).is_some(),
+            Err(_) => self.sets.named(target).is_some(),
         }
     }
 }
 
+/// What is given again later: the last step, or line, that gives each thing, and the one that removes all before it.
+pub struct Overridden<K> {
+    last: HashMap<K, usize>,
+    first: usize,
+}
+
+impl<K> Default for Overridden<K> {
+    fn default() -> Self {
+        Overridden { last: HashMap::new(), first: 0 }
+    }
+}
+
+impl<K: Eq + Hash> Overridden<K> {
+    pub fn give(&mut self, thing: K, step: usize) {
+        let last = self.last.entry(thing).or_default();
+        *last = (*last).max(step);
+    }
+
+    /// Removes what is given before a step.
+    pub fn clear(&mut self, step: usize) {
+        self.first = self.first.max(step);
+    }
+
+    /// Returns `true` if what a step gives acts at the end.
+    pub fn acts(&self, thing: &K, step: usize) -> bool {
+        step >= self.first && self.last.get(thing).is_none_or(|last| *last == step)
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
-pub struct Surface {
+pub struct DeckSurface {
     pub name: String,
-    pub place: Place,
+    pub place: DeckPlace,
     /// Elements and their faces, from 0; for a surface of nodes the faces that have only nodes of it.
     pub faces: Vec<(usize, usize)>,
     /// The nodes of a surface of nodes that are on none of these faces, by their places.
     pub bare: Vec<usize>,
 }
 
-/// All surfaces; names that differ only in case or blanks are one name.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surfaces {
-    pub all: Vec<Surface>,
-    places: HashMap<String, usize>,
-}
-
-impl Surfaces {
-    pub fn named(&self, name: &str) -> Option<&Surface> {
-        self.places.get(&key(name)).map(|&place| &self.all[place])
-    }
-
-    pub fn named_mut(&mut self, name: &str) -> Option<&mut Surface> {
-        self.places.get(&key(name)).map(|&place| &mut self.all[place])
-    }
-
-    pub fn add(&mut self, surface: Surface) {
-        self.places.insert(key(&surface.name), self.all.len());
-        self.all.push(surface);
-    }
-}
-
 /// Faces that a card *DLOAD presses with one value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FacePressure {
-    /// The number of the card among all cards.
-    pub card: usize,
+    /// The place of the card.
+    pub card: DeckPlace,
+    pub step: usize,
     /// The name of the surface of these faces.
     pub surface: String,
-    pub place: Place,
+    pub place: DeckPlace,
     pub value: f64,
 }

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::fmt::Display;
 use std::io;
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::OnceLock;
@@ -32,21 +33,21 @@ const NO_DECK: &str = "this is not an input deck: a keyword, as *NODE, must begi
 
 /// The content of a deck: its files and its cards, in the order in which they are read.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Source {
+pub struct DeckSource {
     /// The deck itself, then the files that it includes, each with its content.
     files: Vec<(PathBuf, Vec<u8>)>,
     pub cards: Vec<Card>,
     /// What is read, but may not be meant: a sentence with its place.
-    pub noted: Vec<(Place, String)>,
+    pub noted: Vec<(DeckPlace, String)>,
     /// The first line with values that are passed over.
-    pub longer: OnceLock<(Place, String)>,
+    pub longer: OnceLock<(DeckPlace, String)>,
     bytes: u64,
 }
 
-impl Source {
+impl DeckSource {
     /// Reads a deck. The files that it includes must lie in the folder `within` or below it; anywhere without one.
     pub fn read(path: &Path, within: Option<&Path>) -> Result<Self, Error> {
-        let mut source = Source::default();
+        let mut source = DeckSource::default();
         let content = source.content(path)?;
         Reader { folder: path.parent().unwrap_or(Path::new("")), within, open: Vec::new() }.file(
             &mut source,
@@ -54,7 +55,7 @@ impl Source {
             content,
         )?;
         match source.cards.is_empty() {
-            true => Err(source.fault(Place { file: 0, line: 1 }, NO_DECK)),
+            true => Err(source.fault(DeckPlace { file: 0, line: 1 }, NO_DECK)),
             false => Ok(source),
         }
     }
@@ -75,22 +76,22 @@ impl Source {
     }
 
     /// The bytes of a line, without surrounding blanks.
-    pub fn text(&self, line: &Line) -> &[u8] {
+    pub fn text(&self, line: &DataLine) -> &[u8] {
         self.files.get(line.place.file as usize).and_then(|file| file.1.get(line.start..line.end)).unwrap_or_default()
     }
 
     /// The file and the line of a place.
-    pub fn position(&self, place: Place) -> (&Path, usize) {
+    pub fn position(&self, place: DeckPlace) -> (&Path, usize) {
         (self.files.get(place.file as usize).map_or(Path::new(""), |file| &file.0), place.line as usize)
     }
 
     /// The deck itself.
     pub fn path(&self) -> &Path {
-        self.position(Place { file: 0, line: 0 }).0
+        self.position(DeckPlace { file: 0, line: 0 }).0
     }
 
     /// The place as it is written in comments and in other sentences.
-    pub fn named(&self, place: Place) -> String {
+    pub fn named(&self, place: DeckPlace) -> String {
         let (file, line) = self.position(place);
         match place.file {
             0 => format!("line {line}"),
@@ -99,9 +100,9 @@ impl Source {
     }
 
     /// An error at a place; a message that quotes a long name is cut.
-    pub fn fault(&self, place: Place, message: impl Into<String>) -> Error {
+    pub fn fault(&self, place: DeckPlace, message: impl Into<String>) -> Error {
         let (file, line) = self.position(place);
-        let message = message.into().chars().filter(|c| !c.is_control()).take(LONGEST).collect();
+        let message = cut(&message.into(), LONGEST);
         linear::Error::FileSyntax { file: file.into(), line: line.max(1), message }.into()
     }
 }
@@ -116,15 +117,15 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn file(&mut self, source: &mut Source, path: &Path, content: Vec<u8>) -> Result<(), Error> {
+    fn file(&mut self, source: &mut DeckSource, path: &Path, content: Vec<u8>) -> Result<(), Error> {
         self.open.push(path.canonicalize().unwrap_or_else(|_| path.into()));
         let file = source.files.len() as u32;
         source.files.push((path.into(), Vec::new()));
         // A keyword whose line ends with a comma goes on in the next line, if that is a parameter.
-        let mut keyword: Option<(Place, String)> = None;
+        let mut keyword: Option<(DeckPlace, String)> = None;
         let mut start = if content.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
         for (index, whole) in content[start..].split(|&byte| byte == b'\n').enumerate() {
-            let (text, place) = (whole.trim_ascii(), Place { file, line: index as u32 + 1 });
+            let (text, place) = (whole.trim_ascii(), DeckPlace { file, line: index as u32 + 1 });
             let begin = start + (whole.len() - whole.trim_ascii_start().len());
             start += whole.len() + 1;
             if text.is_empty() || text.starts_with(b"**") {
@@ -143,7 +144,7 @@ impl Reader<'_> {
                 continue;
             }
             match source.cards.last_mut() {
-                Some(card) => card.lines.push(Line { place, start: begin, end: begin + text.len() }),
+                Some(card) => card.lines.push(DataLine { place, start: begin, end: begin + text.len() }),
                 None => return Err(source.fault(place, NO_DECK)),
             }
         }
@@ -156,7 +157,7 @@ impl Reader<'_> {
     }
 
     /// Adds a card; reads the file of an include.
-    fn card(&mut self, source: &mut Source, place: Place, text: &str) -> Result<(), Error> {
+    fn card(&mut self, source: &mut DeckSource, place: DeckPlace, text: &str) -> Result<(), Error> {
         let card = Card::of(place, text);
         let mut names = HashSet::new();
         if let Some((name, _)) = card.parameters.iter().find(|(name, _)| !names.insert(name.as_str())) {
@@ -170,7 +171,8 @@ impl Reader<'_> {
             source.noted.push((place, message));
         }
         if !card.is("INCLUDE") {
-            source.cards.push(card);
+            let before = source.cards.last().map_or(0, |last| last.step);
+            source.cards.push(Card { step: before + usize::from(card.is("STEP")), ..card });
             return Ok(());
         }
         let Some(name) = card.value("INPUT").filter(|name| !name.is_empty()) else {
@@ -204,15 +206,15 @@ fn is_parameter(text: &[u8]) -> bool {
 
 /// A line of one of the files of a deck, from 1; files are numbered from 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Place {
+pub struct DeckPlace {
     pub file: u32,
     pub line: u32,
 }
 
 /// A data line: its place, and its bytes in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Line {
-    pub place: Place,
+pub struct DataLine {
+    pub place: DeckPlace,
     pub start: usize,
     pub end: usize,
 }
@@ -220,14 +222,14 @@ pub struct Line {
 /// A keyword with its parameters and its data lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Card {
-    pub place: Place,
+    pub place: DeckPlace,
     /// As it is written in messages: `*NODE PRINT`.
     pub name: String,
     /// The keyword in capitals, without blanks: `NODEPRINT`.
     key: String,
     /// In capitals, with the value as it is written; `None` without one.
     pub parameters: Vec<(String, Option<String>)>,
-    pub lines: Vec<Line>,
+    pub lines: Vec<DataLine>,
     /// The step in which it stands, from 1; 0 before all steps.
     pub step: usize,
 }
@@ -239,7 +241,7 @@ pub fn key(name: &str) -> String {
 
 impl Card {
     /// A card without data lines, from its text: `*KEYWORD, NAME=VALUE, ...`.
-    pub(super) fn of(place: Place, text: &str) -> Self {
+    pub(super) fn of(place: DeckPlace, text: &str) -> Self {
         let mut parts = text.split(',').map(str::trim);
         let name = parts.next().unwrap_or_default();
         let words: Vec<String> = name.split_whitespace().map(str::to_uppercase).collect();
@@ -263,6 +265,10 @@ impl Card {
         self.key == keyword || self.key == key(keyword)
     }
 
+    pub fn is_any(&self, keywords: &[&str]) -> bool {
+        keywords.iter().any(|keyword| self.is(keyword))
+    }
+
     pub fn has(&self, name: &str) -> bool {
         self.parameters.iter().any(|(own, _)| own == name)
     }
@@ -282,37 +288,92 @@ impl Card {
     }
 }
 
+/// A card with the deck that it is in.
+#[derive(Clone, Copy)]
+pub struct DeckCard<'a> {
+    pub source: &'a DeckSource,
+    pub card: &'a Card,
+}
+
+impl Deref for DeckCard<'_> {
+    type Target = Card;
+
+    fn deref(&self) -> &Card {
+        self.card
+    }
+}
+
+impl<'a> DeckCard<'a> {
+    /// The value of a parameter.
+    pub fn value(&self, name: &str) -> Option<&'a str> {
+        self.card.value(name)
+    }
+
+    /// The value of NAME.
+    pub fn named(&self) -> Result<&'a str, Error> {
+        self.value("NAME").ok_or_else(|| self.fault(format!("{} has no name; write NAME=NAME", self.name)))
+    }
+
+    /// The fields of each data line.
+    pub fn fields(&self) -> impl Iterator<Item = DataFields<'a>> + Clone + use<'a> {
+        let source = self.source;
+        self.card.lines.iter().map(move |line| source.fields(line))
+    }
+
+    pub fn fault(&self, message: impl Into<String>) -> Error {
+        self.source.fault(self.place, message)
+    }
+
+    /// A result whose sentence becomes an error at the card.
+    pub fn placed<T>(&self, result: Result<T, impl Into<String>>) -> Result<T, Error> {
+        result.map_err(|message| self.fault(message))
+    }
+}
+
 /// The fields of a data line, one after the other.
 #[derive(Clone)]
-pub struct Fields<'a> {
-    source: &'a Source,
-    pub place: Place,
+pub struct DataFields<'a> {
+    source: &'a DeckSource,
+    pub place: DeckPlace,
     /// `None` behind the last field.
     rest: Option<&'a [u8]>,
 }
 
-/// Longer fields are cut in messages.
-const SHOWN: usize = 40;
+/// The beginning of a text of users, for a message: at most so many characters.
+pub fn cut(text: &str, most: usize) -> String {
+    text.chars().filter(|c| !c.is_control()).take(most).collect()
+}
 
-/// A field as it is quoted in messages.
+/// A field as it is quoted in messages, where longer ones are cut.
 fn shown(field: &[u8]) -> String {
-    let text: String = String::from_utf8_lossy(field).chars().filter(|c| !c.is_control()).collect();
-    match text.char_indices().nth(SHOWN) {
+    const MOST: usize = 40;
+    let text = cut(&String::from_utf8_lossy(field), MOST + 1);
+    match text.char_indices().nth(MOST) {
         Some((end, _)) => format!("{}...", &text[..end]),
         None => text,
     }
 }
 
-impl Source {
+impl DeckSource {
+    /// Its cards, each with the deck.
+    pub fn cards(&self) -> impl DoubleEndedIterator<Item = DeckCard<'_>> + Clone {
+        self.cards.iter().map(|card| DeckCard { source: self, card })
+    }
+
+    /// The cards of a keyword, given in capitals.
+    pub fn cards_of(&self, keyword: &'static str) -> impl Iterator<Item = DeckCard<'_>> + Clone {
+        self.cards().filter(move |card| card.is(keyword))
+    }
+
     /// The fields of a data line; a comma at its end begins no field.
-    pub fn fields(&self, line: &Line) -> Fields<'_> {
+    pub fn fields(&self, line: &DataLine) -> DataFields<'_> {
         let text = self.text(line);
         let text = text.strip_suffix(b",").unwrap_or(text);
-        Fields { source: self, place: line.place, rest: Some(text) }
+        DataFields { source: self, place: line.place, rest: Some(text) }
     }
 }
 
-impl<'a> Iterator for Fields<'a> {
+impl<'a> Iterator for DataFields<'a> {
     type Item = &'a [u8];
 
     /// The next field without blanks around it; empty fields too.
@@ -324,10 +385,15 @@ impl<'a> Iterator for Fields<'a> {
     }
 }
 
-impl<'a> Fields<'a> {
+impl<'a> DataFields<'a> {
     /// The next field, as a name or the like; `None` if it is empty or missing.
     pub fn text(&mut self) -> Option<String> {
         self.next().filter(|field| !field.is_empty()).map(|field| String::from_utf8_lossy(field).into_owned())
+    }
+
+    /// The first field, a set or a number.
+    pub fn first(&mut self) -> Result<String, Error> {
+        self.text().ok_or_else(|| self.fault("a set or a number must begin this line"))
     }
 
     /// The next field as a whole number that is not negative.
@@ -346,6 +412,15 @@ impl<'a> Fields<'a> {
                 Ok(0.0)
             }
         }
+    }
+
+    /// The next three fields as the components of a vector; those that are empty or missing are 0.
+    pub fn vector(&mut self, of: impl Display) -> Result<[f64; 3], Error> {
+        let mut vector = [0.0; 3];
+        for (value, axis) in vector.iter_mut().zip(["x", "y", "z"]) {
+            *value = self.finite_or_zero(format_args!("the {axis} of {of}"))?;
+        }
+        Ok(vector)
     }
 
     pub fn finite(&mut self, what: impl Display) -> Result<f64, Error> {
@@ -380,6 +455,11 @@ impl<'a> Fields<'a> {
 
     pub fn fault(&self, message: impl Into<String>) -> Error {
         self.source.fault(self.place, message)
+    }
+
+    /// A result whose sentence becomes an error at the line.
+    pub fn placed<T>(&self, result: Result<T, impl Into<String>>) -> Result<T, Error> {
+        result.map_err(|message| self.fault(message))
     }
 
     fn wrong(&self, field: &[u8], what: impl Display, allowed: &str) -> Error {

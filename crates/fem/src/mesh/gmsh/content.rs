@@ -4,24 +4,13 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
-use super::record::{Form, Record, Source, shortened};
+use super::record::{FileForm, MshSource, Record, shortened};
 use crate::error::Error;
 use crate::mesh::MAX_NODES;
 
-/// The content of a file while it is read.
-#[derive(Default)]
-pub(super) struct Content {
-    nodes: Vec<[f64; 3]>,
-    node_tags: Vec<usize>,
-    node_lines: Vec<usize>,
-    places: HashMap<usize, usize>,
-    blocks: Vec<Block>,
-    pub groups: Vec<PhysicalGroup>,
-}
-
-impl Content {
+impl GmshFile {
     /// Adds the node `tag`, which is in `record`.
-    pub fn add_node(&mut self, record: &Record, tag: usize, at: [f64; 3]) -> Result<(), Error> {
+    pub(super) fn add_node(&mut self, record: &Record, tag: usize, at: [f64; 3]) -> Result<(), Error> {
         match self.places.entry(tag) {
             Entry::Occupied(_) => return Err(record.fault(format!("node {tag} is given twice"))),
             Entry::Vacant(place) => place.insert(self.nodes.len()),
@@ -33,7 +22,7 @@ impl Content {
     }
 
     /// Starts a new block of elements of type `number` in these groups.
-    pub fn begin_block(&mut self, record: &Record, number: usize, groups: &[u64]) -> Result<(), Error> {
+    pub(super) fn begin_block(&mut self, record: &Record, number: usize, groups: &[u64]) -> Result<(), Error> {
         if self.blocks.last().is_some_and(|block| block.cell.number == number && block.groups == groups) {
             return Ok(());
         }
@@ -45,12 +34,12 @@ impl Content {
             return Err(record.fault(message));
         };
         let groups = groups.to_vec();
-        self.blocks.push(Block { cell, groups, tags: Vec::new(), lines: Vec::new(), nodes: Vec::new() });
+        self.blocks.push(ElementBlock { cell, groups, tags: Vec::new(), lines: Vec::new(), nodes: Vec::new() });
         Ok(())
     }
 
     /// Adds the element `tag` to the last block; the rest of `record` is its nodes.
-    pub fn add_element(&mut self, mut record: Record, tag: usize) -> Result<(), Error> {
+    pub(super) fn add_element(&mut self, mut record: Record, tag: usize) -> Result<(), Error> {
         let Some(block) = self.blocks.last_mut() else { return Ok(()) };
         for _ in 0..block.cell.nodes {
             block.nodes.push(record.whole("the tag of a node")?);
@@ -61,15 +50,13 @@ impl Content {
     }
 
     /// Replaces the tags of nodes by their indices, and checks that the groups have elements.
-    pub fn finish(self, source: Source) -> Result<GmshFile, Error> {
-        let Content { nodes, node_tags, node_lines, places, blocks, groups } = self;
-        let (file, last_line, form) = (source.file.into(), source.place(), source.form);
-        let mut content = GmshFile { file, form, nodes, node_tags, node_lines, blocks, groups, last_line };
+    pub(super) fn finish(mut self, source: MshSource) -> Result<GmshFile, Error> {
+        (self.file, self.last_line, self.form) = (source.file.into(), source.place(), source.form);
         let mut missing = None;
-        for block in &mut content.blocks {
+        for block in &mut self.blocks {
             let each = block.cell.nodes;
             for (index, node) in block.nodes.iter_mut().enumerate() {
-                match places.get(node) {
+                match self.places.get(node) {
                     Some(&place) => *node = place,
                     None => {
                         let element = index / each;
@@ -79,10 +66,10 @@ impl Content {
             }
         }
         if let Some((line, element, node)) = missing {
-            return Err(content.fault(line, format!("element {element} names node {node}, which does not exist")));
+            return Err(self.fault(line, format!("element {element} names node {node}, which does not exist")));
         }
-        content.check_groups()?;
-        Ok(content)
+        self.check_groups()?;
+        Ok(self)
     }
 }
 
@@ -147,7 +134,7 @@ pub(super) fn cell_type(number: usize) -> Option<&'static CellType> {
 }
 
 /// The section `$PhysicalNames`, text in either form: a count, then `dimension tag "name"`.
-pub(super) fn names(source: &mut Source, groups: &mut Vec<PhysicalGroup>) -> Result<(), Error> {
+pub(super) fn names(source: &mut MshSource, groups: &mut Vec<PhysicalGroup>) -> Result<(), Error> {
     let mut line = source.line(|| "the number of physical names")?;
     let count = line.whole("the number of physical names")?;
     line.end()?;
@@ -184,7 +171,7 @@ fn quoted(line: &Record) -> Result<String, Error> {
 
 impl GmshFile {
     /// Checks that every named group has elements: an empty group means a geometry that was not meshed.
-    pub(super) fn check_groups(&self) -> Result<(), Error> {
+    fn check_groups(&self) -> Result<(), Error> {
         let mut filled = HashSet::new();
         for block in &self.blocks {
             filled.extend(block.groups.iter().map(|&tag| (block.cell.dimension, tag)));
@@ -209,7 +196,7 @@ impl GmshFile {
     pub(super) fn names_in_use(&self) -> Vec<(usize, String)> {
         let mut names = Vec::new();
         for dimension in 0..=3 {
-            for block in self.blocks.iter().filter(|block| block.cell.dimension == dimension) {
+            for block in self.blocks_of(dimension) {
                 for &tag in &block.groups {
                     let named = (dimension, self.name_of(dimension, tag));
                     if !names.contains(&named) {
@@ -223,23 +210,25 @@ impl GmshFile {
 }
 
 /// The content of a file: nodes, elements of any type, physical groups.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct GmshFile {
     pub(super) file: PathBuf,
     /// The form of the file. In binary form `line` here and below means a byte.
-    pub(super) form: Form,
+    pub(super) form: FileForm,
     /// In the order of the file, with their tags and lines.
     pub(super) nodes: Vec<[f64; 3]>,
     pub(super) node_tags: Vec<usize>,
     pub(super) node_lines: Vec<usize>,
-    pub(super) blocks: Vec<Block>,
+    /// The index of each node by its tag.
+    places: HashMap<usize, usize>,
+    pub(super) blocks: Vec<ElementBlock>,
     pub(super) groups: Vec<PhysicalGroup>,
     pub(super) last_line: usize,
 }
 
 /// Elements of one type in the same physical groups.
 #[derive(Clone, Debug)]
-pub(super) struct Block {
+pub(super) struct ElementBlock {
     pub cell: &'static CellType,
     pub groups: Vec<u64>,
     pub tags: Vec<usize>,
@@ -268,15 +257,23 @@ pub struct PhysicalGroup {
     pub(super) line: usize,
 }
 
+impl ElementBlock {
+    pub fn elements(&self) -> impl Iterator<Item = Element<'_>> {
+        let nodes = self.nodes.chunks_exact(self.cell.nodes);
+        let each = self.tags.iter().zip(&self.lines).zip(nodes);
+        each.map(|((&tag, &line), nodes)| Element { cell: self.cell, tag, line, nodes })
+    }
+}
+
 impl GmshFile {
-    pub(super) fn elements_of<'a>(&'a self, block: &'a Block) -> impl Iterator<Item = Element<'a>> + 'a {
-        let (cell, nodes) = (block.cell, block.nodes.chunks_exact(block.cell.nodes));
-        block.tags.iter().zip(&block.lines).zip(nodes).map(move |((&tag, &line), nodes)| Element {
-            cell,
-            tag,
-            line,
-            nodes,
-        })
+    /// The blocks of elements of a dimension, in the order of the file.
+    pub(super) fn blocks_of(&self, dimension: usize) -> impl Iterator<Item = &ElementBlock> {
+        self.blocks.iter().filter(move |block| block.cell.dimension == dimension)
+    }
+
+    /// The highest dimension of elements.
+    pub(super) fn highest(&self) -> Option<usize> {
+        self.blocks.iter().map(|block| block.cell.dimension).max()
     }
 
     pub(super) fn fault(&self, line: usize, message: impl Into<String>) -> Error {

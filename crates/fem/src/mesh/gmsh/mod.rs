@@ -83,8 +83,7 @@ impl GmshFile {
     /// Names of the physical groups that have elements of the highest dimension: each may be a body.
     pub fn bodies(&self) -> Vec<String> {
         let names = self.names_in_use();
-        let highest = self.blocks.iter().map(|block| block.cell.dimension).max();
-        names.into_iter().filter(|(dimension, _)| Some(*dimension) == highest).map(|(_, name)| name).collect()
+        names.into_iter().filter(|(dimension, _)| Some(*dimension) == self.highest()).map(|(_, name)| name).collect()
     }
 
     /// The mesh of the body: of the elements in the physical groups of these names, or, without a name, of all elements
@@ -103,8 +102,7 @@ impl GmshFile {
     /// not positive and finite.
     pub fn mesh(&self, groups: &[&str], scale: f64) -> Result<Mesh, Error> {
         positive("scale", scale)?;
-        let body = body::Body::select(self, groups)?;
-        let (mut mesh, numbers) = body.mesh(self, scale)?;
+        let (mut mesh, numbers) = body::mesh(self, groups, scale)?;
         mesh.boundaries = body::of(self, &mesh, &numbers, !groups.is_empty())?;
         Ok(mesh)
     }

@@ -11,7 +11,7 @@ const WHOLE: &str = "a whole number that is not negative";
 
 /// The numbers that belong together, as a node or an element: a line of text, or numbers in binary form.
 pub struct Record<'s, 'a> {
-    source: &'s mut Source<'a>,
+    source: &'s mut MshSource<'a>,
     numbers: Numbers<'a>,
 }
 
@@ -24,7 +24,7 @@ enum Numbers<'a> {
     Bytes(ByteOrder, Version),
 }
 
-impl<'a> Source<'a> {
+impl<'a> MshSource<'a> {
     /// The next line of a section that is text in either form; `what` names the expected content.
     pub fn line<D: Display>(&mut self, what: impl Fn() -> D) -> Result<Record<'_, 'a>, Error> {
         let Some(line) = self.next() else {
@@ -38,7 +38,7 @@ impl<'a> Source<'a> {
 
     /// The next record of a section; `what` names the expected content.
     pub fn record<D: Display>(&mut self, what: impl Fn() -> D) -> Result<Record<'_, 'a>, Error> {
-        let Form::Binary { order, version, .. } = self.form else { return self.line(what) };
+        let FileForm::Binary { order, version, .. } = self.form else { return self.line(what) };
         self.begin();
         if self.is_at_end() {
             return Err(self.fault(format!("the file ends where {} should stand", what())));
@@ -154,9 +154,10 @@ impl<'a> Record<'_, 'a> {
 }
 
 /// The form in which the numbers of a file are written.
-#[derive(Clone, Debug)]
-pub(super) enum Form {
+#[derive(Clone, Debug, Default)]
+pub(super) enum FileForm {
     /// As words in lines. A position is a line, from 1.
+    #[default]
     Text,
     /// As bytes. A position is a byte, from 0.
     Binary {
@@ -183,12 +184,12 @@ pub(super) enum Version {
     V4,
 }
 
-impl Form {
+impl FileForm {
     /// An error at a position: with its line, or with its byte and the line in which the section begins.
     pub fn fault(&self, file: &Path, place: usize, message: impl Into<String>) -> Error {
         let (line, message) = match self {
-            Form::Text => (place, message.into()),
-            Form::Binary { sections, .. } => {
+            FileForm::Text => (place, message.into()),
+            FileForm::Binary { sections, .. } => {
                 let begun = sections.partition_point(|(begin, _)| *begin <= place);
                 let line = sections[..begun].last().map_or(1, |(_, line)| *line);
                 (line, format!("at byte {place}: {}", message.into()))
@@ -199,10 +200,10 @@ impl Form {
 }
 
 /// A file that is read from its first byte to its last: as text, until it says that it is binary.
-pub(super) struct Source<'a> {
+pub(super) struct MshSource<'a> {
     pub file: &'a Path,
     /// In binary form it also states positions after the file has been read.
-    pub form: Form,
+    pub form: FileForm,
     /// The bytes that have not been read.
     rest: &'a [u8],
     /// Number of bytes that have been read, and of line ends among them.
@@ -213,11 +214,12 @@ pub(super) struct Source<'a> {
     line: usize,
 }
 
-impl<'a> Source<'a> {
+impl<'a> MshSource<'a> {
     pub fn new(file: &'a Path, content: &'a [u8]) -> Self {
         // Some editors write a byte order mark at the start.
         const MARK: &[u8] = "\u{feff}".as_bytes();
-        let mut source = Source { file, form: Form::Text, rest: content, bytes: 0, line_ends: 0, byte: 0, line: 1 };
+        let mut source =
+            MshSource { file, form: FileForm::Text, rest: content, bytes: 0, line_ends: 0, byte: 0, line: 1 };
         if content.starts_with(MARK) {
             source.pass(MARK.len());
         }
@@ -227,8 +229,8 @@ impl<'a> Source<'a> {
     /// The position of the last item read; in an empty file the first line.
     pub fn place(&self) -> usize {
         match self.form {
-            Form::Text => self.line,
-            Form::Binary { .. } => self.byte,
+            FileForm::Text => self.line,
+            FileForm::Binary { .. } => self.byte,
         }
     }
 
@@ -248,7 +250,7 @@ impl<'a> Source<'a> {
     /// The line in which the next section should begin.
     pub fn section(&mut self) -> Option<&'a [u8]> {
         let line = self.next()?;
-        if let Form::Binary { sections, .. } = &mut self.form {
+        if let FileForm::Binary { sections, .. } = &mut self.form {
             sections.push((self.byte, self.line));
         }
         Some(line)
@@ -299,10 +301,10 @@ impl<'a> Source<'a> {
         let begin = self.line;
         let end = [b"$End", name].concat();
         let found = match self.form {
-            Form::Text => std::iter::from_fn(|| self.next())
+            FileForm::Text => std::iter::from_fn(|| self.next())
                 .find(|line| line.strip_prefix(b"$End").is_some_and(|end| end.trim_ascii() == name)),
             // The length of the numbers in an unknown section is unknown.
-            Form::Binary { .. } => {
+            FileForm::Binary { .. } => {
                 let ends = |rest: &[u8]| rest.first().is_none_or(u8::is_ascii_whitespace);
                 let is_end = |at: &usize| self.rest[*at..].strip_prefix(end.as_slice()).is_some_and(ends);
                 (0..self.rest.len()).find(is_end).map(|at| self.pass(at + end.len()))

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::content::{self, Content, GmshFile, announced};
-use super::record::{ByteOrder, Form, Record, Source, Version, shortened};
+use super::content::{self, GmshFile, announced};
+use super::record::{ByteOrder, FileForm, MshSource, Record, Version, shortened};
 use crate::error::Error;
 
 /// Error for a file without a mesh header; it quotes no content, which may be private.
@@ -15,8 +15,8 @@ const ONCE: [&str; 5] = ["MeshFormat", "PhysicalNames", "Entities", "Nodes", "El
 
 /// Reads all sections; sections without nodes, elements or groups are skipped.
 pub(super) fn read(file: &Path, content: &[u8]) -> Result<GmshFile, Error> {
-    let mut source = Source::new(file, content);
-    let mut content = Content::default();
+    let mut source = MshSource::new(file, content);
+    let mut content = GmshFile::default();
     let mut entities = Entities::new();
     let mut version = None;
     let mut seen: Vec<&[u8]> = Vec::new();
@@ -66,7 +66,7 @@ pub(super) fn read(file: &Path, content: &[u8]) -> Result<GmshFile, Error> {
 }
 
 /// The section `$MeshFormat`: `version file-type data-size`, in binary form then the int 1.
-fn format(source: &mut Source) -> Result<Version, Error> {
+fn format(source: &mut MshSource) -> Result<Version, Error> {
     let begin = source.place();
     let mut line = source.line(|| "the version of the format")?;
     let number = line.finite("the version of the format")?;
@@ -91,7 +91,7 @@ fn format(source: &mut Source) -> Result<Version, Error> {
             }
             line.end()?;
             let order = byte_order(source)?;
-            source.form = Form::Binary { order, version, sections: vec![(0, begin)] };
+            source.form = FileForm::Binary { order, version, sections: vec![(0, begin)] };
         }
         other => return Err(line.fault(format!("the file type is {other}; it must be 0 for ASCII or 1 for binary"))),
     }
@@ -100,7 +100,7 @@ fn format(source: &mut Source) -> Result<Version, Error> {
 }
 
 /// The byte order in which the int 1 is written.
-fn byte_order(source: &mut Source) -> Result<ByteOrder, Error> {
+fn byte_order(source: &mut MshSource) -> Result<ByteOrder, Error> {
     match source.take() {
         Some([1, 0, 0, 0]) => Ok(ByteOrder::Little),
         Some([0, 0, 0, 1]) => Ok(ByteOrder::Big),
@@ -122,7 +122,7 @@ type Entities = HashMap<(usize, i64), Vec<u64>>;
 
 /// The section `$Entities`: four counts, then `tag box number-of-groups group ...`, points first, then curves, surfaces
 /// and volumes.
-fn read_entities(source: &mut Source, entities: &mut Entities) -> Result<(), Error> {
+fn read_entities(source: &mut MshSource, entities: &mut Entities) -> Result<(), Error> {
     const NAMES: [&str; 4] = ["points", "curves", "surfaces", "volumes"];
     let mut record = source.record(|| "the numbers of points, curves, surfaces and volumes")?;
     let mut counts = [0; 4];
@@ -158,7 +158,7 @@ fn read_entities(source: &mut Source, entities: &mut Entities) -> Result<(), Err
 }
 
 /// The section `$Nodes`: in every block first all tags, then all coordinates.
-fn nodes_of_version4(source: &mut Source, content: &mut Content) -> Result<(), Error> {
+fn nodes_of_version4(source: &mut MshSource, content: &mut GmshFile) -> Result<(), Error> {
     let mut record = source.record(|| "the number of node blocks")?;
     let counted = record.place();
     let (blocks, count) = counts(&mut record, "nodes")?;
@@ -200,7 +200,7 @@ fn nodes_of_version4(source: &mut Source, content: &mut Content) -> Result<(), E
 }
 
 /// The section `$Elements`: in every block `tag node ...`.
-fn elements_of_version4(source: &mut Source, entities: &Entities, content: &mut Content) -> Result<(), Error> {
+fn elements_of_version4(source: &mut MshSource, entities: &Entities, content: &mut GmshFile) -> Result<(), Error> {
     let mut record = source.record(|| "the number of element blocks")?;
     let counted = record.place();
     let (blocks, count) = counts(&mut record, "elements")?;
@@ -253,7 +253,7 @@ fn dimension(record: &mut Record) -> Result<usize, Error> {
 }
 
 /// The section `$Nodes`: a count, which is text in either form, then `tag x y z`.
-fn nodes_of_version2(source: &mut Source, content: &mut Content) -> Result<(), Error> {
+fn nodes_of_version2(source: &mut MshSource, content: &mut GmshFile) -> Result<(), Error> {
     let mut line = source.line(|| "the number of nodes")?;
     let count = announced(&mut line, "nodes")?;
     line.end()?;
@@ -270,13 +270,13 @@ fn nodes_of_version2(source: &mut Source, content: &mut Content) -> Result<(), E
 /// The section `$Elements`: a count, which is text in either form, then
 /// `tag type number-of-tags physical-group ... node ...`; in binary form `type number-of-elements number-of-tags`
 /// precedes elements of one type.
-fn elements_of_version2(source: &mut Source, content: &mut Content) -> Result<(), Error> {
+fn elements_of_version2(source: &mut MshSource, content: &mut GmshFile) -> Result<(), Error> {
     let mut line = source.line(|| "the number of elements")?;
     let count = announced(&mut line, "elements")?;
     line.end()?;
     let mut alike = Alike::default();
     for index in 1..=count {
-        if alike.left == 0 && matches!(source.form, Form::Binary { .. }) {
+        if alike.left == 0 && matches!(source.form, FileForm::Binary { .. }) {
             alike = Alike::read(
                 &mut source.record(|| format!("the type of element {index} of {count}"))?,
                 count + 1 - index,

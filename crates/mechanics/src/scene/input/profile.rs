@@ -4,8 +4,8 @@ use super::entry::{direction, table};
 use super::schema::condition::ProfileSpec;
 use crate::error::Error;
 use crate::fem::assembly::Kinks;
+use crate::fem::geometry::between;
 use crate::fem::geometry::dot;
-use signorini_motion::between;
 
 /// A factor that depends on the place, checked.
 #[derive(Clone, Debug)]
