@@ -234,9 +234,9 @@ impl ForcePaths {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bodies::{body, solved};
+    use super::super::bodies::{body, held, solved};
     use super::super::bound::Bracket;
-    use super::super::problem::{ContinuumProblem, Held, Linear};
+    use super::super::problem::ContinuumProblem;
     use super::*;
     use signorini_qp::{Method, Penalty, Settings};
 
@@ -280,17 +280,16 @@ mod tests {
     #[test]
     fn guides_along_all_axes_carry_every_force_and_a_roller_does_not() {
         for (mut problem, mesh) in [body(2), body(3)] {
-            let held = |axis: usize| Held { direction: COORDINATES[axis], value: Linear::default() };
             let carries = |problem: &ContinuumProblem| {
                 let stresses = Stresses::new(problem, &mesh).unwrap();
                 ForcePaths::of(&stresses, &stresses.unknowns()).is_some()
             };
-            problem.conditions[0].held = vec![held(problem.dimension - 1)];
+            problem.conditions[0].held = vec![held(problem.dimension - 1, 0.0)];
             assert!(!carries(&problem));
-            problem.conditions[1].held = vec![held(0)];
+            problem.conditions[1].held = vec![held(0, 0.0)];
             if problem.dimension == 3 {
                 assert!(!carries(&problem));
-                problem.conditions[3].held = vec![held(1)];
+                problem.conditions[3].held = vec![held(1, 0.0)];
             }
             let bracket = solved(&problem, &mesh);
             assert!(bracket.balance.is_some() && bracket.defect < 1e-10, "{}", bracket.defect);

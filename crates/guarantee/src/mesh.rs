@@ -21,7 +21,7 @@ const FOLDED: f64 = 0.1;
 const GENERATIONS: usize = 1;
 
 /// Simplices before they are a mesh.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Cells {
     pub nodes: Vec<Point>,
     /// The nodes of each simplex.

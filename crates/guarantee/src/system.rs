@@ -447,9 +447,8 @@ impl Affine {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bodies::body;
+    use super::super::bodies::{body, held};
     use super::super::displacement::Displacements;
-    use super::super::problem::{Held, Linear};
     use super::*;
 
     /// Supports along two directions that are not at right angles hold what each of them prescribes.
@@ -470,7 +469,7 @@ mod tests {
         let (mut problem, mesh) = body(2);
         let normal = [0.6, 0.8, 0.0];
         problem.obstacles[0].normal = normal;
-        problem.conditions[2].held = vec![Held { direction: COORDINATES[0], value: Linear::constant(0.25) }];
+        problem.conditions[2].held = vec![held(0, 0.25)];
         let displacements = Displacements::new(&problem, &mesh);
         let unknowns = displacements.unknowns();
         let outer = mesh.surface().find(|outer| outer.condition == 2).unwrap();
@@ -492,7 +491,7 @@ mod tests {
     #[test]
     fn a_support_inside_an_obstacle_names_the_depth() {
         let (mut problem, mesh) = body(2);
-        problem.conditions[2].held = vec![Held { direction: COORDINATES[1], value: Linear::constant(0.5) }];
+        problem.conditions[2].held = vec![held(1, 0.5)];
         let displacements = Displacements::new(&problem, &mesh);
         let error = displacements.rows(&displacements.unknowns()).unwrap_err();
         // The gap is between -0.1 and 0.26 there.
