@@ -135,14 +135,7 @@ impl<'a> Bracket<'a> {
         let displacements = Displacements::new(problem, mesh);
         let unknowns = displacements.unknowns();
         let [rows, held_rows] = displacements.rows(&unknowns)?;
-        let posed = unknowns.problem(
-            mesh.dimension,
-            &displacements.numbers,
-            &displacements.blocks(),
-            &displacements.load(),
-            &rows,
-            &displacements.places(),
-        )?;
+        let posed = unknowns.problem(&displacements.matrices(), &displacements.load(), &rows)?;
         let start = touching.map(|nodes| {
             let (count, edges) = (mesh.nodes.len(), &mesh.edges);
             ContactSet::from_fn(rows.len(), |row| match rows[row].place(mesh.dimension) {
@@ -163,14 +156,7 @@ impl<'a> Bracket<'a> {
             problem.obstacles[place.obstacle].pressed.is_some()
                 || gap - displacements.mean_towards(&primal.values, place) <= largest
         });
-        let posed = of_stress.problem(
-            mesh.dimension,
-            &stresses.numbers,
-            &stresses.blocks(),
-            &stresses.load(),
-            &rows,
-            &stresses.places(),
-        )?;
+        let posed = of_stress.problem(&stresses.matrices(), &stresses.load(), &rows)?;
         let start = touching.map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[places[row].node(mesh)]));
         let mut dual = Half::solved(of_stress, rows, &posed, start, settings)?;
         dual.prepared.take_if(|_| !serves);

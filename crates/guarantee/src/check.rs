@@ -294,9 +294,7 @@ mod tests {
             let corners_only = mesh.nodes.len();
             let [rows, _] = displacements.rows(&unknowns).unwrap();
             let rows: Vec<Row> = rows.into_iter().filter(|row| row.place(mesh.dimension) < corners_only).collect();
-            let (blocks, load, places) = (displacements.blocks(), displacements.load(), displacements.places());
-            let posed =
-                unknowns.problem(mesh.dimension, &displacements.numbers, &blocks, &load, &rows, &places).unwrap();
+            let posed = unknowns.problem(&displacements.matrices(), &displacements.load(), &rows).unwrap();
             bracket.primal = Half::solved(unknowns, rows, &posed, None, &settings()).unwrap();
             bracket.measure();
             assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));

@@ -13,7 +13,7 @@ use super::mesh::{OuterFacet, SimplexMesh};
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
-use super::system::{Affine, Block, CellNumbers, Row, add_springs};
+use super::system::{Affine, CellMatrices, CellNumbers, Row, add_springs};
 use crate::error::Error;
 use signorini_fem::geometry::COORDINATES;
 use signorini_fem::threads::each;
@@ -147,7 +147,7 @@ impl<'a> Stresses<'a> {
     }
 
     /// The stiffness of each simplex, with that of springs.
-    pub fn blocks(&self) -> Vec<Block> {
+    pub fn matrices(&self) -> CellMatrices<'_> {
         let mut blocks = each(self.mesh.count(), |cell| self.elements[cell].block());
         let dimension = self.mesh.dimension;
         for outer in self.on_springs() {
@@ -158,7 +158,7 @@ impl<'a> Stresses<'a> {
             let springs = self.problem.springs(&outer);
             add_springs(&mut blocks[outer.cell], dimension, (&springs, normal), &local, &share);
         }
-        blocks
+        CellMatrices { dimension, numbers: &self.numbers, of_cells: blocks, places: self.places() }
     }
 
     /// The work of loads and of the stress without strain with the unknowns.
