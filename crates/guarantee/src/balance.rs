@@ -11,7 +11,7 @@ use super::mesh::{OuterFacet, SimplexMesh};
 use super::normal::{Lower, add};
 use super::part_stress::PartStress;
 use super::simplex::Point;
-use super::stress::{Place, Stresses};
+use super::stress::{ContactPlace, Stresses};
 use super::system::Affine;
 use signorini_fem::geometry::{COORDINATES, minus};
 use signorini_qp::dot;
@@ -111,7 +111,6 @@ impl Levers<'_> {
     }
 }
 
-/// The levers of forces of one at places along axes.
 fn levers(about: &Levers, held: &[(usize, Point)]) -> Vec<Resultant> {
     held.iter().map(|&(place, axis)| about.at(place, axis)).collect()
 }
@@ -171,7 +170,7 @@ impl ForcePaths {
         &self,
         stresses: &Stresses,
         (unknowns, displacement): (&Affine, &[f64]),
-        places: &[Place],
+        places: &[ContactPlace],
         pulls: &[f64],
     ) -> Option<Vec<PartStress>> {
         let (mesh, tree) = (stresses.mesh, &self.tree);

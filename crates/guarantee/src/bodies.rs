@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::bound::Bracket;
 use super::mesh::{Cells, SimplexMesh};
-use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Surface};
+use super::problem::{
+    Condition, ContinuumProblem, Distance, Enclosure, FacingObstacle, HeldComponent, Linear, Medium, ObstacleSurface,
+};
 use super::simplex::{Point, Simplex, pairs};
 use signorini_fem::geometry::{COORDINATES, midpoint};
 use signorini_fem::material::{Lame, Stiffness};
@@ -52,12 +54,12 @@ pub fn filled(dimension: usize, lame: Lame, body_force: Point) -> ContinuumProbl
 }
 
 /// A support along an axis that moves by an amount.
-pub fn held(axis: usize, amount: f64) -> Held {
-    Held { direction: COORDINATES[axis], value: Linear::constant(amount) }
+pub fn held(axis: usize, amount: f64) -> HeldComponent {
+    HeldComponent { direction: COORDINATES[axis], value: Linear::constant(amount) }
 }
 
 /// A facet on supports alone.
-pub fn held_by(held: impl IntoIterator<Item = Held>) -> Condition {
+pub fn held_by(held: impl IntoIterator<Item = HeldComponent>) -> Condition {
     Condition { held: held.into_iter().collect(), ..Condition::default() }
 }
 
@@ -78,9 +80,9 @@ pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
             Condition { obstacles: vec![0], ..free() },
             free(),
         ],
-        obstacles: vec![Facing {
+        obstacles: vec![FacingObstacle {
             normal: COORDINATES[dimension - 1],
-            surface: Surface::Rigid(Arc::new(Bowl(dimension))),
+            surface: ObstacleSurface::Rigid(Arc::new(Bowl(dimension))),
             pressed: None,
         }],
         ..filled(dimension, Lame { lambda: 1.5, mu: 1.0 }, body_force)

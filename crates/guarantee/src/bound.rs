@@ -20,7 +20,7 @@ use super::mesh::SimplexMesh;
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, ElasticLaw, Foundation};
 use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
-use super::stress::{Place, Stresses};
+use super::stress::{ContactPlace, Stresses};
 use super::system::{Affine, Row};
 use crate::error::Error;
 use signorini_fem::geometry::{dot, length, minus};
@@ -45,7 +45,7 @@ pub struct Bracket<'a> {
     pub held_rows: Vec<Row>,
     pub dual: Half,
     /// The places at which the rows of the stress act.
-    pub places: Vec<Place>,
+    pub places: Vec<ContactPlace>,
     pub settings: Settings,
     /// How forces are carried to the supports; `None` if these cannot carry every force.
     pub balance: Option<ForcePaths>,
@@ -440,11 +440,8 @@ impl<'a> Bracket<'a> {
 /// A point of a facet on springs under a displacement and a stress: a part of the body without volume, whose strain is
 /// the displacement of the facet.
 pub struct OnSprings {
-    /// The point of integration.
     pub at: Sample,
-    /// The simplex of the facet.
     pub cell: usize,
-    /// The displacement.
     pub moved: Point,
     /// The displacement whose forces the springs have in balance with the stress.
     pub balanced: Point,

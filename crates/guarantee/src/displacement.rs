@@ -8,8 +8,8 @@ use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::normal::add;
 use super::problem::{ContinuumProblem, weighted_mean};
 use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, work};
-use super::stress::Place;
-use super::system::{Affine, CellMatrices, CellMatrix, CellNumbers, Row, add_springs};
+use super::stress::ContactPlace;
+use super::system::{Affine, CellMatrices, CellMatrix, Row, add_springs};
 use crate::error::Error;
 use signorini_fem::geometry::{COORDINATES, midpoint};
 use signorini_fem::threads::each;
@@ -20,19 +20,18 @@ pub struct Displacements<'a> {
     problem: &'a ContinuumProblem,
     mesh: &'a SimplexMesh,
     /// The functions of each simplex, each along all axes.
-    pub numbers: CellNumbers,
+    pub numbers: Vec<Vec<usize>>,
 }
 
 impl<'a> Displacements<'a> {
     pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Self {
         let (dimension, nodes) = (mesh.dimension, mesh.nodes.len());
-        let functions = |cell: usize| {
-            mesh.cell(cell).iter().copied().chain(mesh.edges_of(cell).iter().map(move |edge| nodes + edge))
-        };
         let along_axes = |function: usize| dimension * function..dimension * (function + 1);
-        let numbers = (0..mesh.count()).flat_map(functions).flat_map(along_axes).collect();
-        let of_cell = dimension * (dimension + 1) * (dimension + 2) / 2;
-        Displacements { problem, mesh, numbers: CellNumbers { of_cell, numbers } }
+        let numbers = |cell: usize| {
+            let functions = mesh.cell(cell).iter().copied().chain(mesh.edges_of(cell).iter().map(|edge| nodes + edge));
+            functions.flat_map(along_axes).collect()
+        };
+        Displacements { problem, mesh, numbers: (0..mesh.count()).map(numbers).collect() }
     }
 
     /// The places of the functions: a linear displacement has its values there as coefficients.
@@ -45,7 +44,7 @@ impl<'a> Displacements<'a> {
     /// The functions on a facet: those of its corners, then those of their pairs.
     pub fn on_facet(&self, outer: &OuterFacet) -> Vec<usize> {
         let dimension = self.mesh.dimension;
-        let numbers = self.numbers.of(outer.cell);
+        let numbers = &self.numbers[outer.cell];
         local_functions(dimension, outer.local).map(|function| numbers[dimension * function] / dimension).collect()
     }
 
@@ -73,7 +72,7 @@ impl<'a> Displacements<'a> {
     }
 
     /// The mean of a displacement towards an obstacle at a place, as in a row of the stress.
-    pub fn mean_towards(&self, values: &[f64], place: &Place) -> f64 {
+    pub fn mean_towards(&self, values: &[f64], place: &ContactPlace) -> f64 {
         weighted_mean(self.mesh.dimension, place.corner, &self.towards(values, &place.on, place.obstacle))
     }
 
@@ -109,9 +108,7 @@ impl<'a> Displacements<'a> {
         }
         let (mut rows, mut held) = (Vec::with_capacity(gaps.len()), Vec::new());
         for ((number, function, other), gap) in gaps {
-            let normal = self.problem.obstacles[number].normal;
-            let travel = self.problem.travel(number, self.function_count());
-            let row = Row::new((function, other), dimension, normal, travel, gap);
+            let row = Row::new(self.problem, number, (function, other, self.function_count()), gap);
             let (free, prescribed) = unknowns.of_terms(&row.terms);
             match free.is_empty() {
                 true if prescribed > gap => {
@@ -131,7 +128,6 @@ impl<'a> Displacements<'a> {
         self.mesh.nodes.len() + self.mesh.edges.len()
     }
 
-    /// The stiffness of each simplex.
     pub fn matrices(&self) -> CellMatrices<'_> {
         let mut blocks = each(self.mesh.count(), |cell| self.stiffness(cell));
         let dimension = self.mesh.dimension;
@@ -154,7 +150,7 @@ impl<'a> Displacements<'a> {
     }
 
     fn stiffness(&self, cell: usize) -> CellMatrix {
-        let (simplex, count) = (self.mesh.simplex(cell), self.numbers.of(cell).len());
+        let (simplex, count) = (self.mesh.simplex(cell), self.numbers[cell].len());
         let law = self.problem.law(self.mesh.origins[cell]);
         let mut block = vec![0.0; count * count];
         let mut strains: Vec<Tensor> = Vec::with_capacity(count);
@@ -219,7 +215,7 @@ impl<'a> Displacements<'a> {
     pub fn strain(&self, coefficients: &[f64], cell: usize, at: Weights) -> Tensor {
         let mut sum = [0.0; 6];
         let strains = self.strains_of_functions(&self.mesh.simplex(cell), at);
-        for (&number, strain) in self.numbers.of(cell).iter().zip(strains) {
+        for (&number, strain) in self.numbers[cell].iter().zip(strains) {
             add(&mut sum, coefficients[number], &strain);
         }
         sum

@@ -7,8 +7,8 @@ use super::bodies::{body, clamped, filled, held, held_by, medium, solved};
 use super::bound::Bracket;
 use super::mesh::{Cells, SimplexMesh};
 use super::problem::{
-    Condition, ContinuumProblem, Distance, Enclosure, Facing, Foundation, Held, Linear, Medium, Pressed, RigidFace,
-    Surface,
+    Condition, ContinuumProblem, Distance, Enclosure, FacingObstacle, Foundation, HeldComponent, Linear, Medium,
+    ObstacleSurface, PressingForce, RigidPlate,
 };
 use super::simplex::{Point, pairs};
 use signorini_fem::Formulation;
@@ -32,8 +32,12 @@ impl Distance for Flat {
     }
 }
 
-fn plane(axis: usize, distance: f64) -> Vec<Facing> {
-    vec![Facing { normal: COORDINATES[axis], surface: Surface::Rigid(Arc::new(Flat(distance))), pressed: None }]
+fn plane(axis: usize, distance: f64) -> Vec<FacingObstacle> {
+    vec![FacingObstacle {
+        normal: COORDINATES[axis],
+        surface: ObstacleSurface::Rigid(Arc::new(Flat(distance))),
+        pressed: None,
+    }]
 }
 
 /// The energies D and J of the bracket, the energy of the closed form and the scale of its rounding.
@@ -75,7 +79,7 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
         assert!(is_near(low) && is_near(high), "{low} {high}");
         // Half of the force as a load on the plane, which travels until the head balances it.
         let force = area * pressure / 2.0;
-        problem.obstacles[0].pressed = Some(Pressed { force, cosine: 1.0 });
+        problem.obstacles[0].pressed = Some(PressingForce { force, cosine: 1.0 });
         let bracket = solved(&problem, &mesh);
         let (energy, head) = stored(pressure / 2.0);
         assert_exact(&bracket, energy - force * (GAP - head));
@@ -89,7 +93,7 @@ fn a_column_on_springs_with_own_stress_is_exact_under_a_plane_that_stands_still_
         let moment = |about: &usize| cross([0.5, 0.5, 0.5], COORDINATES[up].map(|part| -force * part))[*about];
         let free = (0..dimension).map(|axis| (shift(axis), push(axis)));
         let free = free.chain(turns.iter().map(|about| (turn(about), moment(about)))).collect();
-        problem.rigid_faces = vec![RigidFace { prescribed: [Linear::default(); 3], free }];
+        problem.rigid_faces = vec![RigidPlate { prescribed: [Linear::default(); 3], free }];
         problem.conditions[2] = Condition { rigid_face: Some(0), ..Condition::default() };
         problem.obstacles = Vec::new();
         assert_exact(&solved(&problem, &mesh), energy + force * head);
@@ -184,7 +188,8 @@ fn linear_profiles_are_exact() {
         let gradient = [[0.02, -0.01, 0.015], [0.03, 0.01, -0.02], [-0.01, 0.02, 0.025]];
         let moved =
             |axis: usize, place: Point| (0..dimension).map(|along| gradient[axis][along] * place[along]).sum::<f64>();
-        let all = (0..dimension).map(|axis| Held { value: Linear::of(|place| moved(axis, place)), ..held(axis, 0.0) });
+        let all = (0..dimension)
+            .map(|axis| HeldComponent { value: Linear::of(|place| moved(axis, place)), ..held(axis, 0.0) });
         problem.conditions = vec![held_by(all); 4];
         let strain = |i: usize, j: usize| (gradient[i][j] + gradient[j][i]) / 2.0;
         let mut tensor = [0.0; 6];
@@ -234,8 +239,8 @@ fn a_turned_body_has_the_same_bounds() {
         }
         for facing in &mut turned.obstacles {
             facing.normal = by_turn(facing.normal);
-            if let Surface::Rigid(distance) = &facing.surface {
-                facing.surface = Surface::Rigid(Arc::new(Turned(distance.clone(), turn)));
+            if let ObstacleSurface::Rigid(distance) = &facing.surface {
+                facing.surface = ObstacleSurface::Rigid(Arc::new(Turned(distance.clone(), turn)));
             }
         }
         let mut turned_mesh = mesh.clone();

@@ -52,7 +52,6 @@ impl PartStress {
         stress
     }
 
-    /// The value at a corner of part k.
     pub fn corner(&self, k: usize, corner: usize) -> Tensor {
         self.values[k * self.of_part + corner]
     }
@@ -85,7 +84,6 @@ impl PartStress {
         factors
     }
 
-    /// The same with other values of the coefficients.
     pub fn map(&self, value: impl Fn(Tensor) -> Tensor) -> Self {
         PartStress { of_part: self.of_part, values: self.values.iter().map(|&old| value(old)).collect() }
     }
@@ -94,7 +92,6 @@ impl PartStress {
         self.values.as_flattened()
     }
 
-    /// Adds a multiple of another stress.
     pub fn add(&mut self, factor: f64, other: &PartStress) {
         add(self.values.as_flattened_mut(), factor, other.entries());
     }

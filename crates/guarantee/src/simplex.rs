@@ -41,7 +41,6 @@ pub fn number_of_pair(count: usize, one: usize, other: usize) -> usize {
     pairs(count).position(|pair| pair == key(one, other)).unwrap_or(0)
 }
 
-/// The barycentric coordinates of the centre.
 pub fn weights_of_centre(dimension: usize) -> Weights {
     std::array::from_fn(|corner| if corner <= dimension { 1.0 / (dimension + 1) as f64 } else { 0.0 })
 }
@@ -72,7 +71,6 @@ impl Simplex {
         [minus(b, a), minus(c, a), if self.dimension == 2 { [0.0, 0.0, 1.0] } else { minus(d, a) }]
     }
 
-    /// The determinant of the edges.
     fn determinant(&self) -> f64 {
         let [first, second, third] = self.edges();
         dot(first, cross(second, third))

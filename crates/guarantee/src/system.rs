@@ -25,7 +25,8 @@ pub type CellMatrix = Vec<f64>;
 #[derive(Debug)]
 pub struct CellMatrices<'a> {
     pub dimension: usize,
-    pub numbers: &'a CellNumbers,
+    /// The unknowns of each simplex.
+    pub numbers: &'a [Vec<usize>],
     pub of_cells: Vec<CellMatrix>,
     /// At each of these a linear displacement has the values of the unknowns along the axes.
     pub places: Vec<Point>,
@@ -53,24 +54,6 @@ pub fn add_springs(
     }
 }
 
-/// The unknowns of the simplices, the same number for each.
-#[derive(Clone, Debug)]
-pub struct CellNumbers {
-    pub of_cell: usize,
-    /// Those of all simplices, one after another.
-    pub numbers: Vec<usize>,
-}
-
-impl CellNumbers {
-    pub fn of(&self, cell: usize) -> &[usize] {
-        &self.numbers[cell * self.of_cell..(cell + 1) * self.of_cell]
-    }
-
-    pub fn iter(&self) -> impl Iterator<Item = &[usize]> + Clone {
-        self.numbers.chunks_exact(self.of_cell)
-    }
-}
-
 /// A bound on a sum of unknowns: `sum of coefficient x <= gap`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
@@ -83,19 +66,19 @@ pub struct Row {
 }
 
 impl Row {
-    /// The bound on the displacement of a place along a normal, less that of a place of another body, with the travel
-    /// of the obstacle towards the body and the share of it that counts.
+    /// The bound on the displacement of one of `count` places towards an obstacle, less that of a place of the obstacle
+    /// if it is a body, with the travel of the obstacle.
     pub fn new(
-        (place, other): (usize, Option<usize>),
-        dimension: usize,
-        normal: Point,
-        travel: Option<(usize, f64)>,
+        problem: &ContinuumProblem,
+        obstacle: usize,
+        (place, other, count): (usize, Option<usize>, usize),
         gap: f64,
     ) -> Self {
+        let (dimension, normal) = (problem.dimension, problem.obstacles[obstacle].normal);
         let mut terms: Vec<_> = along(place, dimension, normal).collect();
         let own = terms.len();
         let other = other.into_iter().flat_map(|place| along(place, dimension, normal));
-        terms.extend(other.map(|(unknown, part)| (unknown, -part)).chain(travel));
+        terms.extend(other.map(|(unknown, part)| (unknown, -part)).chain(problem.travel(obstacle, count)));
         Row { terms, own, gap }
     }
 
@@ -414,7 +397,7 @@ impl Affine {
     }
 
     /// Column starts and rows of the lower triangle in the free unknowns.
-    fn pattern(&self, numbers: &CellNumbers) -> (Vec<usize>, Vec<u32>) {
+    fn pattern(&self, numbers: &[Vec<usize>]) -> (Vec<usize>, Vec<u32>) {
         let free = |cell: &[usize]| {
             let mut free: Vec<usize> = Vec::with_capacity(cell.len());
             cell.iter().for_each(|&unknown| free.extend(self.terms(unknown).iter().map(|term| term.0 as usize)));
@@ -427,7 +410,7 @@ impl Affine {
         for column in 0..self.free {
             // The unknowns of one place have the same neighbours.
             if column == 0 || around.at(column) != around.at(column - 1) {
-                let cells = around.at(column).iter().flat_map(|&cell| numbers.of(cell as usize));
+                let cells = around.at(column).iter().flat_map(|&cell| &numbers[cell as usize]);
                 found.clear();
                 found.extend(cells.flat_map(|&other| self.terms(other).iter().map(|term| term.0)));
                 found.sort_unstable();
@@ -468,15 +451,16 @@ mod tests {
         let displacements = Displacements::new(&problem, &mesh);
         let unknowns = displacements.unknowns();
         let outer = mesh.surface().find(|outer| outer.condition == 2).unwrap();
-        let row = Row::new((displacements.on_facet(&outer)[2], None), 2, normal, None, 0.0);
-        assert_eq!(row.place(2), displacements.on_facet(&outer)[2]);
+        let place = displacements.on_facet(&outer)[2];
+        let row = Row::new(&problem, 0, (place, None, displacements.places().len()), 0.0);
+        assert_eq!(row.place(2), place);
         let (own, coefficient) = unknowns.own_term(&row).unwrap();
         assert!((coefficient - 0.8).abs() < 1e-14, "{coefficient}");
         let mut values = unknowns.expanded(&vec![0.0; unknowns.free]);
         assert!((row.value(&values) - 0.15).abs() < 1e-14);
         unknowns.move_to(&mut values, &row, 7.0);
         assert!((row.value(&values) - 7.0).abs() < 1e-13, "{}", row.value(&values));
-        // Held rows have no prescribed part.
+        // HeldComponent rows have no prescribed part.
         let held = unknowns.with_held(std::iter::once(&row), -1.0).unwrap();
         assert_eq!(held.free, unknowns.free - 1);
         assert!(own < unknowns.free && (row.value(&held.expanded(&vec![0.5; held.free])) + 1.0).abs() < 1e-14);

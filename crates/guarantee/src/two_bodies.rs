@@ -4,7 +4,7 @@ use super::bodies::{assert_energy, body, clamped, filled, held, held_by, medium,
 use super::bound::{Bracket, steepest};
 use super::fans::Unjoined;
 use super::mesh::{Cells, SimplexMesh};
-use super::problem::{Condition, ContinuumProblem, Facing, Linear, Surface};
+use super::problem::{Condition, ContinuumProblem, FacingObstacle, Linear, ObstacleSurface};
 use signorini_fem::geometry::{COORDINATES, key};
 use signorini_fem::material::Lame;
 
@@ -59,9 +59,9 @@ fn unjoined_blocks(divisions: [[usize; 2]; 2], young: [f64; 2], poisson: f64, pr
             Condition { obstacles: vec![0], ..free() },
             Condition { faces: vec![0], ..free() },
         ],
-        obstacles: vec![Facing {
+        obstacles: vec![FacingObstacle {
             normal: COORDINATES[1],
-            surface: Surface::Body { reach: 1.0, fit: None, shift: 0.0 },
+            surface: ObstacleSurface::Body { reach: 1.0, fit: None, shift: 0.0 },
             pressed: None,
         }],
         ..filled(2, Lame { lambda: 0.0, mu: 1.0 }, [0.0; 3])
@@ -103,7 +103,7 @@ fn columns_of_two_bodies_are_exact() {
         ([[3, 2], [4, 1]], YOUNG, Some(-0.01), 0.002, 0.028),
     ] {
         let (mut problem, mut mesh) = blocks(divisions, young, 0.0, |_| 0.0);
-        problem.obstacles[0].surface = Surface::Body { reach: 1.0, fit, shift };
+        problem.obstacles[0].surface = ObstacleSurface::Body { reach: 1.0, fit, shift };
         let pressure = lowered * pressure_of(young);
         for level in 0..3 {
             let bracket = exact(&problem, &mesh, lowered / 2.0 * pressure);
@@ -323,7 +323,7 @@ fn several_layers_are_refused() {
     let (mut problem, _) = blocks([[1, 1], [1, 1]], [1.0, 1.0], 0.3, |_| 0.0);
     let mesh = SimplexMesh::new(2, cells).unwrap();
     assert_eq!(mesh.clone().joined(&mut problem).err(), Some(Unjoined::Layers(0)));
-    problem.obstacles[0].surface = Surface::Body { reach: 0.2, fit: None, shift: 0.0 };
+    problem.obstacles[0].surface = ObstacleSurface::Body { reach: 0.2, fit: None, shift: 0.0 };
     let cut = mesh.joined(&mut problem).unwrap().0;
     assert_eq!(problem.facing(&cut).filter(|facing| cut.partner(facing.0.facet, 0).is_some()).count(), 4);
 }

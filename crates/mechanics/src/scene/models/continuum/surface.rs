@@ -14,7 +14,7 @@ use crate::scene::input::schema::condition::{LoadSpec, PressureSpec, ProfileSpec
 use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
 use crate::scene::models::held::components;
 use crate::scene::models::load::spread;
-use signorini_guarantee::{Circle, Condition, Held, Linear, Point};
+use signorini_guarantee::{Condition, HeldComponent, Linear, Point, SideCircle};
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
 const AT_A_CORNER: f64 = 1e-9;
@@ -91,7 +91,7 @@ pub(super) fn conditions(
     for (name, centre, radius) in circles {
         surface.change_known(name, |condition| {
             let [x, y] = centre;
-            condition.circle = Some(Circle { centre: [x, y, 0.0], radius });
+            condition.circle = Some(SideCircle { centre: [x, y, 0.0], radius });
         });
     }
     Ok(surface.numbered(conditions))
@@ -109,11 +109,10 @@ fn add_supports(scene: &Scene, model: &Model, surface: &mut Surface) -> Result<(
         let components = components(scene, index, support)?;
         surface.change(name, |condition, facet| {
             let factor = profile.on(facet)?;
-            condition.held.extend(
-                components
-                    .iter()
-                    .map(|component| Held { direction: component.direction, value: factor.times(component.value) }),
-            );
+            condition.held.extend(components.iter().map(|component| HeldComponent {
+                direction: component.direction,
+                value: factor.times(component.value),
+            }));
             Ok(())
         })?;
     }
@@ -277,7 +276,7 @@ impl<'a> Surface<'a> {
             let Some(condition) = &mut entry.condition else { continue };
             let of_corners: Vec<_> = facet.iter().map(|&node| axes(&self.pieces.nodes[node])).collect();
             for axis in (0..3).filter(|&axis| of_corners.iter().all(|axes| axes[axis])) {
-                condition.held.push(Held { direction: COORDINATES[axis], value: Linear::default() });
+                condition.held.push(HeldComponent { direction: COORDINATES[axis], value: Linear::default() });
             }
         }
     }
