@@ -14,12 +14,12 @@
 //! balance, and they add half of the work of their forces under `v - w` with it.
 
 use super::balance::ForcePaths;
-use super::displacement::{Displacements, values_of_functions};
+use super::displacement::Displacements;
 use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::SimplexMesh;
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, ElasticLaw, Foundation};
-use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
+use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, values_of_functions, work};
 use super::stress::{ContactPlace, Stresses};
 use super::system::{Affine, Row};
 use crate::error::Error;

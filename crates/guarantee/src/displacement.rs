@@ -7,7 +7,9 @@ use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::normal::add;
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, work};
+use super::simplex::{
+    Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, values_of_functions, work,
+};
 use super::stress::ContactPlace;
 use super::system::{Affine, CellMatrices, CellMatrix, Row, add_springs};
 use crate::error::Error;
@@ -240,11 +242,6 @@ impl<'a> Displacements<'a> {
             })
         })
     }
-}
-
-/// The values at a point of the functions of a simplex of this dimension, or of a facet.
-pub fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
-    pairs(dimension + 1).map(move |[i, j]| at[i] * at[j] * if i == j { 1.0 } else { 2.0 })
 }
 
 /// The functions of a simplex on the side opposite to a corner: those of its corners, then those of their pairs.

@@ -149,8 +149,10 @@ impl SimplexMesh {
         let surface = surface.iter().map(|(facet, &condition)| (filled(facet.iter().copied()), condition)).collect();
         let mesh =
             Self::of(dimension, nodes, cells.iter().map(|cell| filled(cell.iter().copied())), origins, &surface, next);
-        let fits = |(at, condition): (&[Option<usize>; 2], &Option<usize>)| at[1].is_some() || condition.is_some();
-        mesh.cells_at().iter().zip(&mesh.conditions).all(fits).then_some(mesh)
+        let mut cells_at = vec![0_u8; mesh.facets.len()];
+        mesh.sides.iter().for_each(|&facet| cells_at[facet] += 1);
+        let fits = |(at, condition): (&u8, &Option<usize>)| *at == 2 || condition.is_some();
+        cells_at.iter().zip(&mesh.conditions).all(fits).then_some(mesh)
     }
 
     /// The mesh with edges of the surface in the plane that lie opposite to each other, and stay so when they are

@@ -31,6 +31,11 @@ pub fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> + Clone {
     (0..count).map(|i| [i, i]).chain((0..count).flat_map(move |i| (i + 1..count).map(move |j| [i, j])))
 }
 
+/// The values at a point of Bernstein's functions on a simplex of this dimension, or on a facet.
+pub fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
+    pairs(dimension + 1).map(move |[i, j]| at[i] * at[j] * if i == j { 1.0 } else { 2.0 })
+}
+
 /// The corners of the side opposite to a corner, in their order.
 pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = usize> + Clone {
     (0..=dimension).filter(move |&corner| corner != side)
