@@ -161,7 +161,7 @@ pub struct Judged {
 }
 
 impl Bracket<'_> {
-    /// Judges a displacement by its strain in an element of the first mesh, a function of the place; the flag says if it is
+    /// Judges a displacement by its strain in an element of the first mesh: a function of the place, and whether it is
     /// linear or constant. The displacement needs no other property: the bound follows from its distance to the centre
     /// of the ball and the radius. Integrals of a linear strain are exact; those of others are by five points in each
     /// direction on each part of a simplex.
