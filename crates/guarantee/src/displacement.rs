@@ -5,10 +5,13 @@ use std::collections::BTreeMap;
 
 use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
+use super::normal::add;
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, work};
-use super::stress::Place;
-use super::system::{Affine, Block, CellNumbers, Row, add_springs};
+use super::simplex::{
+    Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, values_of_functions, work,
+};
+use super::stress::ContactPlace;
+use super::system::{Affine, CellMatrices, CellMatrix, Row, add_springs};
 use crate::error::Error;
 use signorini_fem::geometry::{COORDINATES, midpoint};
 use signorini_fem::threads::each;
@@ -19,19 +22,18 @@ pub struct Displacements<'a> {
     problem: &'a ContinuumProblem,
     mesh: &'a SimplexMesh,
     /// The functions of each simplex, each along all axes.
-    pub numbers: CellNumbers,
+    pub numbers: Vec<Vec<usize>>,
 }
 
 impl<'a> Displacements<'a> {
     pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Self {
         let (dimension, nodes) = (mesh.dimension, mesh.nodes.len());
-        let functions = |cell: usize| {
-            mesh.cell(cell).iter().copied().chain(mesh.edges_of(cell).iter().map(move |edge| nodes + edge))
-        };
         let along_axes = |function: usize| dimension * function..dimension * (function + 1);
-        let numbers = (0..mesh.count()).flat_map(functions).flat_map(along_axes).collect();
-        let of_cell = dimension * (dimension + 1) * (dimension + 2) / 2;
-        Displacements { problem, mesh, numbers: CellNumbers { of_cell, numbers } }
+        let numbers = |cell: usize| {
+            let functions = mesh.cell(cell).iter().copied().chain(mesh.edges_of(cell).iter().map(|edge| nodes + edge));
+            functions.flat_map(along_axes).collect()
+        };
+        Displacements { problem, mesh, numbers: (0..mesh.count()).map(numbers).collect() }
     }
 
     /// The places of the functions: a linear displacement has its values there as coefficients.
@@ -44,7 +46,7 @@ impl<'a> Displacements<'a> {
     /// The functions on a facet: those of its corners, then those of their pairs.
     pub fn on_facet(&self, outer: &OuterFacet) -> Vec<usize> {
         let dimension = self.mesh.dimension;
-        let numbers = self.numbers.of(outer.cell);
+        let numbers = &self.numbers[outer.cell];
         local_functions(dimension, outer.local).map(|function| numbers[dimension * function] / dimension).collect()
     }
 
@@ -72,7 +74,7 @@ impl<'a> Displacements<'a> {
     }
 
     /// The mean of a displacement towards an obstacle at a place, as in a row of the stress.
-    pub fn mean_towards(&self, values: &[f64], place: &Place) -> f64 {
+    pub fn mean_towards(&self, values: &[f64], place: &ContactPlace) -> f64 {
         weighted_mean(self.mesh.dimension, place.corner, &self.towards(values, &place.on, place.obstacle))
     }
 
@@ -108,9 +110,7 @@ impl<'a> Displacements<'a> {
         }
         let (mut rows, mut held) = (Vec::with_capacity(gaps.len()), Vec::new());
         for ((number, function, other), gap) in gaps {
-            let normal = self.problem.obstacles[number].normal;
-            let travel = self.problem.travel(number, self.function_count());
-            let row = Row::new((function, other), dimension, normal, travel, gap);
+            let row = Row::new(self.problem, number, (function, other, self.function_count()), gap);
             let (free, prescribed) = unknowns.of_terms(&row.terms);
             match free.is_empty() {
                 true if prescribed > gap => {
@@ -130,8 +130,7 @@ impl<'a> Displacements<'a> {
         self.mesh.nodes.len() + self.mesh.edges.len()
     }
 
-    /// The stiffness of each simplex.
-    pub fn blocks(&self) -> Vec<Block> {
+    pub fn matrices(&self) -> CellMatrices<'_> {
         let mut blocks = each(self.mesh.count(), |cell| self.stiffness(cell));
         let dimension = self.mesh.dimension;
         for outer in self.mesh.surface() {
@@ -149,11 +148,11 @@ impl<'a> Displacements<'a> {
                 add_springs(&mut blocks[outer.cell], dimension, (&springs, normal), &local, &share);
             }
         }
-        blocks
+        CellMatrices { dimension, numbers: &self.numbers, of_cells: blocks, places: self.places() }
     }
 
-    fn stiffness(&self, cell: usize) -> Block {
-        let (simplex, count) = (self.mesh.simplex(cell), self.numbers.of(cell).len());
+    fn stiffness(&self, cell: usize) -> CellMatrix {
+        let (simplex, count) = (self.mesh.simplex(cell), self.numbers[cell].len());
         let law = self.problem.law(self.mesh.origins[cell]);
         let mut block = vec![0.0; count * count];
         let mut strains: Vec<Tensor> = Vec::with_capacity(count);
@@ -216,32 +215,12 @@ impl<'a> Displacements<'a> {
 
     /// The strain of a displacement at a point of a simplex, given in barycentric coordinates.
     pub fn strain(&self, coefficients: &[f64], cell: usize, at: Weights) -> Tensor {
-        let (simplex, dimension) = (self.mesh.simplex(cell), self.mesh.dimension);
-        // With the coefficients c_ij the displacement is the sum of l_j d_j / 2, and its gradient that of d_j times the
-        // slope of l_j, with d_j = 2 sum of l_i c_ij.
-        let mut along = [[0.0; 3]; MOST_CORNERS];
-        for (pair, numbers) in pairs(dimension + 1).zip(self.numbers.of(cell).chunks_exact(dimension)) {
-            let [i, j] = pair;
-            for (axis, &number) in numbers.iter().enumerate() {
-                let twice = 2.0 * coefficients[number];
-                along[j][axis] += at[i] * twice;
-                along[i][axis] += if i == j { 0.0 } else { at[j] * twice };
-            }
+        let mut sum = [0.0; 6];
+        let strains = self.strains_of_functions(&self.mesh.simplex(cell), at);
+        for (&number, strain) in self.numbers[cell].iter().zip(strains) {
+            add(&mut sum, coefficients[number], &strain);
         }
-        let mut gradient = [[0.0; 3]; 3];
-        for (along, slope) in along.iter().zip(simplex.slopes()).take(dimension + 1) {
-            for (line, part) in gradient.iter_mut().zip(along) {
-                line.iter_mut().zip(slope).for_each(|(entry, slope)| *entry += part * slope);
-            }
-        }
-        let shear = |i: usize, j: usize| (gradient[i][j] + gradient[j][i]) / 2.0;
-        let mut hoop = gradient[2][2];
-        if self.problem.is_axisymmetric {
-            // A radial displacement stretches the circle about the axis.
-            let radial: f64 = along.iter().zip(at).map(|(along, weight)| weight * along[0] / 2.0).sum();
-            hoop += radial / simplex.at(at)[0];
-        }
-        [gradient[0][0], gradient[1][1], hoop, shear(0, 1), shear(1, 2), shear(2, 0)]
+        sum
     }
 
     /// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all
@@ -263,11 +242,6 @@ impl<'a> Displacements<'a> {
             })
         })
     }
-}
-
-/// The values at a point of the functions of a simplex of this dimension, or of a facet.
-pub fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
-    pairs(dimension + 1).map(move |[i, j]| at[i] * at[j] * if i == j { 1.0 } else { 2.0 })
 }
 
 /// The functions of a simplex on the side opposite to a corner: those of its corners, then those of their pairs.

@@ -47,7 +47,7 @@ mod two_bodies;
 
 pub use answer::ContinuumAnswer;
 #[doc(hidden)]
-pub use answer::{Judged, Strain};
+pub use answer::Judged;
 #[doc(hidden)]
 pub use bound::Bracket;
 pub use error::Error;
@@ -57,7 +57,8 @@ pub use fans::{SAME_PLACE, Unjoined};
 pub use mesh::{Cells, SimplexMesh};
 #[doc(hidden)]
 pub use problem::{
-    Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace, Surface,
+    Condition, ContinuumProblem, Distance, Enclosure, FacingObstacle, HeldComponent, Linear, Medium, ObstacleSurface,
+    PressingForce, RigidPlate, SideCircle,
 };
 #[doc(hidden)]
 pub use simplex::{Point, pairs};

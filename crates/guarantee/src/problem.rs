@@ -26,8 +26,8 @@ pub struct ContinuumProblem {
     /// The conditions on facets, most of them on the surface: sides of the outline in the plane.
     pub conditions: Vec<Condition>,
     /// The parts of the surface that move as rigid plates.
-    pub rigid_faces: Vec<RigidFace>,
-    pub obstacles: Vec<Facing>,
+    pub rigid_faces: Vec<RigidPlate>,
+    pub obstacles: Vec<FacingObstacle>,
     /// The names of the parts of the surface, each with the number of its body.
     pub boundaries: Vec<(String, usize)>,
 }
@@ -53,8 +53,7 @@ pub struct Linear {
 /// The condition on a facet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Condition {
-    /// The prescribed components of the displacement.
-    pub held: Vec<Held>,
+    pub held: Vec<HeldComponent>,
     pub rigid_face: Option<usize>,
     /// The traction along each axis, in force per area.
     pub traction: [Linear; 3],
@@ -71,15 +70,14 @@ pub struct Condition {
     /// The named parts of the surface that the facet belongs to.
     pub boundaries: Vec<usize>,
     /// In the plane, the circle on which new nodes are placed; without it they halve the straight side.
-    pub circle: Option<Circle>,
+    pub circle: Option<SideCircle>,
 }
 
 /// A prescribed component of the displacement: `direction . u = value`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
+pub struct HeldComponent {
     /// The direction of the prescribed component, of length 1.
     pub direction: Point,
-    /// The prescribed displacement, in length, linear in space.
     pub value: Linear,
 }
 
@@ -106,7 +104,7 @@ impl Foundation {
 
 /// A part of the surface that moves as a rigid plate: by prescribed motions and amounts of free ones.
 #[derive(Clone, Debug)]
-pub struct RigidFace {
+pub struct RigidPlate {
     /// The displacement by the prescribed motions, along each axis, in length.
     pub prescribed: [Linear; 3],
     /// The displacement along each axis by one of each free motion, and the force or the moment along it.
@@ -115,10 +113,8 @@ pub struct RigidFace {
 
 /// A circle that a side approximates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
-    /// The centre of the circle, in length.
+pub struct SideCircle {
     pub centre: Point,
-    /// Its radius, in length.
     pub radius: f64,
 }
 
@@ -161,17 +157,17 @@ impl Condition {
 
 /// An obstacle with rows along one direction.
 #[derive(Clone, Debug)]
-pub struct Facing {
+pub struct FacingObstacle {
     /// The unit vector from the body towards the obstacle.
     pub normal: Point,
-    pub surface: Surface,
+    pub surface: ObstacleSurface,
     /// What presses it, if it moves.
-    pub pressed: Option<Pressed>,
+    pub pressed: Option<PressingForce>,
 }
 
 /// What a body meets at an obstacle.
 #[derive(Clone, Debug)]
-pub enum Surface {
+pub enum ObstacleSurface {
     /// A rigid surface with this distance function.
     Rigid(Arc<dyn Distance>),
     /// Another body, in the plane.
@@ -187,7 +183,7 @@ pub enum Surface {
 
 /// The force on an obstacle that a force presses, and the direction of its travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pressed {
+pub struct PressingForce {
     /// The force along its travel.
     pub force: f64,
     /// The part of the travel against the normal: the cosine of their angle.
@@ -249,11 +245,11 @@ impl ContinuumProblem {
 
     /// The gap to an obstacle on a facet; `None` if it is out of reach on all of the facet.
     pub fn gap(&self, mesh: &SimplexMesh, facet: usize, obstacle: usize) -> Option<Enclosure> {
-        let Facing { normal, surface, .. } = &self.obstacles[obstacle];
+        let FacingObstacle { normal, surface, .. } = &self.obstacles[obstacle];
         let corners = mesh.corners_of_facet(facet);
         match surface {
-            Surface::Rigid(distance) => distance.gap(&corners),
-            Surface::Body { fit, shift, .. } => {
+            ObstacleSurface::Rigid(distance) => distance.gap(&corners),
+            ObstacleSurface::Body { fit, shift, .. } => {
                 let partner = mesh.partner(facet, obstacle)?;
                 let others = mesh.corners_of_facet(partner.on.facet);
                 let away = |corner: usize| {
@@ -289,7 +285,7 @@ impl ContinuumProblem {
             return straight;
         }
         let round = mesh.refined(marked, |condition, middle| match self.conditions[condition].circle {
-            Some(Circle { centre, radius }) => {
+            Some(SideCircle { centre, radius }) => {
                 let away = distance(centre, middle);
                 [0, 1, 2].map(|axis| centre[axis] + (middle[axis] - centre[axis]) * radius / away)
             }
@@ -329,7 +325,8 @@ impl ContinuumProblem {
 
     /// The sum of the contact forces, as those that press the obstacles make it; `None` unless all are pressed.
     pub fn pressing_force(&self) -> Option<f64> {
-        let along_normal = |facing: &Facing| facing.pressed.map(|Pressed { force, cosine }| force / cosine);
+        let along_normal =
+            |facing: &FacingObstacle| facing.pressed.map(|PressingForce { force, cosine }| force / cosine);
         if self.obstacles.is_empty() { None } else { self.obstacles.iter().map(along_normal).sum() }
     }
 
@@ -462,7 +459,7 @@ mod tests {
     /// A flat triangle on a chord: the middle of the arc lies beyond its tip, or not.
     #[test]
     fn a_node_goes_onto_its_circle_unless_a_triangle_would_fold() {
-        let on_circle = Circle { centre: [0.0, 1.0, 0.0], radius: 2.0_f64.sqrt() };
+        let on_circle = SideCircle { centre: [0.0, 1.0, 0.0], radius: 2.0_f64.sqrt() };
         let side = |circle| Condition { circle, ..Condition::default() };
         let problem = ContinuumProblem {
             conditions: vec![side(Some(on_circle)), side(None)],

@@ -11,7 +11,7 @@ use crate::scene::Model;
 use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
 use crate::scene::models::load::{Acting, acting, spread};
-use signorini_guarantee::{Circle, Condition, Held, Linear, Point};
+use signorini_guarantee::{Condition, HeldComponent, Linear, Point, SideCircle};
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
 const AT_A_CORNER: f64 = 1e-9;
@@ -87,7 +87,7 @@ pub(super) fn conditions(
     for (name, centre, radius) in circles {
         surface.change_known(name, |condition| {
             let [x, y] = centre;
-            condition.circle = Some(Circle { centre: [x, y, 0.0], radius });
+            condition.circle = Some(SideCircle { centre: [x, y, 0.0], radius });
         });
     }
     Ok(surface.numbered(conditions))
@@ -106,7 +106,7 @@ fn add_supports(model: &Model, surface: &mut Surface) -> Result<(), WhyNot> {
             let factor = factor.on(facet)?;
             let components = support.components.iter();
             condition.held.extend(
-                components.map(|one| Held { direction: one.direction, value: factor.times(one.value) }),
+                components.map(|one| HeldComponent { direction: one.direction, value: factor.times(one.value) }),
             );
             Ok(())
         })?;
@@ -257,7 +257,7 @@ impl<'a> Surface<'a> {
             let Some(condition) = &mut entry.condition else { continue };
             let of_corners: Vec<_> = facet.iter().map(|&node| axes(&self.pieces.nodes[node])).collect();
             for axis in (0..3).filter(|&axis| of_corners.iter().all(|axes| axes[axis])) {
-                condition.held.push(Held { direction: COORDINATES[axis], value: Linear::default() });
+                condition.held.push(HeldComponent { direction: COORDINATES[axis], value: Linear::default() });
             }
         }
     }
