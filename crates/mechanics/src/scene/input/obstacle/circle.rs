@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::graph::{Form, Graph};
 use super::row::{Foot, Local, Surface};
-use super::shape::{Geometry, ObstacleShape, Side, Site};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite, Side};
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::input::entry::{point, wrong};
@@ -37,7 +37,7 @@ pub struct CircleSpec {
 }
 
 impl ObstacleShape for CircleSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
         Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(round(radius, self.side)))))
@@ -198,7 +198,7 @@ pub struct SphereSpec {
 }
 
 impl ObstacleShape for SphereSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
         Ok(Geometry::rigid(site, Graph::new(site, apex, Form::Turned(round(radius, self.side)))))
@@ -235,7 +235,7 @@ pub struct CylinderSpec {
 }
 
 impl ObstacleShape for CylinderSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
         let axis = axis_across(&self.axis, site)?;
@@ -244,7 +244,7 @@ impl ObstacleShape for CylinderSpec {
 }
 
 /// The unit direction of a cylinder's axis.
-fn axis_across(written: &[f64; 3], site: &Site) -> Result<[f64; 3], Error> {
+fn axis_across(written: &[f64; 3], site: &ObstacleSite) -> Result<[f64; 3], Error> {
     let (axis, approach) = (site.axis("axis", written)?, site.direction());
     let lean = dot(axis, approach);
     if lean.abs() > PERPENDICULAR {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::patch::{PAIRS, distance_of_origin, extent, linear};
 use super::row::{ObstacleRow, RigidSurface, Surface};
-use super::shape::Site;
+use super::shape::ObstacleSite;
 use crate::fem::geometry::{cross, dot, minus};
 use crate::scene::input::schema::model::{Approach, Rule};
 
@@ -53,7 +53,7 @@ pub(super) trait Grid: Debug + Send + Sync {
 
 impl Graph {
     /// The surface with its origin at a point.
-    pub fn new(site: &Site, origin: [f64; 3], form: Form) -> Self {
+    pub fn new(site: &ObstacleSite, origin: [f64; 3], form: Form) -> Self {
         let [first, second] = across(site.approach);
         let mut axes = [[0.0; 3]; 3];
         (axes[0][first], axes[1][second], axes[2]) = (1.0, 1.0, site.direction());

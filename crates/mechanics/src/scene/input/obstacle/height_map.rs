@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::graph::{Form, Graph, Grid, across};
 use super::patch::{Foot, PAIRS, Patch, extent};
-use super::shape::{Geometry, ObstacleShape, Site};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite};
 use crate::error::Error;
 use crate::fem::geometry::{dot, minus, plus};
 use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
@@ -37,7 +37,7 @@ pub struct HeightMapSpec {
 }
 
 impl ObstacleShape for HeightMapSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let map = HeightMap::new(self, site)?;
         check_reach(&map, site)?;
         Ok(Geometry::rigid(site, Graph::new(site, [0.0; 3], Form::Grid(Arc::new(map)))))
@@ -65,7 +65,7 @@ struct Reach {
 
 impl HeightMap {
     /// Checks the grid.
-    fn new(spec: &HeightMapSpec, site: &Site) -> Result<Self, Error> {
+    fn new(spec: &HeightMapSpec, site: &ObstacleSite) -> Result<Self, Error> {
         let (_, sense) = site.approach.axis();
         for (field, lines) in [("x", &spec.x), ("y", &spec.y)] {
             check_lines(lines, &site.field(field))?;
@@ -253,7 +253,7 @@ impl Grid for HeightMap {
 }
 
 /// Checks that every candidate lies over the grid: a height map is undefined beyond its rim.
-fn check_reach(map: &HeightMap, site: &Site) -> Result<(), Error> {
+fn check_reach(map: &HeightMap, site: &ObstacleSite) -> Result<(), Error> {
     let across = across(site.approach);
     for &(node, _) in site.candidates {
         let at = site.body.mesh().nodes()[node];

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::order::{Between, Facing, facet_size};
-use super::shape::Site;
+use super::shape::ObstacleSite;
 use crate::error::Error;
 use crate::fem::assembly::{PositiveBasis, outward};
 use crate::fem::mortar::{Found, MortarRow, Opposite};
@@ -25,7 +25,7 @@ const SAG: f64 = 5.0;
 /// The rows between the boundary of an obstacle and that of another body; `side` is `true` if the other boundary is to
 /// carry them, and `None` to choose.
 pub(super) fn between(
-    site: &Site,
+    site: &ObstacleSite,
     boundaries: [&Boundary; 2],
     side: Option<bool>,
     reach: Option<f64>,
@@ -127,7 +127,7 @@ fn facing(seen: Opposite) -> Facing {
 /// The share of a fit that its drawing may miss it by.
 const OF_FIT: f64 = 0.1;
 
-fn warnings(site: &Site, [slave, master]: [&Boundary; 2], found: &Found, fit: Option<f64>) -> Vec<Warning> {
+fn warnings(site: &ObstacleSite, [slave, master]: [&Boundary; 2], found: &Found, fit: Option<f64>) -> Vec<Warning> {
     let (obstacle, boundary, other) = (site.obstacle, &slave.name, &master.name);
     let [share, of_other] = found.covered;
     if found.rows.is_empty() {

@@ -7,7 +7,7 @@ use super::graph::{Form, Graph};
 use super::patch::linear;
 use super::polyline::Polyline;
 use super::row::{Foot, Local, ObstacleRow, RigidSurface, Surface};
-use super::shape::{Geometry, ObstacleShape, Site};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite};
 use crate::error::Error;
 use crate::fem::geometry::{dot, length, minus};
 use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, vector, wrong};
@@ -27,7 +27,7 @@ pub struct PlaneSpec {
 
 impl PlaneSpec {
     /// Its point and its unit normal.
-    fn checked(&self, site: &Site) -> Result<([f64; 3], [f64; 3]), Error> {
+    fn checked(&self, site: &ObstacleSite) -> Result<([f64; 3], [f64; 3]), Error> {
         let (dimension, approach) = (site.body.dimension(), site.direction());
         let at = vector(&site.field("point"), &self.point, dimension)?;
         let normal = vector(&site.field("normal"), &self.normal, dimension)?;
@@ -51,7 +51,7 @@ impl PlaneSpec {
 }
 
 impl ObstacleShape for PlaneSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let (point, normal) = self.checked(site)?;
         if site.body.dimension() == 2 {
             let line = Line { normal: site.local(normal) };
@@ -124,7 +124,7 @@ pub struct TableSpec {
 }
 
 impl TableSpec {
-    fn polyline(&self, site: &Site) -> Result<Polyline, Error> {
+    fn polyline(&self, site: &ObstacleSite) -> Result<Polyline, Error> {
         let path = site.field("points");
         let axis = site.name_along();
         let mut knots: Vec<Local> = Vec::with_capacity(self.points.len());
@@ -148,7 +148,7 @@ impl TableSpec {
 }
 
 impl ObstacleShape for TableSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let table = self.polyline(site)?;
         check_reach(&table, site)?;
         Ok(Geometry::rigid(site, Graph::new(site, [0.0; 3], Form::DrawnOut(Arc::new(table)))))
@@ -156,7 +156,7 @@ impl ObstacleShape for TableSpec {
 }
 
 /// Checks that every candidate lies over the surface.
-fn check_reach(table: &Polyline, site: &Site) -> Result<(), Error> {
+fn check_reach(table: &Polyline, site: &ObstacleSite) -> Result<(), Error> {
     let (axis, path) = (site.name_along(), site.field("points"));
     let (first, last) = table.range();
     for &(node, _) in site.candidates {
@@ -189,7 +189,7 @@ pub struct ConeSpec {
 }
 
 impl ObstacleShape for ConeSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;
         Ok(Geometry::rigid(site, Graph::new(site, apex, Form::Turned(Arc::new(Polyline::wedge(slope))))))
@@ -208,7 +208,7 @@ pub struct WedgeSpec {
 }
 
 impl ObstacleShape for WedgeSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;
         Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(Arc::new(Polyline::wedge(slope))))))

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::graph::{Form, Graph};
 use super::row::{Foot, Local, Surface};
-use super::shape::{Geometry, ObstacleShape, Site};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite};
 use crate::error::Error;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -183,7 +183,7 @@ pub struct ParabolaSpec {
 }
 
 impl ObstacleShape for ParabolaSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let radius = site.positive("radius", self.radius)?;
         Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(Arc::new(Parabola { radius })))))

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// An obstacle shape with its numbers.
 pub(crate) trait ObstacleShape {
     /// Checks the numbers, and places the surface.
-    fn place(&self, site: &Site) -> Result<Geometry, Error>;
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error>;
 
     /// The boundary that forms the surface, if it is the surface of another body.
     fn other_boundary(&self) -> Option<&str> {
@@ -45,13 +45,13 @@ pub(crate) enum Geometry {
 
 impl Geometry {
     /// A rigid surface; the rule of the site makes its rows.
-    pub(super) fn rigid(site: &Site, surface: impl RigidSurface + 'static) -> Self {
+    pub(super) fn rigid(site: &ObstacleSite, surface: impl RigidSurface + 'static) -> Self {
         Geometry::Rigid(Arc::new(Ruled { surface, rule: site.rule, approach: site.direction() }))
     }
 }
 
 /// The place of an obstacle in a scene.
-pub(crate) struct Site<'a> {
+pub(crate) struct ObstacleSite<'a> {
     /// JSON path of the obstacle, as `obstacles[0]`.
     pub obstacle: &'a str,
     /// JSON path of its shape, as `obstacles[0].shape.plane`.
@@ -94,7 +94,7 @@ impl Side {
     }
 }
 
-impl Site<'_> {
+impl ObstacleSite<'_> {
     /// The JSON path of a field of the shape.
     pub fn field(&self, name: &str) -> String {
         format!("{}.{name}", self.path)

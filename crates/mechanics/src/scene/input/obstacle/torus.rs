@@ -2,7 +2,7 @@
 
 use super::circle::BESIDE;
 use super::row::{ObstacleRow, RigidSurface};
-use super::shape::{Geometry, ObstacleShape, Site};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite};
 use crate::error::Error;
 use crate::fem::geometry::{dot, minus, unit};
 use crate::scene::input::entry::{number, point, wrong};
@@ -31,7 +31,7 @@ pub struct TorusSpec {
 }
 
 impl ObstacleShape for TorusSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let centre = site.point("centre", &self.centre)?;
         let (axis, approach) = (unit(site.axis("axis", &self.axis)?), site.direction());
         let lean = dot(axis, approach);

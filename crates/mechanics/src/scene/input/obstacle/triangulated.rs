@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::row::{ObstacleRow, RigidSurface};
-use super::shape::{Geometry, ObstacleShape, Side, Site};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite, Side};
 use crate::error::Error;
 use crate::fem::geometry::minus;
 use crate::fem::surface::{ClosedSurface, Crossing};
@@ -42,7 +42,7 @@ fn is_origin(at: &[f64; 3]) -> bool {
 }
 
 impl ObstacleShape for SurfaceSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let origin = site.point("origin", &self.origin)?;
         let file = site.files.named(&self.file, site.field("file"))?;
         let surface =
