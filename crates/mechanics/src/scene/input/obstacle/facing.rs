@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::mortar;
-use super::order::{Between, Facing};
+use super::order::{Between, BodyRow};
 use super::shape::{Geometry, ObstacleShape, ObstacleSite};
 use crate::error::Error;
 use crate::fem::assembly::{node_normals, outward};
@@ -146,7 +146,7 @@ impl ObstacleShape for FacingSpec {
         let row = |(&(node, _), pair): (&(usize, f64), Pair)| {
             let distance = fit.unwrap_or(pair.distance);
             let ends = vec![(node, 1.0), (pair.partner, -1.0)];
-            Some(Facing { ends, normal: pair.normal, mean: pair.mean, outward: None, distance, area: None })
+            Some(BodyRow { ends, normal: pair.normal, mean: pair.mean, outward: None, distance, area: None })
         };
         let rows = site.candidates.iter().zip(pairs).map(row).collect();
         Ok(Geometry::Body(Box::new(Between {

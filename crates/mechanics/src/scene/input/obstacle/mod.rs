@@ -2,7 +2,6 @@
 
 mod circle;
 mod facing;
-mod graph;
 mod height_map;
 pub(crate) mod mortar;
 #[cfg(test)]
@@ -14,6 +13,8 @@ mod plane;
 mod polyline;
 mod row;
 mod shape;
+mod surface;
+mod swept;
 mod torus;
 mod triangulated;
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::order::{Between, Facing, facet_size};
+use super::order::{Between, BodyRow, facet_size};
 use super::shape::ObstacleSite;
 use crate::error::Error;
 use crate::fem::assembly::{PositiveBasis, outward};
@@ -49,7 +49,7 @@ pub(super) fn between(
     for row in found.rows {
         let (ends, distance) = (ends(&row, &site.dofs.basis), fit.unwrap_or(row.gap));
         let (area, outward) = (Some(row.area), Some(row.outward));
-        let own = Facing { ends, normal: row.normal, mean: row.mean, outward, distance, area };
+        let own = BodyRow { ends, normal: row.normal, mean: row.mean, outward, distance, area };
         let Some(&candidate) = candidates.get(&row.node) else { continue };
         match &rows[candidate] {
             None => rows[candidate] = Some(own),
@@ -117,11 +117,11 @@ pub(crate) fn ends(row: &MortarRow, basis: &PositiveBasis) -> Vec<(usize, f64)> 
 }
 
 /// The contact seen from a node of the other body.
-fn facing(seen: Opposite) -> Facing {
+fn facing(seen: Opposite) -> BodyRow {
     let normal = seen.normal.map(|part| 0.0 - part);
     let slave = seen.slave.into_iter().filter(|end| end.1 != 0.0).map(|(node, share)| (node, 0.0 - share));
     let ends = std::iter::once((seen.node, 1.0)).chain(slave).collect();
-    Facing { ends, normal, mean: normal, outward: None, distance: seen.gap, area: None }
+    BodyRow { ends, normal, mean: normal, outward: None, distance: seen.gap, area: None }
 }
 
 /// The share of a fit that its drawing may miss it by.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::order::{Between, Facing, SideOrder};
+use super::order::{Between, BodyRow, SideOrder};
 use super::row::{Obstacle, ObstacleRow};
 use super::shape::{Geometry, ObstacleSite};
 use crate::error::Error;
@@ -189,29 +189,25 @@ impl PlacedObstacle {
 
     /// The row of the candidate of this index against another body; `None` if the obstacle is rigid, or nothing faces
     /// the candidate.
-    pub(crate) fn facing(&self, candidate: usize) -> Option<&Facing> {
+    pub(crate) fn facing(&self, candidate: usize) -> Option<&BodyRow> {
         self.between()?.rows.get(candidate)?.as_ref()
     }
 
-    /// Further rows of candidates at corners, by the indices of the candidates.
-    fn further(&self) -> &[(usize, Facing)] {
-        self.between().map_or(&[], |between| &between.further)
-    }
-
-    /// The same with their rows, if the surface is shifted by `gap`.
-    pub(crate) fn further_rows(&self, gap: f64) -> impl Iterator<Item = (usize, &Facing, ObstacleRow)> {
-        let row = move |facing: &Facing| without_rounding(facing.row(gap, self.approach));
-        self.further().iter().map(move |(candidate, facing)| (*candidate, facing, row(facing)))
+    /// Further rows of candidates at corners, by the indices of the candidates, if the surface is shifted by `gap`.
+    pub(crate) fn further_rows(&self, gap: f64) -> impl Iterator<Item = (usize, &BodyRow, ObstacleRow)> {
+        let row = move |facing: &BodyRow| without_rounding(facing.row(gap, self.approach));
+        let further = self.between().into_iter().flat_map(|between| &between.further);
+        further.map(move |(candidate, facing)| (*candidate, facing, row(facing)))
     }
 
     /// The rows of all candidates against another body; none if the obstacle is rigid.
-    pub(crate) fn all_facing(&self) -> impl Iterator<Item = &Facing> {
-        let first = (0..self.candidates.len()).filter_map(|candidate| self.facing(candidate));
-        first.chain(self.further().iter().map(|one| &one.1))
+    pub(crate) fn all_facing(&self) -> impl Iterator<Item = &BodyRow> {
+        let all = self.between().into_iter();
+        all.flat_map(|between| between.rows.iter().flatten().chain(between.further.iter().map(|one| &one.1)))
     }
 
     /// The contact seen from nodes of the other body, if rows are means.
-    pub(crate) fn across(&self) -> &[(usize, Facing)] {
+    pub(crate) fn across(&self) -> &[(usize, BodyRow)] {
         self.between().map_or(&[], |between| &between.across)
     }
 

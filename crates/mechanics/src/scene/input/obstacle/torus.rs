@@ -1,12 +1,12 @@
 //! A torus: the points at the distance `minor` from a ring of radius `major`.
 
 use super::circle::BESIDE;
-use super::row::{ObstacleRow, RigidSurface};
+use super::row::ObstacleRow;
 use super::shape::{Geometry, ObstacleShape, ObstacleSite};
+use super::surface::Surface;
 use crate::error::Error;
 use crate::fem::geometry::{dot, minus, unit};
 use crate::scene::input::entry::{number, point, wrong};
-use crate::scene::input::schema::model::Rule;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -83,8 +83,16 @@ struct Torus {
 }
 
 impl Torus {
-    /// Distance along the approach direction from the centre to the outside that faces the body, over a place.
-    fn height(&self, from_centre: [f64; 3]) -> Option<f64> {
+    /// A node from the centre, with the torus moved by `shift`.
+    fn seen_from_centre(&self, node: [f64; 3], shift: f64) -> [f64; 3] {
+        [0, 1, 2].map(|axis| node[axis] - self.centre[axis] - shift * self.approach[axis])
+    }
+}
+
+impl Surface for Torus {
+    /// To the outside that faces the body.
+    fn gap(&self, node: [f64; 3], shift: f64) -> Option<f64> {
+        let from_centre = self.seen_from_centre(node, shift);
         let over = dot(from_centre, self.approach);
         let across = minus(from_centre, self.approach.map(|part| over * part));
         // The height of a circle over a place, or `None` beyond it.
@@ -98,12 +106,11 @@ impl Torus {
                 half(self.minor, along).and_then(|tube| half(self.major + tube, dot(aside, aside).sqrt()))
             }
         }
-        .map(|height| -height)
+        .map(|height| -height - over)
     }
 
-    /// Unit normal into the torus at the closest point that faces the body, and the distance along it; `None` if no
-    /// closest point faces the body.
-    fn closest(&self, from_centre: [f64; 3]) -> Result<Option<([f64; 3], f64)>, String> {
+    fn closest(&self, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let from_centre = self.seen_from_centre(node, shift);
         let along = dot(from_centre, self.axis);
         let aside = minus(from_centre, self.axis.map(|part| along * part));
         let radius = dot(aside, aside).sqrt();
@@ -115,37 +122,23 @@ impl Torus {
         if radius <= self.rounding && self.stands == Stands::Flat {
             // On the axis the ring is equally close all around: go straight on to the point where the planes through
             // the closest points meet.
-            return Ok((along < -self.rounding).then(|| (self.approach, distance * to_ring / -along)));
+            let row = ObstacleRow { normal: self.approach, gap: distance * to_ring / -along };
+            return Ok((along < -self.rounding).then_some(row));
         }
         // On the axis of an upright ring the closest point lies straight ahead.
         let outwards = if radius <= self.rounding { self.approach } else { aside.map(|part| part / radius) };
         let part = |axis: usize| (radius - self.major) / to_ring * outwards[axis] + along / to_ring * self.axis[axis];
         let normal = [0, 1, 2].map(|axis| -part(axis));
         let facing = dot(normal, self.approach);
-        match (facing > 0.0, distance >= 0.0) {
-            (true, _) => Ok(Some((normal, distance))),
-            (false, true) => Ok(None),
-            // A node level with the ring has a closest point; rounding must not remove it.
-            (false, false) if -facing * to_ring <= self.rounding => Ok(Some((normal, distance))),
-            // At the side of the tube, as of a circle.
-            (false, false) if (1.0 - facing * facing).sqrt() * to_ring > BESIDE * self.minor => {
-                Ok(Some((normal, distance)))
-            }
-            (false, false) => Err("lies deeper in the torus than the middle of its tube".into()),
-        }
-    }
-}
-
-impl RigidSurface for Torus {
-    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        let from_centre = [0, 1, 2].map(|axis| node[axis] - self.centre[axis] - shift * self.approach[axis]);
-        let row = |(normal, gap): ([f64; 3], f64)| ObstacleRow { normal, gap };
-        match rule {
-            Rule::Approach => {
-                let over = dot(from_centre, self.approach);
-                Ok(self.height(from_centre).map(|height| row((self.approach, height - over))))
-            }
-            Rule::ClosestPoint => Ok(self.closest(from_centre)?.map(row)),
+        // A node level with the ring has a closest point, which rounding must not remove; so has one at the side of the
+        // tube, as of a circle.
+        let is_level = -facing * to_ring <= self.rounding;
+        let is_beside = || (1.0 - facing * facing).sqrt() * to_ring > BESIDE * self.minor;
+        match distance >= 0.0 {
+            _ if facing > 0.0 => Ok(Some(ObstacleRow { normal, gap: distance })),
+            true => Ok(None),
+            false if is_level || is_beside() => Ok(Some(ObstacleRow { normal, gap: distance })),
+            false => Err("lies deeper in the torus than the middle of its tube".into()),
         }
     }
 }
