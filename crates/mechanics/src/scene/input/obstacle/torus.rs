@@ -44,17 +44,17 @@ impl ObstacleShape for TorusSpec {
             );
             return Err(wrong(site.field("minor"), message));
         }
-        let (axis, stands) = if lean.abs() <= ALIGNED {
-            (unit(minus(axis, approach.map(|part| lean * part))), Stands::Upright)
+        let (axis, is_flat) = if lean.abs() <= ALIGNED {
+            (unit(minus(axis, approach.map(|part| lean * part))), false)
         } else if 1.0 - lean.abs() <= ALIGNED {
-            (approach, Stands::Flat)
+            (approach, true)
         } else {
             let (axis, approach) = (point(&self.axis), point(&approach));
             let message = format!("{axis} must be parallel or perpendicular to the approach direction {approach}");
             return Err(wrong(site.field("axis"), message));
         };
         let rounding = site.rounding();
-        Ok(Geometry::rigid(site, Torus { centre, axis, approach, stands, major, minor, rounding }))
+        Ok(Geometry::rigid(site, Torus { centre, axis, approach, is_flat, major, minor, rounding }))
     }
 
     fn radius(&self) -> f64 {
@@ -62,21 +62,13 @@ impl ObstacleShape for TorusSpec {
     }
 }
 
-/// The position of a ring in front of the body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stands {
-    /// Its axis along the approach direction.
-    Flat,
-    /// Its axis perpendicular to the approach direction.
-    Upright,
-}
-
 #[derive(Clone, Copy, Debug)]
 struct Torus {
     centre: [f64; 3],
     axis: [f64; 3],
     approach: [f64; 3],
-    stands: Stands,
+    /// The axis is along the approach direction; else the ring stands upright, with its axis perpendicular to it.
+    is_flat: bool,
     major: f64,
     minor: f64,
     rounding: f64,
@@ -97,16 +89,15 @@ impl Surface for Torus {
         let across = minus(from_centre, self.approach.map(|part| over * part));
         // The height of a circle over a place, or `None` beyond it.
         let half = |radius: f64, at: f64| (at.abs() <= radius).then(|| ((radius - at) * (radius + at)).sqrt());
-        match self.stands {
-            Stands::Flat => half(self.minor, dot(across, across).sqrt() - self.major),
-            Stands::Upright => {
-                let along = dot(across, self.axis);
-                let aside = minus(across, self.axis.map(|part| along * part));
-                // The section perpendicular to the axis is a ring; its outer circle faces the body.
-                half(self.minor, along).and_then(|tube| half(self.major + tube, dot(aside, aside).sqrt()))
-            }
-        }
-        .map(|height| -height - over)
+        let height = if self.is_flat {
+            half(self.minor, dot(across, across).sqrt() - self.major)
+        } else {
+            let along = dot(across, self.axis);
+            let aside = minus(across, self.axis.map(|part| along * part));
+            // The section perpendicular to the axis is a ring; its outer circle faces the body.
+            half(self.minor, along).and_then(|tube| half(self.major + tube, dot(aside, aside).sqrt()))
+        };
+        Some(-height? - over)
     }
 
     fn closest(&self, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
@@ -119,7 +110,7 @@ impl Surface for Torus {
             return Err("lies in the middle of the tube of the torus".into());
         }
         let distance = to_ring - self.minor;
-        if radius <= self.rounding && self.stands == Stands::Flat {
+        if radius <= self.rounding && self.is_flat {
             // On the axis the ring is equally close all around: go straight on to the point where the planes through
             // the closest points meet.
             let row = ObstacleRow { normal: self.approach, gap: distance * to_ring / -along };
