@@ -9,7 +9,7 @@ use crate::fem::assembly::internal_force;
 use crate::fem::body::PhaseNumber;
 use crate::fem::geometry::COORDINATES;
 use crate::scene::answers::answer::Answer;
-use crate::scene::input::obstacle::PlacedObstacle;
+use crate::scene::input::obstacle::{PlacedObstacle, SideOrder};
 use crate::scene::input::parse::files;
 use crate::scene::input::schema::Scene;
 use crate::scene::models::elastic::{bodies, joined};
@@ -200,10 +200,11 @@ fn obstacles(
         Kind::GapOf(index) => obstacles[*index] = obstacles[*index].moved(by),
         Kind::InShape(index, _) => {
             let varied = parameter::varied(scene, parameter, by).map_err(in_words)?;
-            let site = (&parts.body, &parts.conditions.dofs);
-            let path = format!("obstacles[{index}]");
-            let shaped = obstacles[*index].shaped(&varied.obstacles[*index], &path, site, files(&varied));
-            obstacles[*index] = shaped.map_err(in_words)?;
+            // Only rigid shapes have such parameters: the order of bodies does not matter.
+            let order = SideOrder::of(&parts.body, std::iter::empty());
+            let site = (&parts.body, &parts.conditions.dofs, &order);
+            let (spec, path) = (&varied.obstacles[*index], format!("obstacles[{index}]"));
+            obstacles[*index] = PlacedObstacle::of_scene(spec, &path, site, files(&varied)).map_err(in_words)?;
         }
         _ => return Ok((obstacles, gap + by)),
     }

@@ -1,11 +1,8 @@
 //! A circle: from outside, the half that faces the body, h(s) = R - sqrt(R^2 - s^2); or from inside, h(s) = sqrt(R^2 -
 //! s^2) - R.
 
-use std::sync::Arc;
-
-use super::graph::{Form, Graph};
-use super::row::{Foot, Local, Surface};
-use super::shape::{Geometry, ObstacleShape, Side, Site};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite, Side};
+use super::swept::{Curve, CurveFoot, Local, Sweep, Swept};
 use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::input::entry::{point, wrong};
@@ -37,10 +34,10 @@ pub struct CircleSpec {
 }
 
 impl ObstacleShape for CircleSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
-        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(round(radius, self.side)))))
+        Ok(Sweep::DrawnOut.place(RoundCurve { radius, side: self.side }, site, apex))
     }
 
     fn radius(&self) -> f64 {
@@ -48,133 +45,96 @@ impl ObstacleShape for CircleSpec {
     }
 }
 
-/// A circle with its apex at the origin.
-pub(super) fn round(radius: f64, side: Side) -> Arc<dyn Surface> {
-    match side {
-        Side::Outside => Arc::new(Circle { radius }),
-        Side::Inside => Arc::new(Hollow(Circle { radius })),
+/// A circle with its apex at the origin and its centre at (0, R); from inside its mirror image as a graph, with the
+/// centre at (0, -R).
+#[derive(Debug)]
+pub(super) struct RoundCurve {
+    pub radius: f64,
+    pub side: Side,
+}
+
+impl RoundCurve {
+    /// `R^2 - s^2`, the squared distance from the axis through the centre, at least 0.
+    fn rest(&self, along: f64) -> f64 {
+        ((self.radius - along) * (self.radius + along)).max(0.0)
+    }
+
+    /// The error of the interpolation at both ends and in the middle of a stretch of half length k: at most
+    /// `|h'''| k^3/(9 sqrt 3)`.
+    fn remainder(&self, from: f64, to: f64) -> f64 {
+        let (furthest, half) = (from.abs().max(to.abs()), (to - from).abs() / 2.0);
+        let third = 3.0 * self.radius.powi(2) * furthest / self.rest(furthest).powf(2.5);
+        if half == 0.0 { 0.0 } else { third * half.powi(3) / (9.0 * 3.0_f64.sqrt()) }
+    }
+
+    /// The tangent of the convex circle in the middle of a stretch with these heights, at its ends and there, and the
+    /// largest height above it: the circle lies above each tangent, and farthest from it at an end.
+    fn tangent(&self, [first, middle, last]: [f64; 3], from: f64, to: f64) -> ([f64; 3], f64) {
+        let place = (from + to) / 2.0;
+        let slope = place / ((self.radius - place) * (self.radius + place)).sqrt();
+        let [start, end] = [from, to].map(|along| middle + slope * (along - place));
+        ([start, middle, end], (first - start).max(last - end).max(0.0))
     }
 }
 
-/// A circle with its apex at the origin and its centre at (0, R).
-#[derive(Debug)]
-struct Circle {
-    radius: f64,
-}
-
-impl Surface for Circle {
+impl Curve for RoundCurve {
     fn height(&self, along: f64) -> Option<f64> {
-        let rest = (self.radius - along) * (self.radius + along);
         // s^2/(R + sqrt(R^2 - s^2)) is R - sqrt(R^2 - s^2) without the cancellation.
-        (along.abs() <= self.radius).then(|| along * (along / (self.radius + rest.max(0.0).sqrt())))
+        let height = along * (along / (self.radius + self.rest(along).sqrt()));
+        (along.abs() <= self.radius).then_some(if self.side.is_outside() { height } else { 0.0 - height })
     }
 
     /// The quadratic function through both ends and the middle, or the tangent in the middle if that is closer: towards
-    /// a vertical side the derivatives grow without limit.
+    /// a vertical side the derivatives grow without limit. From inside the chord takes the place of the tangent, with
+    /// the same distance: it lies below the surface, and the surface below the tangent.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
-        let remainder = self.remainder(from, to);
-        match self.tangent(from, to)? {
-            (values, spread) if spread < 2.0 * remainder => Some((values, [0.0, spread])),
-            // Heights lie between 0 and R, and so the quadratic function between -R and 2 R.
-            _ => Some((self.heights(from, to)?, [remainder.min(2.0 * self.radius); 2])),
+        let (heights, remainder) = (self.heights(from, to)?, self.remainder(from, to));
+        let [first, _, last] = heights;
+        let (tangent, spread) = self.tangent(heights.map(|height| self.side.signed(height)), from, to);
+        if spread < 2.0 * remainder {
+            let chord = [first, (first + last) / 2.0, last];
+            return Some((if self.side.is_outside() { tangent } else { chord }, [0.0, spread]));
         }
+        // Heights lie between 0 and R, and so the quadratic function between -R and 2 R.
+        Some((heights, [remainder.min(2.0 * self.radius); 2]))
     }
 
     /// The chord: the height is convex in the squared distance. In `w = sqrt(R^2 - s^2)`, which falls from `w0` to
     /// `w1`, the chord lies `(w0 - w)(w - w1)/(w0 + w1)` above the circle, most in the middle of both.
     fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
-        let rest = |along: f64| ((self.radius - along) * (self.radius + along)).max(0.0).sqrt();
-        let sum = rest(near) + rest(far);
+        let sum = self.rest(near).sqrt() + self.rest(far).sqrt();
         // (far^2 - near^2)/(w0 + w1) is w0 - w1 without the cancellation.
-        let below = if sum > 0.0 { ((far - near) * ((far + near) / sum)).powi(2) / (4.0 * sum) } else { 0.0 };
-        Some(([self.height(near)?, self.height(far)?], [below, 0.0]))
+        let off = if sum > 0.0 { ((far - near) * ((far + near) / sum)).powi(2) / (4.0 * sum) } else { 0.0 };
+        let off = if self.side.is_outside() { [off, 0.0] } else { [0.0, off] };
+        Some(([self.height(near)?, self.height(far)?], off))
     }
 
-    /// Distance to the centre minus the radius. A node behind the centre has no closest point on the facing half; only
-    /// if it lies inside and far from the axis, as a node at the rim of a cup, it is moved out to its side.
-    fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
-        let (r, rest) = (self.radius, self.radius - towards);
+    /// Distance to the centre minus the radius; from inside, in all directions, the radius minus it. A node outside and
+    /// behind the centre has no closest point on the facing half; only if it lies inside and far from the axis, as a
+    /// node at the rim of a cup, it is moved out to its side.
+    fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<CurveFoot>, &'static str> {
+        let (sense, r) = (self.side.signed(1.0), self.side.signed(self.radius));
+        let rest = r - towards;
         let to_centre = along.hypot(rest);
-        if rest <= 0.0 && to_centre >= r {
+        let is_outside = self.side.is_outside();
+        if is_outside && rest <= 0.0 && to_centre >= r {
             return Ok(None);
         }
-        if along.abs() <= tolerance {
-            return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
+        let aside = if is_outside { along.abs() } else { to_centre };
+        if aside <= tolerance {
+            return Ok(Some(CurveFoot { normal: [0.0, 1.0], distance: -towards }));
         }
         // A node level with the centre has a closest point; rounding must not remove it.
-        if rest < -tolerance && along.abs() <= BESIDE * r {
+        if is_outside && rest < -tolerance && along.abs() <= BESIDE * r {
             return Err("lies deeper in the circle than its centre");
         }
         // (s^2 + q^2 - 2 R q)/(d + R) is d - R without the cancellation.
-        let distance = (along * along + towards * towards - 2.0 * r * towards) / (to_centre + r);
-        Ok(Some(Foot { normal: [-along / to_centre, rest / to_centre], distance }))
+        let distance = sense * (along * along + towards * towards - 2.0 * r * towards) / (to_centre + self.radius);
+        Ok(Some(CurveFoot { normal: [-sense * along / to_centre, sense * rest / to_centre], distance }))
     }
 
     fn range(&self) -> (f64, f64) {
         (-self.radius, self.radius)
-    }
-}
-
-impl Circle {
-    /// The error of the interpolation at both ends and in the middle of a stretch of half length k: at most
-    /// `|h'''| k^3/(9 sqrt 3)`.
-    fn remainder(&self, from: f64, to: f64) -> f64 {
-        let (furthest, half) = (from.abs().max(to.abs()), (to - from).abs() / 2.0);
-        let rest = (self.radius - furthest) * (self.radius + furthest);
-        let third = 3.0 * self.radius.powi(2) * furthest / rest.max(0.0).powf(2.5);
-        if half == 0.0 { 0.0 } else { third * half.powi(3) / (9.0 * 3.0_f64.sqrt()) }
-    }
-
-    /// The tangent in the middle of a stretch, at its ends and there, and the largest height above it. The circle is
-    /// convex: it lies above each tangent, and farthest from it at an end.
-    fn tangent(&self, from: f64, to: f64) -> Option<([f64; 3], f64)> {
-        let [first, middle, last] = self.heights(from, to)?;
-        let place = (from + to) / 2.0;
-        let slope = place / ((self.radius - place) * (self.radius + place)).sqrt();
-        let [start, end] = [from, to].map(|along| middle + slope * (along - place));
-        Some(([start, middle, end], (first - start).max(last - end).max(0.0)))
-    }
-}
-
-/// The outside of a circle with its apex at the origin and its centre at (0, -R): as a graph, the mirror image of the
-/// circle.
-#[derive(Debug)]
-struct Hollow(Circle);
-
-impl Surface for Hollow {
-    fn height(&self, along: f64) -> Option<f64> {
-        self.0.height(along).map(|height| 0.0 - height)
-    }
-
-    /// As for the circle, with the chord.
-    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
-        let ([first, middle, last], remainder) = (self.heights(from, to)?, self.0.remainder(from, to));
-        match self.0.tangent(from, to)? {
-            // The chord lies below the surface, and the surface below the tangent.
-            (_, spread) if spread < 2.0 * remainder => Some(([first, (first + last) / 2.0, last], [0.0, spread])),
-            _ => Some(([first, middle, last], [remainder.min(2.0 * self.0.radius); 2])),
-        }
-    }
-
-    fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
-        let (heights, [below, above]) = self.0.enclosed_turned(near, far)?;
-        Some((heights.map(|height| 0.0 - height), [above, below]))
-    }
-
-    /// The radius minus the distance to the centre, in all directions; from the centre along the approach direction.
-    fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
-        let (r, rest) = (self.0.radius, self.0.radius + towards);
-        let to_centre = along.hypot(rest);
-        if to_centre <= tolerance {
-            return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
-        }
-        // -(s^2 + q^2 + 2 R q)/(d + R) is R - d without the cancellation.
-        let distance = -(along * along + towards * towards + 2.0 * r * towards) / (to_centre + r);
-        Ok(Some(Foot { normal: [along / to_centre, rest / to_centre], distance }))
-    }
-
-    fn range(&self) -> (f64, f64) {
-        self.0.range()
     }
 }
 
@@ -198,10 +158,10 @@ pub struct SphereSpec {
 }
 
 impl ObstacleShape for SphereSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
-        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::Turned(round(radius, self.side)))))
+        Ok(Sweep::Turned.place(RoundCurve { radius, side: self.side }, site, apex))
     }
 
     fn radius(&self) -> f64 {
@@ -235,16 +195,17 @@ pub struct CylinderSpec {
 }
 
 impl ObstacleShape for CylinderSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
         let axis = axis_across(&self.axis, site)?;
-        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(round(radius, self.side))).along(axis)))
+        let curve = RoundCurve { radius, side: self.side };
+        Ok(Geometry::rigid(site, Swept::new(curve, Sweep::DrawnOut, site, apex).along(axis)))
     }
 }
 
 /// The unit direction of a cylinder's axis.
-fn axis_across(written: &[f64; 3], site: &Site) -> Result<[f64; 3], Error> {
+fn axis_across(written: &[f64; 3], site: &ObstacleSite) -> Result<[f64; 3], Error> {
     let (axis, approach) = (site.axis("axis", written)?, site.direction());
     let lean = dot(axis, approach);
     if lean.abs() > PERPENDICULAR {
@@ -266,7 +227,7 @@ mod tests {
     fn both_enclosures_hold_and_are_narrow_up_to_the_vertical_side() {
         let radius = 2.0;
         for side in [Side::Outside, Side::Inside] {
-            let surface = round(radius, side);
+            let surface = RoundCurve { radius, side };
             for (from, to) in [(-0.1, 0.1), (1.0, 1.1), (1.9, 1.99), (1.9, 2.0), (-2.0, -1.5), (1.999999, 2.0)] {
                 let ([first, middle, last], [below, above]) = surface.enclosed(from, to).unwrap();
                 let fall = (surface.height(from).unwrap() - surface.height(to).unwrap()).abs();

@@ -4,8 +4,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::mortar;
-use super::order::{Between, Facing};
-use super::shape::{Geometry, ObstacleShape, Site};
+use super::order::{Between, BodyRow};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite};
 use crate::error::Error;
 use crate::fem::assembly::{node_normals, outward};
 use crate::fem::geometry::{cross, distance, dot, length, minus, sorted, unit};
@@ -120,7 +120,7 @@ const UNPAIRED: &str = "unpaired-nodes";
 
 impl ObstacleShape for FacingSpec {
     /// Finds the rows: pairs where all nodes pair up, else means.
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let mesh = site.body.mesh();
         let own = boundary(mesh, site.boundary, &format!("{}.boundary", site.obstacle))?;
         let other = boundary(mesh, &self.boundary, &site.field("boundary"))?;
@@ -146,7 +146,7 @@ impl ObstacleShape for FacingSpec {
         let row = |(&(node, _), pair): (&(usize, f64), Pair)| {
             let distance = fit.unwrap_or(pair.distance);
             let ends = vec![(node, 1.0), (pair.partner, -1.0)];
-            Some(Facing { ends, normal: pair.normal, mean: pair.mean, outward: None, distance, area: None })
+            Some(BodyRow { ends, normal: pair.normal, mean: pair.mean, outward: None, distance, area: None })
         };
         let rows = site.candidates.iter().zip(pairs).map(row).collect();
         Ok(Geometry::Body(Box::new(Between {
@@ -183,7 +183,7 @@ impl FitSpec {
 }
 
 /// The node of the other body opposite to each candidate.
-fn pairs(site: &Site, own: &Boundary, other: &Boundary) -> Result<Vec<Pair>, Error> {
+fn pairs(site: &ObstacleSite, own: &Boundary, other: &Boundary) -> Result<Vec<Pair>, Error> {
     if [own, other].iter().any(|side| has_corners(site.body.mesh().nodes(), &outward(site.body, side))) {
         let message =
             format!("`{}` or `{}` has a corner, at which a pair has no normal; {PAIR_UP}", own.name, other.name);
@@ -209,7 +209,7 @@ fn pairs(site: &Site, own: &Boundary, other: &Boundary) -> Result<Vec<Pair>, Err
     Ok(pairs)
 }
 
-fn unpaired(site: &Site, message: String) -> Error {
+fn unpaired(site: &ObstacleSite, message: String) -> Error {
     refused(UNPAIRED, site.field("boundary"), message)
 }
 
@@ -228,7 +228,7 @@ struct Pair {
 
 /// The search for partners on another boundary.
 struct Search<'a> {
-    site: &'a Site<'a>,
+    site: &'a ObstacleSite<'a>,
     own: &'a Boundary,
     other: &'a Boundary,
     /// Nodes of the other boundary with their outward normals.

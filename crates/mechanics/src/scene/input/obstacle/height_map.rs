@@ -1,14 +1,15 @@
 //! Heights on a grid, bilinear in every cell: h = a + b t1 + c t2 + d t1 t2.
 
 use std::iter;
-use std::sync::Arc;
+use std::ops::RangeInclusive;
 
-use super::graph::{Form, Graph, Grid, across};
-use super::patch::{Foot, PAIRS, Patch, extent};
-use super::shape::{Geometry, ObstacleShape, Site};
+use super::patch::{CellFoot, PAIRS, Patch, extent, gap_to};
+use super::row::ObstacleRow;
+use super::shape::{Geometry, ObstacleShape, ObstacleSite};
+use super::surface::{Axes, Surface, across};
 use crate::error::Error;
 use crate::fem::geometry::{dot, minus, plus};
-use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
+use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, wrong};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -37,10 +38,11 @@ pub struct HeightMapSpec {
 }
 
 impl ObstacleShape for HeightMapSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let map = HeightMap::new(self, site)?;
-        check_reach(&map, site)?;
-        Ok(Geometry::rigid(site, Graph::new(site, [0.0; 3], Form::Grid(Arc::new(map)))))
+        let [first, second] = across(site.approach);
+        site.check_reach("height map", &[("x", first, map.range(0)), ("y", second, map.range(1))])?;
+        Ok(Geometry::rigid(site, map))
     }
 }
 
@@ -50,22 +52,15 @@ struct HeightMap {
     lines: [Vec<f64>; 2],
     /// Row by row, one row per line of the first coordinate.
     heights: Vec<f64>,
-    names: [&'static str; 2],
+    axes: Axes,
     /// The body's size.
     size: f64,
-}
-
-/// The end of a height map before a place.
-struct Reach {
-    field: &'static str,
-    name: &'static str,
-    range: (f64, f64),
-    needed: f64,
+    rounding: f64,
 }
 
 impl HeightMap {
     /// Checks the grid.
-    fn new(spec: &HeightMapSpec, site: &Site) -> Result<Self, Error> {
+    fn new(spec: &HeightMapSpec, site: &ObstacleSite) -> Result<Self, Error> {
         let (_, sense) = site.approach.axis();
         for (field, lines) in [("x", &spec.x), ("y", &spec.y)] {
             check_lines(lines, &site.field(field))?;
@@ -87,35 +82,31 @@ impl HeightMap {
                 heights.push(sense * height);
             }
         }
-        let names = across(site.approach).map(|axis| ["x", "y", "z"][axis]);
-        Ok(HeightMap { lines: [spec.x.clone(), spec.y.clone()], heights, names, size: site.body.mesh().size() })
+        let (lines, axes) = ([spec.x.clone(), spec.y.clone()], Axes::new(site.approach, [0.0; 3]));
+        Ok(HeightMap { lines, heights, axes, size: site.body.mesh().size(), rounding: site.rounding() })
     }
 
-    /// The coordinate in which the map does not reach a place, if there is one.
-    fn beyond(&self, at: [f64; 2]) -> Option<Reach> {
-        (0..2).find_map(|axis| {
-            let (range, (first, last)) = (self.range(axis), self.reach(axis));
-            let inside = (first..=last).contains(&at[axis]);
-            let (field, name, needed) = (["x", "y"][axis], self.names[axis], at[axis]);
-            (!inside).then_some(Reach { field, name, range, needed })
+    /// The height at a place, or `None` beyond the rim.
+    fn height(&self, at: [f64; 2]) -> Option<f64> {
+        let is_over = (0..2).all(|axis| {
+            let (first, last) = self.reach(axis);
+            (first..=last).contains(&at[axis])
+        });
+        is_over.then(|| {
+            let [i, j] = [0, 1].map(|axis| self.cell_at(axis, at[axis]));
+            self.patch(i, j).height(at)
         })
     }
 
     /// The normal at a foot: of the surface if it is smooth there or the node lies on it, else the direction to the
     /// foot.
-    fn normal(&self, node: [f64; 3], foot: &Foot, sense: f64, tolerance: f64) -> [f64; 3] {
-        let near = [0, 1].map(|axis| {
-            let cell = |at: f64| self.cell_at(axis, at);
-            cell(foot.at[axis] - tolerance)..=cell(foot.at[axis] + tolerance)
-        });
-        let around: Vec<[f64; 3]> = near[0]
-            .clone()
-            .flat_map(|i| near[1].clone().map(move |j| (i, j)))
+    fn normal(&self, node: [f64; 3], foot: &CellFoot, sense: f64) -> [f64; 3] {
+        let tolerance = self.rounding;
+        let around: Vec<[f64; 3]> = self
+            .cells_within(tolerance, foot.at)
             .map(|(i, j)| self.patch(i, j).normal([foot.at[0], foot.at[1]]))
             .collect();
-        let sum = around.iter().copied().fold([0.0; 3], plus);
-        let length = dot(sum, sum).sqrt();
-        let mean = sum.map(|part| part / length);
+        let mean = mean_direction(&around);
         let smooth = around.iter().all(|normal| (0..3).all(|axis| (normal[axis] - mean[axis]).abs() <= SAME_NORMAL));
         let on_rim = (0..2).any(|axis| {
             let (first, last) = self.range(axis);
@@ -147,6 +138,13 @@ impl HeightMap {
         lines.partition_point(|&line| line <= at).saturating_sub(1).min(lines.len() - 2)
     }
 
+    /// The cells over the square around a place.
+    fn cells_within(&self, distance: f64, at: [f64; 3]) -> impl Iterator<Item = (usize, usize)> {
+        let [rows, columns]: [RangeInclusive<usize>; 2] =
+            [0, 1].map(|axis| self.cell_at(axis, at[axis] - distance)..=self.cell_at(axis, at[axis] + distance));
+        rows.flat_map(move |i| columns.clone().map(move |j| (i, j)))
+    }
+
     fn patch(&self, i: usize, j: usize) -> Patch {
         let columns = self.lines[1].len();
         let height = |i: usize, j: usize| self.heights[i * columns + j];
@@ -158,18 +156,56 @@ impl HeightMap {
     }
 }
 
-impl Grid for HeightMap {
-    fn height(&self, at: [f64; 2]) -> Option<f64> {
-        self.beyond(at).is_none().then(|| {
-            let [i, j] = [0, 1].map(|axis| self.cell_at(axis, at[axis]));
-            self.patch(i, j).height(at)
-        })
+impl Surface for HeightMap {
+    fn gap(&self, node: [f64; 3], shift: f64) -> Option<f64> {
+        let [t1, t2, towards] = self.axes.local(node, shift);
+        Some(self.height([t1, t2])? - towards)
+    }
+
+    /// Cells farther away than the best so far are left out. The surface ends at its rim. A node equally close to
+    /// several points, to within rounding, takes their mean normal.
+    fn closest(&self, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let (node, tolerance) = (self.axes.local(node, shift), self.rounding);
+        let Some(height) = self.height([node[0], node[1]]) else { return Ok(None) };
+        let sense = if node[2] > height { -1.0 } else { 1.0 };
+        let home @ [i, j] = [0, 1].map(|axis| self.cell_at(axis, node[axis]));
+        let best = |feet: &[CellFoot]| feet.iter().fold(f64::INFINITY, |best: f64, foot| best.min(foot.distance));
+        let mut feet = self.patch(i, j).feet(node);
+        let reach = best(&feet) + tolerance;
+        for (i, j) in self.cells_within(reach, node).filter(|&(i, j)| [i, j] != home) {
+            let patch = self.patch(i, j);
+            if patch.box_distance(node) <= best(&feet) + tolerance {
+                feet.extend(patch.feet(node));
+            }
+        }
+        let nearest = best(&feet);
+        feet.retain(|foot| foot.distance <= nearest + tolerance);
+        // A foot inside a cell is more accurate than the foot on an edge next to it.
+        feet.sort_by_key(|foot| foot.on_edge);
+        let mut apart: Vec<CellFoot> = Vec::new();
+        for foot in feet {
+            let is_beside = |other: &CellFoot| norm(minus(other.at, foot.at)) <= SAME_FOOT * self.size;
+            if !apart.iter().any(is_beside) {
+                apart.push(foot);
+            }
+        }
+        let normals: Vec<[f64; 3]> = apart.iter().map(|foot| self.normal(node, foot, sense)).collect();
+        let normal = mean_direction(&normals);
+        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther
+        // away.
+        let row = apart.first().zip(normals.first()).map(|(foot, &own)| ObstacleRow {
+            normal: self.axes.global(normal),
+            gap: dot(own, minus(foot.at, node)) / dot(own, normal),
+        });
+        Ok(row)
     }
 
     /// The bilinear function through the corners of the rectangle around the triangle. Between grid lines its distance
     /// from the map is bilinear, too, and so largest where lines cross. Over a triangle that reaches beyond the rim it
     /// is the lowest height.
-    fn enclosed(&self, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64; 2])> {
+    fn gap_over(&self, corners: [[f64; 3]; 3], shift: f64) -> Option<([f64; 6], [f64; 2])> {
+        let local = corners.map(|corner| self.axes.local(corner, shift));
+        let places = local.map(|[t1, t2, _]| [t1, t2]);
         let around = [0, 1].map(|axis| extent(places.map(|place| place[axis])));
         let within = [0, 1].map(|axis| {
             let ([low, high], (first, last)) = (around[axis], self.reach(axis));
@@ -186,7 +222,7 @@ impl Grid for HeightMap {
         let crossings = lines[0].clone().flat_map(|x| lines[1].clone().map(move |y| [x, y]));
         if within != around {
             let lowest = crossings.filter_map(|at| self.height(at)).fold(f64::INFINITY, f64::min);
-            return Some(([lowest; 6], [0.0, f64::INFINITY]));
+            return Some((gap_to([lowest; 6], local), [0.0, f64::INFINITY]));
         }
         let [[left, right], [front, back]] = within;
         let corner = |x: f64, y: f64| self.height([x, y]);
@@ -202,73 +238,19 @@ impl Grid for HeightMap {
             off = [off[0].max(-above), off[1].max(above)];
         }
         let height = |i: usize, j: usize| whole.height([places[i][0], places[j][1]]);
-        Some((PAIRS.map(|[i, j]| (height(i, j) + height(j, i)) / 2.0), off))
-    }
-
-    /// Cells farther away than the best so far are left out. The surface ends at its rim. A node equally close to
-    /// several points, to within `tolerance`, takes their mean normal.
-    fn closest(&self, node: [f64; 3], tolerance: f64) -> Option<([f64; 3], f64)> {
-        let height = self.height([node[0], node[1]])?;
-        let sense = if node[2] > height { -1.0 } else { 1.0 };
-        let [home_i, home_j] = [0, 1].map(|axis| self.cell_at(axis, node[axis]));
-        let best = |feet: &[Foot]| feet.iter().fold(f64::INFINITY, |best: f64, foot| best.min(foot.distance));
-        let mut feet = self.patch(home_i, home_j).feet(node);
-        let reach = best(&feet) + tolerance;
-        let [near_i, near_j] = [0, 1].map(|axis| {
-            let first = self.cell_at(axis, node[axis] - reach);
-            first..=self.cell_at(axis, node[axis] + reach)
-        });
-        for i in near_i {
-            for j in near_j.clone().filter(|&j| (i, j) != (home_i, home_j)) {
-                let patch = self.patch(i, j);
-                if patch.box_distance(node) <= best(&feet) + tolerance {
-                    feet.extend(patch.feet(node));
-                }
-            }
-        }
-        let nearest = best(&feet);
-        feet.retain(|foot| foot.distance <= nearest + tolerance);
-        // A foot inside a cell is more accurate than the foot on an edge next to it.
-        feet.sort_by_key(|foot| foot.on_edge);
-        let mut apart: Vec<Foot> = Vec::new();
-        for foot in feet {
-            let beside = |other: &Foot| {
-                let way = minus(other.at, foot.at);
-                dot(way, way).sqrt() <= SAME_FOOT * self.size
-            };
-            if !apart.iter().any(beside) {
-                apart.push(foot);
-            }
-        }
-        let normals: Vec<[f64; 3]> = apart.iter().map(|foot| self.normal(node, foot, sense, tolerance)).collect();
-        let sum = normals.iter().copied().fold([0.0; 3], plus);
-        let length = dot(sum, sum).sqrt();
-        let normal = sum.map(|part| part / length);
-        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther
-        // away.
-        let (foot, own) = (apart.first()?, *normals.first()?);
-        let to_foot = minus(foot.at, node);
-        Some((normal, dot(own, to_foot) / dot(own, normal)))
+        Some((gap_to(PAIRS.map(|[i, j]| (height(i, j) + height(j, i)) / 2.0), local), off))
     }
 }
 
-/// Checks that every candidate lies over the grid: a height map is undefined beyond its rim.
-fn check_reach(map: &HeightMap, site: &Site) -> Result<(), Error> {
-    let across = across(site.approach);
-    for &(node, _) in site.candidates {
-        let at = site.body.mesh().nodes()[node];
-        let Some(Reach { field, name, range: (first, last), needed }) = map.beyond(across.map(|axis| at[axis])) else {
-            continue;
-        };
-        let (first, last, needed) = (number(first), number(last), number(needed));
-        let message = format!(
-            "the height map reaches from {name} = {first} to {last}, but candidate node {node} at {} needs it at \
-                 {name} = {needed}",
-            point(&at)
-        );
-        return Err(wrong(site.field(field), message));
-    }
-    Ok(())
+/// The mean of unit vectors, of length 1.
+fn mean_direction(vectors: &[[f64; 3]]) -> [f64; 3] {
+    let sum = vectors.iter().copied().fold([0.0; 3], plus);
+    let length = norm(sum);
+    sum.map(|part| part / length)
+}
+
+fn norm(vector: [f64; 3]) -> f64 {
+    dot(vector, vector).sqrt()
 }
 
 fn check_lines(lines: &[f64], path: &str) -> Result<(), Error> {
@@ -292,21 +274,22 @@ fn check_lines(lines: &[f64], path: &str) -> Result<(), Error> {
 mod tests {
     use super::super::oracle::{ROUNDING, Random, checked, triangles};
     use super::*;
+    use crate::scene::input::schema::model::Approach;
 
     /// Over [-2, 2] x [-1.5, 1.5], with random heights.
     fn map(random: &mut Random) -> HeightMap {
         let lines = [vec![-2.0, -1.1, -0.2, 0.0, 0.7, 2.0], vec![-1.5, 0.1, 0.3, 1.5]];
         let heights = (0..24).map(|_| random.between(-0.5, 0.5)).collect();
-        HeightMap { lines, heights, names: ["x", "y"], size: 4.0 }
+        HeightMap { lines, heights, axes: Axes::new(Approach::PlusZ, [0.0; 3]), size: 4.0, rounding: 0.0 }
     }
 
     #[test]
     fn the_gap_to_a_height_map_over_any_triangle_stays_within_its_enclosure() {
         let mut random = Random(1);
-        let graph = Graph::upright(Form::Grid(Arc::new(map(&mut random))));
+        let map = map(&mut random);
         let (mut whole, mut part, mut none) = (0, 0, 0);
         for corners in triangles(&mut random) {
-            match checked(&graph, corners, 0.2, &mut random) {
+            match checked(&map, corners, 0.2, &mut random) {
                 Some([_, above]) if above.is_finite() => whole += 1,
                 Some(_) => part += 1,
                 None => none += 1,
@@ -318,11 +301,11 @@ mod tests {
     #[test]
     fn the_enclosure_in_one_cell_of_a_height_map_is_exact() {
         let mut random = Random(2);
-        let graph = Graph::upright(Form::Grid(Arc::new(map(&mut random))));
+        let map = map(&mut random);
         for _ in 0..100 {
             let corners =
                 [0, 1, 2].map(|_| [random.between(0.0, 0.7), random.between(0.3, 1.5), random.between(-1.0, 1.0)]);
-            let [below, above] = checked(&graph, corners, 0.0, &mut random).unwrap();
+            let [below, above] = checked(&map, corners, 0.0, &mut random).unwrap();
             assert!(below.max(above) <= ROUNDING, "{corners:?}: {below} {above}");
         }
     }

@@ -2,7 +2,6 @@
 
 mod circle;
 mod facing;
-mod graph;
 mod height_map;
 pub(crate) mod mortar;
 #[cfg(test)]
@@ -14,20 +13,15 @@ mod plane;
 mod polyline;
 mod row;
 mod shape;
+mod surface;
+mod swept;
 mod torus;
 mod triangulated;
 
-pub use circle::{CircleSpec, CylinderSpec, SphereSpec};
-pub use facing::FacingSpec;
 pub(crate) use facing::shortest_edges;
-pub use height_map::HeightMapSpec;
 pub(crate) use order::{Between, SideOrder};
 pub use placed::{Inertia, PlacedObstacle};
-pub use plane::{ConeSpec, PlaneSpec, TableSpec, WedgeSpec};
-pub use polyline::ParabolaSpec;
 pub use row::{Obstacle, ObstacleRow};
-pub use torus::TorusSpec;
-pub use triangulated::SurfaceSpec;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,63 +29,61 @@ use serde::{Deserialize, Serialize};
 use crate::scene::input::body::About;
 use shape::ObstacleShape;
 
-/// The surface of an obstacle, over the coordinates perpendicular to the approach direction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ShapeSpec {
-    /// A plane, or in the plane a straight line.
-    Plane(PlaneSpec),
-    /// A parabola t^2/(2 radius) that bulges towards the body.
-    Parabola(ParabolaSpec),
-    /// A circle, seen from outside or inside.
-    Circle(CircleSpec),
-    /// A wedge slope |t| that points at the body.
-    Wedge(WedgeSpec),
-    /// A polyline.
-    Table(TableSpec),
-    /// In space: a sphere, seen from outside or inside.
-    Sphere(SphereSpec),
-    /// In space: a cylinder, seen from outside or inside, with its axis perpendicular to the approach direction.
-    Cylinder(CylinderSpec),
-    /// In space: a cone that points at the body, with its axis along the approach direction.
-    Cone(ConeSpec),
-    /// In space: heights on a grid, bilinear in between.
-    HeightMap(HeightMapSpec),
-    /// In space: a torus, with its axis along the approach direction or perpendicular to it.
-    Torus(TorusSpec),
-    /// In space: a closed surface of triangles from a file.
-    Surface(SurfaceSpec),
-    /// The surface of another elastic body.
-    Body(FacingSpec),
+/// Makes the enumeration of the shapes: each with its numbers, its name, and the dimensions of the models that allow it.
+macro_rules! shapes {
+    ($($(#[$text:meta])* $kind:ident($file:ident::$spec:ident) = $name:literal in $dimensions:expr;)*) => {
+        /// The surface of an obstacle, over the coordinates perpendicular to the approach direction.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum ShapeSpec {
+            $($(#[$text])* $kind($file::$spec),)*
+        }
+
+        /// All shapes, in the order of messages.
+        const ALL: &[About] = &[$(About { name: $name, dimensions: &$dimensions }),*];
+
+        impl ShapeSpec {
+            /// Its name with the models that allow it, and its numbers.
+            fn described(&self) -> (About, &dyn ObstacleShape) {
+                match self {
+                    $(ShapeSpec::$kind(spec) => (About { name: $name, dimensions: &$dimensions }, spec),)*
+                }
+            }
+        }
+    };
 }
 
-// A shape by its name, with the dimensions of the models that allow it.
-const PLANE: About = About { name: "plane", dimensions: &[1, 2, 3] };
-const PARABOLA: About = About { name: "parabola", dimensions: &[2] };
-const CIRCLE: About = About { name: "circle", dimensions: &[2] };
-const WEDGE: About = About { name: "wedge", dimensions: &[2] };
-const TABLE: About = About { name: "table", dimensions: &[2] };
-const SPHERE: About = About { name: "sphere", dimensions: &[3] };
-const CYLINDER: About = About { name: "cylinder", dimensions: &[3] };
-const CONE: About = About { name: "cone", dimensions: &[3] };
-const HEIGHT_MAP: About = About { name: "height-map", dimensions: &[3] };
-const TORUS: About = About { name: "torus", dimensions: &[3] };
-const SURFACE: About = About { name: "surface", dimensions: &[3] };
-const BODY: About = About { name: "body", dimensions: &[1, 2, 3] };
-
-/// The names of all shapes, in the order of messages.
-const ALL: [About; 12] =
-    [PLANE, PARABOLA, CIRCLE, WEDGE, TABLE, SPHERE, CYLINDER, CONE, HEIGHT_MAP, TORUS, SURFACE, BODY];
+shapes! {
+    /// A plane, or in the plane a straight line.
+    Plane(plane::PlaneSpec) = "plane" in [1, 2, 3];
+    /// A parabola t^2/(2 radius) that bulges towards the body.
+    Parabola(polyline::ParabolaSpec) = "parabola" in [2];
+    /// A circle, seen from outside or inside.
+    Circle(circle::CircleSpec) = "circle" in [2];
+    /// A wedge slope |t| that points at the body.
+    Wedge(plane::WedgeSpec) = "wedge" in [2];
+    /// A polyline.
+    Table(plane::TableSpec) = "table" in [2];
+    /// In space: a sphere, seen from outside or inside.
+    Sphere(circle::SphereSpec) = "sphere" in [3];
+    /// In space: a cylinder, seen from outside or inside, with its axis perpendicular to the approach direction.
+    Cylinder(circle::CylinderSpec) = "cylinder" in [3];
+    /// In space: a cone that points at the body, with its axis along the approach direction.
+    Cone(plane::ConeSpec) = "cone" in [3];
+    /// In space: heights on a grid, bilinear in between.
+    HeightMap(height_map::HeightMapSpec) = "height-map" in [3];
+    /// In space: a torus, with its axis along the approach direction or perpendicular to it.
+    Torus(torus::TorusSpec) = "torus" in [3];
+    /// In space: a closed surface of triangles from a file.
+    Surface(triangulated::SurfaceSpec) = "surface" in [3];
+    /// The surface of another elastic body.
+    Body(facing::FacingSpec) = "body" in [1, 2, 3];
+}
 
 impl ShapeSpec {
     /// The surface `boundary` of another body as an obstacle within reach.
     pub(crate) fn other_body(boundary: String, reach: f64) -> Self {
-        ShapeSpec::Body(FacingSpec::of(boundary, reach))
-    }
-
-    /// The name of the obstacle shape and the models that allow it.
-    fn about(&self) -> About {
-        self.described().0
+        ShapeSpec::Body(facing::FacingSpec::of(boundary, reach))
     }
 
     /// The numbers of the obstacle shape, of whatever kind it is.
@@ -99,38 +91,21 @@ impl ShapeSpec {
         self.described().1
     }
 
-    /// What [`about`](Self::about) and [`shape`](Self::shape) return: the only place that distinguishes the kinds of
-    /// obstacles.
-    fn described(&self) -> (About, &dyn ObstacleShape) {
-        match self {
-            ShapeSpec::Plane(spec) => (PLANE, spec),
-            ShapeSpec::Parabola(spec) => (PARABOLA, spec),
-            ShapeSpec::Circle(spec) => (CIRCLE, spec),
-            ShapeSpec::Wedge(spec) => (WEDGE, spec),
-            ShapeSpec::Table(spec) => (TABLE, spec),
-            ShapeSpec::Sphere(spec) => (SPHERE, spec),
-            ShapeSpec::Cylinder(spec) => (CYLINDER, spec),
-            ShapeSpec::Cone(spec) => (CONE, spec),
-            ShapeSpec::HeightMap(spec) => (HEIGHT_MAP, spec),
-            ShapeSpec::Torus(spec) => (TORUS, spec),
-            ShapeSpec::Surface(spec) => (SURFACE, spec),
-            ShapeSpec::Body(spec) => (BODY, spec),
-        }
-    }
-
-    /// A message that a model of `dimension` coordinates does not allow the shape, with the allowed shapes; `None` if
-    /// it does.
-    fn misfit(&self, dimension: usize) -> Option<String> {
-        let about = self.about();
+    /// The name of the shape and its numbers.
+    ///
+    /// # Errors
+    /// A message with the allowed shapes, if a model of `dimension` coordinates does not allow this one.
+    fn in_model(&self, dimension: usize) -> Result<(&'static str, &dyn ObstacleShape), String> {
+        let (about, shape) = self.described();
         if about.dimensions.contains(&dimension) {
-            return None;
+            return Ok((about.name, shape));
         }
         let of = if about.dimensions.contains(&2) { "the plane" } else { "space" };
         let there = ALL.iter().filter(|other| other.dimensions.contains(&dimension));
         let there: Vec<String> = there.map(|other| format!("`{}`", other.name)).collect();
-        let (last, others) = there.split_last()?;
-        let there = format!("{} there are {} and {last}", PLACES[dimension - 1], others.join(", "));
-        Some(format!("`{}` is a shape of {of}; {there}", about.name))
+        let (last, others) = there.split_last().map_or(("", &[][..]), |(last, others)| (last, others));
+        let there = format!("{} and {last}", others.join(", "));
+        Err(format!("`{}` is a shape of {of}; {} there are {there}", about.name, PLACES[dimension - 1]))
     }
 }
 

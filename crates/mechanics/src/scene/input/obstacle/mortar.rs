@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::order::{Between, Facing, facet_size};
-use super::shape::Site;
+use super::order::{Between, BodyRow, facet_size};
+use super::shape::ObstacleSite;
 use crate::error::Error;
 use crate::fem::assembly::{PositiveBasis, outward};
 use crate::fem::mortar::{Found, MortarRow, Opposite};
@@ -25,7 +25,7 @@ const SAG: f64 = 5.0;
 /// The rows between the boundary of an obstacle and that of another body; `side` is `true` if the other boundary is to
 /// carry them, and `None` to choose.
 pub(super) fn between(
-    site: &Site,
+    site: &ObstacleSite,
     boundaries: [&Boundary; 2],
     side: Option<bool>,
     reach: Option<f64>,
@@ -49,7 +49,7 @@ pub(super) fn between(
     for row in found.rows {
         let (ends, distance) = (ends(&row, &site.dofs.basis), fit.unwrap_or(row.gap));
         let (area, outward) = (Some(row.area), Some(row.outward));
-        let own = Facing { ends, normal: row.normal, mean: row.mean, outward, distance, area };
+        let own = BodyRow { ends, normal: row.normal, mean: row.mean, outward, distance, area };
         let Some(&candidate) = candidates.get(&row.node) else { continue };
         match &rows[candidate] {
             None => rows[candidate] = Some(own),
@@ -117,17 +117,17 @@ pub(crate) fn ends(row: &MortarRow, basis: &PositiveBasis) -> Vec<(usize, f64)> 
 }
 
 /// The contact seen from a node of the other body.
-fn facing(seen: Opposite) -> Facing {
+fn facing(seen: Opposite) -> BodyRow {
     let normal = seen.normal.map(|part| 0.0 - part);
     let slave = seen.slave.into_iter().filter(|end| end.1 != 0.0).map(|(node, share)| (node, 0.0 - share));
     let ends = std::iter::once((seen.node, 1.0)).chain(slave).collect();
-    Facing { ends, normal, mean: normal, outward: None, distance: seen.gap, area: None }
+    BodyRow { ends, normal, mean: normal, outward: None, distance: seen.gap, area: None }
 }
 
 /// The share of a fit that its drawing may miss it by.
 const OF_FIT: f64 = 0.1;
 
-fn warnings(site: &Site, [slave, master]: [&Boundary; 2], found: &Found, fit: Option<f64>) -> Vec<Warning> {
+fn warnings(site: &ObstacleSite, [slave, master]: [&Boundary; 2], found: &Found, fit: Option<f64>) -> Vec<Warning> {
     let (obstacle, boundary, other) = (site.obstacle, &slave.name, &master.name);
     let [share, of_other] = found.covered;
     if found.rows.is_empty() {

@@ -1,9 +1,8 @@
 //! The oracle of enclosed gaps: the rows by rule `approach` at points of a triangle.
 
 use super::patch::PAIRS;
-use super::row::RigidSurface;
+use super::surface::Surface;
 use crate::fem::geometry::midpoint;
-use crate::scene::input::schema::model::Rule;
 
 /// Rounding of gaps and places of order one, with slopes of some hundreds near a rim.
 pub(super) const ROUNDING: f64 = 1e-11;
@@ -54,7 +53,7 @@ pub(super) fn triangles(random: &mut Random) -> Vec<[[f64; 3]; 3]> {
 /// Checks the enclosure of the gap over a triangle, moved by `shift`, against the rows at its points, and returns the
 /// distances `[below, above]` from the quadratic function; `None` if the surface is out of reach.
 pub(super) fn checked(
-    surface: &dyn RigidSurface,
+    surface: &dyn Surface,
     corners: [[f64; 3]; 3],
     shift: f64,
     random: &mut Random,
@@ -66,7 +65,7 @@ pub(super) fn checked(
         let shares =
             [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].get(point).copied().unwrap_or([a, b, 1.0 - a - b]);
         let at = [0, 1, 2].map(|axis| (0..3).map(|i| shares[i] * corners[i][axis]).sum());
-        let gap = surface.row_by(Rule::Approach, at, shift).unwrap().map(|row| row.gap);
+        let gap = surface.gap(at, shift);
         let Some((coefficients, [below, above])) = enclosure else {
             assert_eq!(gap, None, "{corners:?}: at {at:?} the surface is within reach");
             continue;

@@ -51,7 +51,7 @@ impl SideOrder {
     /// The first obstacle whose side is against the order, and whose rows lead to nodes that carry rows which lead
     /// back: a contact would count twice. Rows are given with the numbers of their obstacles. Without sides against the
     /// order there is none.
-    pub fn circle<'a>(&self, body: &ElasticBody, rows: impl Iterator<Item = (usize, &'a Facing)>) -> Option<usize> {
+    pub fn circle<'a>(&self, body: &ElasticBody, rows: impl Iterator<Item = (usize, &'a BodyRow)>) -> Option<usize> {
         let mut steps: Vec<(usize, usize, usize)> = Vec::new();
         for (obstacle, row) in rows.filter(|(_, row)| row.area.is_some()) {
             let own = row.ends[0].0;
@@ -88,7 +88,7 @@ pub(crate) fn facet_size(body: &ElasticBody, boundaries: &[&Boundary]) -> f64 {
 
 /// The row of a candidate against another body: the node opposite to it, or the mean over its area.
 #[derive(Clone, Debug)]
-pub(crate) struct Facing {
+pub(crate) struct BodyRow {
     /// The nodes that it couples, as in a [`ContactRow`](crate::scene::ContactRow).
     pub ends: Vec<(usize, f64)>,
     /// The normal of the row, of length 1, from the candidate's body into the other.
@@ -104,7 +104,7 @@ pub(crate) struct Facing {
     pub area: Option<f64>,
 }
 
-impl Facing {
+impl BodyRow {
     /// The row of the candidate, with the other body shifted by `gap` along the unit vector `approach`.
     pub fn row(&self, gap: f64, approach: [f64; 3]) -> ObstacleRow {
         ObstacleRow { normal: self.normal, gap: self.distance + gap * dot(self.normal, approach) }
@@ -115,12 +115,12 @@ impl Facing {
 #[derive(Clone, Debug)]
 pub(crate) struct Between {
     /// The row of each candidate of the boundary that carries the rows; `None` where nothing faces it.
-    pub rows: Vec<Option<Facing>>,
+    pub rows: Vec<Option<BodyRow>>,
     /// Further rows of candidates, by their numbers: a node at a corner has one for each side.
-    pub further: Vec<(usize, Facing)>,
+    pub further: Vec<(usize, BodyRow)>,
     /// For nodes of the other body the place that they face, as a row against their own normal: not a row of the
     /// problem, but the same contact seen from there.
-    pub across: Vec<(usize, Facing)>,
+    pub across: Vec<(usize, BodyRow)>,
     /// Name of the boundary that the rows lead to.
     pub other: String,
     /// Covered shares of the carrying and of the other boundary, if rows are means.

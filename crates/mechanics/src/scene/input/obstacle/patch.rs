@@ -18,7 +18,7 @@ const LONG_STEP: f64 = 1e-3;
 const AT_EDGE: f64 = 1e-7;
 
 /// A point of a cell that is closer to a node than its neighbourhood in the cell.
-pub(super) struct Foot {
+pub(super) struct CellFoot {
     pub at: [f64; 3],
     pub distance: f64,
     /// `true` if it was found on an edge of the cell.
@@ -81,24 +81,24 @@ impl Patch {
         (dot(to_node, along) / dot(along, along)).clamp(0.0, 1.0)
     }
 
-    fn foot(&self, node: [f64; 3], own: [f64; 2]) -> Foot {
+    fn foot(&self, node: [f64; 3], own: [f64; 2]) -> CellFoot {
         let at = self.point(own);
         let way = minus(at, node);
-        Foot { at, distance: way[0].hypot(way[1]).hypot(way[2]), on_edge: false }
+        CellFoot { at, distance: way[0].hypot(way[1]).hypot(way[2]), on_edge: false }
     }
 
     /// The closest points of the four edges, and all points inside the cell that are closer than their neighbourhood.
     ///
     /// The edges are straight. Inside, the distance to the closest point of each ruling is searched in strips: every
     /// local minimum by golden section, then by Newton's method.
-    pub fn feet(&self, node: [f64; 3]) -> Vec<Foot> {
+    pub fn feet(&self, node: [f64; 3]) -> Vec<CellFoot> {
         let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        let mut feet: Vec<Foot> = (0..4)
+        let mut feet: Vec<CellFoot> = (0..4)
             .map(|edge| {
                 let (from, to) = (corners[edge], corners[(edge + 1) % 4]);
                 let t = self.along_segment(node, from, to);
                 let own = [0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis]);
-                Foot { on_edge: true, ..self.foot(node, own) }
+                CellFoot { on_edge: true, ..self.foot(node, own) }
             })
             .collect();
         let at_v = |v: f64| self.foot(node, self.on_ruling(node, v)).distance;
@@ -170,6 +170,13 @@ pub(super) const NOT_ENCLOSED: ([f64; 6], [f64; 2]) = ([0.0; 6], [f64::INFINITY;
 /// The coefficients of the linear function with these values at the corners.
 pub(super) fn linear(values: [f64; 3]) -> [f64; 6] {
     PAIRS.map(|[i, j]| (values[i] + values[j]) / 2.0)
+}
+
+/// The coefficients of the gap over a triangle with its corners at `[t1, t2, towards]` from those of the heights.
+pub(super) fn gap_to(mut heights: [f64; 6], corners: [[f64; 3]; 3]) -> [f64; 6] {
+    let towards = linear(corners.map(|[_, _, towards]| towards));
+    heights.iter_mut().zip(towards).for_each(|(height, towards)| *height -= towards);
+    heights
 }
 
 /// The least and the largest of the values at the corners.

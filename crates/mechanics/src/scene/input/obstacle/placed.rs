@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::order::{Between, Facing, SideOrder};
+use super::order::{Between, BodyRow, SideOrder};
 use super::row::{Obstacle, ObstacleRow};
-use super::shape::{Geometry, Site};
+use super::shape::{Geometry, ObstacleSite};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
@@ -52,30 +52,6 @@ pub struct Inertia {
 }
 
 impl PlacedObstacle {
-    /// The same rigid obstacle with the shape of another description, at the same JSON path.
-    pub(crate) fn shaped(
-        &self,
-        spec: &ObstacleSpec,
-        path: &str,
-        (body, dofs): (&ElasticBody, &DofMap),
-        files: Files,
-    ) -> Result<Self, Error> {
-        let Some(approach) = spec.approach else { return Ok(self.clone()) };
-        let site = Site {
-            obstacle: path,
-            path: format!("{path}.shape.{}", spec.shape.about().name),
-            boundary: &spec.boundary,
-            approach,
-            rule: spec.rule,
-            body,
-            dofs,
-            candidates: &self.candidates,
-            order: &SideOrder::of(body, std::iter::empty()),
-            files,
-        };
-        Ok(PlacedObstacle { geometry: spec.shape.shape().place(&site)?, ..self.clone() })
-    }
-
     /// Checks the obstacle at the JSON path `path`.
     pub(crate) fn of_scene(
         spec: &ObstacleSpec,
@@ -87,35 +63,11 @@ impl PlacedObstacle {
         let (gap, force, inertia) = (spec.gap.unwrap_or(0.0), spec.force, inertia(spec, path)?);
         check_pressing(spec, path)?;
         let dimension = body.dimension();
-        let needs_none = spec.shape.shape().other_boundary().is_some() && spec.rule == Rule::ClosestPoint;
-        let named = match spec.approach {
-            Some(approach) => approach,
-            // Not used: no row lies along it.
-            None if needs_none => Approach::PlusX,
-            None => {
-                let message = "the key `approach` is missing: one of `+x`, `-x`, `+y`, `-y`, `+z`, `-z`, from the body to the obstacle; only \
-                               another body with `\"rule\": \"closest-point\"` needs none";
-                return Err(wrong(path, message));
-            }
-        };
-        let (axis, _) = named.axis();
-        if axis >= dimension {
-            let names = ["x", "x and y", "x, y and z"][dimension - 1];
-            let message = format!("`{}` is no direction of this model, which has {names}", named.name());
-            return Err(wrong(format!("{path}.approach"), message));
-        }
-        if spec.approach.is_none() && spec.gap.is_some() {
-            let message =
-                "shifts the other body along the approach direction, which is missing; give `approach`, or a `fit`";
-            return Err(wrong(format!("{path}.gap"), message));
-        }
-        if let Some(misfit) = spec.shape.misfit(dimension) {
-            return Err(wrong(format!("{path}.shape"), misfit));
-        }
-        let shape = spec.shape.shape();
-        let site = Site {
+        let named = named_approach(spec, path, dimension)?;
+        let (name, shape) = spec.shape.in_model(dimension).map_err(|misfit| wrong(format!("{path}.shape"), misfit))?;
+        let site = ObstacleSite {
             obstacle: path,
-            path: format!("{path}.shape.{}", spec.shape.about().name),
+            path: format!("{path}.shape.{name}"),
             boundary: &spec.boundary,
             approach: named,
             rule: spec.rule,
@@ -237,54 +189,38 @@ impl PlacedObstacle {
 
     /// The row of the candidate of this index against another body; `None` if the obstacle is rigid, or nothing faces
     /// the candidate.
-    pub(crate) fn facing(&self, candidate: usize) -> Option<&Facing> {
-        match &self.geometry {
-            Geometry::Body(between) => between.rows.get(candidate)?.as_ref(),
-            Geometry::Rigid(_) => None,
-        }
+    pub(crate) fn facing(&self, candidate: usize) -> Option<&BodyRow> {
+        self.between()?.rows.get(candidate)?.as_ref()
     }
 
-    /// Further rows of candidates at corners, by the indices of the candidates.
-    fn further(&self) -> &[(usize, Facing)] {
-        self.between().map_or(&[], |between| &between.further)
-    }
-
-    /// The same with their rows, if the surface is shifted by `gap`.
-    pub(crate) fn further_rows(&self, gap: f64) -> impl Iterator<Item = (usize, &Facing, ObstacleRow)> {
-        let row = move |facing: &Facing| without_rounding(facing.row(gap, self.approach));
-        self.further().iter().map(move |(candidate, facing)| (*candidate, facing, row(facing)))
+    /// Further rows of candidates at corners, by the indices of the candidates, if the surface is shifted by `gap`.
+    pub(crate) fn further_rows(&self, gap: f64) -> impl Iterator<Item = (usize, &BodyRow, ObstacleRow)> {
+        let row = move |facing: &BodyRow| without_rounding(facing.row(gap, self.approach));
+        let further = self.between().into_iter().flat_map(|between| &between.further);
+        further.map(move |(candidate, facing)| (*candidate, facing, row(facing)))
     }
 
     /// The rows of all candidates against another body; none if the obstacle is rigid.
-    pub(crate) fn all_facing(&self) -> impl Iterator<Item = &Facing> {
-        let first = (0..self.candidates.len()).filter_map(|candidate| self.facing(candidate));
-        first.chain(self.further().iter().map(|one| &one.1))
+    pub(crate) fn all_facing(&self) -> impl Iterator<Item = &BodyRow> {
+        let all = self.between().into_iter();
+        all.flat_map(|between| between.rows.iter().flatten().chain(between.further.iter().map(|one| &one.1)))
     }
 
     /// The contact seen from nodes of the other body, if rows are means.
-    pub(crate) fn across(&self) -> &[(usize, Facing)] {
-        match &self.geometry {
-            Geometry::Body(between) => &between.across,
-            Geometry::Rigid(_) => &[],
-        }
+    pub(crate) fn across(&self) -> &[(usize, BodyRow)] {
+        self.between().map_or(&[], |between| &between.across)
     }
 
     /// The name of the boundary of the other body, if the obstacle is one, and, if the rows are means, the covered
     /// shares `[own, other]`, dimensionless, from 0 to 1: of the area of [`boundary`](Self::boundary), and of the nodes
     /// of the other boundary.
     pub fn other_body(&self) -> Option<(&str, Option<[f64; 2]>)> {
-        match &self.geometry {
-            Geometry::Body(between) => Some((&between.other, between.covered)),
-            Geometry::Rigid(_) => None,
-        }
+        self.between().map(|between| (between.other.as_str(), between.covered))
     }
 
     /// What the search for the rows against another body noticed.
     pub(crate) fn warnings(&self) -> &[Warning] {
-        match &self.geometry {
-            Geometry::Body(between) => &between.warnings,
-            Geometry::Rigid(_) => &[],
-        }
+        self.between().map_or(&[], |between| &between.warnings)
     }
 
     /// The outward normal of the body at the candidate of this index; zero if the facets around it cancel.
@@ -334,6 +270,27 @@ fn mean_direction(outward: &[[f64; 3]]) -> [f64; 3] {
     let mean = sum.map(|part| part / outward.len().max(1) as f64);
     let mean = unit(mean.map(|part| if part.abs() < NO_DIRECTION { 0.0 } else { part }));
     if mean == [0.0; 3] { [1.0, 0.0, 0.0] } else { mean }
+}
+
+/// The approach direction of an obstacle, which only a body with rows along normals can do without; none lies along it.
+fn named_approach(spec: &ObstacleSpec, path: &str, dimension: usize) -> Result<Approach, Error> {
+    let needs_none = spec.shape.shape().other_boundary().is_some() && spec.rule == Rule::ClosestPoint;
+    let Some(approach) = spec.approach.or(needs_none.then_some(Approach::PlusX)) else {
+        let message = "the key `approach` is missing: one of `+x`, `-x`, `+y`, `-y`, `+z`, `-z`, from the body to the obstacle; only \
+                       another body with `\"rule\": \"closest-point\"` needs none";
+        return Err(wrong(path, message));
+    };
+    if approach.axis().0 >= dimension {
+        let names = ["x", "x and y", "x, y and z"][dimension - 1];
+        let message = format!("`{}` is no direction of this model, which has {names}", approach.name());
+        return Err(wrong(format!("{path}.approach"), message));
+    }
+    if spec.approach.is_none() && spec.gap.is_some() {
+        let message =
+            "shifts the other body along the approach direction, which is missing; give `approach`, or a `fit`";
+        return Err(wrong(format!("{path}.gap"), message));
+    }
+    Ok(approach)
 }
 
 /// The mass and the speed of an obstacle.

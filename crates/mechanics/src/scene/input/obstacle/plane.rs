@@ -1,17 +1,15 @@
 //! A plane; a polyline through points, undefined beyond its ends; a wedge h(s) = slope |s|, and a cone, which is a
 //! wedge rotated about the approach direction.
 
-use std::sync::Arc;
-
-use super::graph::{Form, Graph};
 use super::patch::linear;
 use super::polyline::Polyline;
-use super::row::{Foot, Local, ObstacleRow, RigidSurface, Surface};
-use super::shape::{Geometry, ObstacleShape, Site};
+use super::row::ObstacleRow;
+use super::shape::{Geometry, ObstacleShape, ObstacleSite};
+use super::surface::Surface;
+use super::swept::{Curve, CurveFoot, Local, Sweep};
 use crate::error::Error;
 use crate::fem::geometry::{dot, length, minus};
 use crate::scene::input::entry::{PLACE_TOLERANCE, finite, number, point, vector, wrong};
-use crate::scene::input::schema::model::Rule;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +25,7 @@ pub struct PlaneSpec {
 
 impl PlaneSpec {
     /// Its point and its unit normal.
-    fn checked(&self, site: &Site) -> Result<([f64; 3], [f64; 3]), Error> {
+    fn checked(&self, site: &ObstacleSite) -> Result<([f64; 3], [f64; 3]), Error> {
         let (dimension, approach) = (site.body.dimension(), site.direction());
         let at = vector(&site.field("point"), &self.point, dimension)?;
         let normal = vector(&site.field("normal"), &self.normal, dimension)?;
@@ -51,11 +49,10 @@ impl PlaneSpec {
 }
 
 impl ObstacleShape for PlaneSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let (point, normal) = self.checked(site)?;
         if site.body.dimension() == 2 {
-            let line = Line { normal: site.local(normal) };
-            return Ok(Geometry::rigid(site, Graph::new(site, point, Form::DrawnOut(Arc::new(line)))));
+            return Ok(Sweep::DrawnOut.place(StraightCurve { normal: site.local(normal) }, site, point));
         }
         Ok(Geometry::rigid(site, HalfSpace { point, normal, approach: site.direction() }))
     }
@@ -63,19 +60,19 @@ impl ObstacleShape for PlaneSpec {
 
 /// A line through the origin with a unit normal into the obstacle.
 #[derive(Debug)]
-struct Line {
+struct StraightCurve {
     normal: Local,
 }
 
-impl Surface for Line {
+impl Curve for StraightCurve {
     fn height(&self, along: f64) -> Option<f64> {
         // A product with a zero from a division may be a negative zero; the sum removes its sign.
         Some(0.0 - self.normal[0] / self.normal[1] * along)
     }
 
-    fn closest(&self, [along, towards]: Local, _: f64) -> Result<Option<Foot>, &'static str> {
+    fn closest(&self, [along, towards]: Local, _: f64) -> Result<Option<CurveFoot>, &'static str> {
         let distance = -(self.normal[0] * along + self.normal[1] * towards);
-        Ok(Some(Foot { normal: self.normal, distance }))
+        Ok(Some(CurveFoot { normal: self.normal, distance }))
     }
 }
 
@@ -95,21 +92,20 @@ impl HalfSpace {
     }
 }
 
-impl RigidSurface for HalfSpace {
-    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+impl Surface for HalfSpace {
+    fn gap(&self, node: [f64; 3], shift: f64) -> Option<f64> {
         let [to_plane, lean] = self.facing(node);
-        Ok(Some(match rule {
-            Rule::Approach => ObstacleRow { normal: self.approach, gap: to_plane / lean + shift },
-            Rule::ClosestPoint => ObstacleRow { normal: self.normal, gap: to_plane + shift * lean },
-        }))
+        Some(to_plane / lean + shift)
+    }
+
+    fn closest(&self, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let [to_plane, lean] = self.facing(node);
+        Ok(Some(ObstacleRow { normal: self.normal, gap: to_plane + shift * lean }))
     }
 
     fn gap_over(&self, corners: [[f64; 3]; 3], shift: f64) -> Option<([f64; 6], [f64; 2])> {
-        let gaps = corners.map(|corner| {
-            let [to_plane, lean] = self.facing(corner);
-            to_plane / lean + shift
-        });
-        Some((linear(gaps), [0.0; 2]))
+        let [first, second, third] = corners.map(|corner| self.gap(corner, shift));
+        Some((linear([first?, second?, third?]), [0.0; 2]))
     }
 }
 
@@ -124,7 +120,7 @@ pub struct TableSpec {
 }
 
 impl TableSpec {
-    fn polyline(&self, site: &Site) -> Result<Polyline, Error> {
+    fn polyline(&self, site: &ObstacleSite) -> Result<Polyline, Error> {
         let path = site.field("points");
         let axis = site.name_along();
         let mut knots: Vec<Local> = Vec::with_capacity(self.points.len());
@@ -148,33 +144,13 @@ impl TableSpec {
 }
 
 impl ObstacleShape for TableSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let table = self.polyline(site)?;
-        check_reach(&table, site)?;
-        Ok(Geometry::rigid(site, Graph::new(site, [0.0; 3], Form::DrawnOut(Arc::new(table)))))
-    }
-}
-
-/// Checks that every candidate lies over the surface.
-fn check_reach(table: &Polyline, site: &Site) -> Result<(), Error> {
-    let (axis, path) = (site.name_along(), site.field("points"));
-    let (first, last) = table.range();
-    for &(node, _) in site.candidates {
-        let at = site.body.mesh().nodes()[node];
-        let along = site.local(at)[0];
-        if !(first..=last).contains(&along) {
-            let corners = table.corners();
-            let ends = corners.first().zip(corners.last());
-            let reach = ends.map_or(String::new(), |(a, b)| format!(" from {axis} = {} to {}", number(*a), number(*b)));
-            let message = format!(
-                "the table reaches{reach}, but candidate node {node} at {} needs it at {axis} = {}",
-                point(&at[..2]),
-                number(along)
-            );
-            return Err(wrong(path.as_str(), message));
+        if let [first, .., last] = table.corners()[..] {
+            site.check_reach("table", &[("points", 1 - site.approach.axis().0, (first, last))])?;
         }
+        Ok(Sweep::DrawnOut.place(table, site, [0.0; 3]))
     }
-    Ok(())
 }
 
 /// A cone that opens along the approach direction.
@@ -189,10 +165,10 @@ pub struct ConeSpec {
 }
 
 impl ObstacleShape for ConeSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;
-        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::Turned(Arc::new(Polyline::wedge(slope))))))
+        Ok(Sweep::Turned.place(Polyline::wedge(slope), site, apex))
     }
 }
 
@@ -208,10 +184,10 @@ pub struct WedgeSpec {
 }
 
 impl ObstacleShape for WedgeSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;
-        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(Arc::new(Polyline::wedge(slope))))))
+        Ok(Sweep::DrawnOut.place(Polyline::wedge(slope), site, apex))
     }
 }
 
@@ -220,7 +196,9 @@ mod tests {
     use super::*;
     use crate::scene::input::obstacle::oracle::{Random, checked, triangles};
     use crate::scene::input::obstacle::patch::NOT_ENCLOSED;
-    use crate::scene::input::obstacle::row::{Obstacle, Ruled};
+    use crate::scene::input::obstacle::row::Obstacle;
+    use crate::scene::input::obstacle::surface::Placed;
+    use crate::scene::input::schema::model::Rule;
 
     const SLOPE: HalfSpace =
         HalfSpace { point: [0.1, 0.2, 1.0], normal: [0.48, -0.6, 0.64], approach: [0.0, 0.0, 1.0] };
@@ -235,7 +213,7 @@ mod tests {
 
     #[test]
     fn rows_along_normals_have_no_enclosure() {
-        let by = |rule| Ruled { surface: SLOPE, rule, approach: SLOPE.approach };
+        let by = |rule| Placed { surface: SLOPE, rule, approach: SLOPE.approach };
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         assert_eq!(by(Rule::ClosestPoint).gap_over(corners, 0.0), Some(NOT_ENCLOSED));
         let (coefficients, off) = by(Rule::Approach).gap_over(corners, 0.5).unwrap();

@@ -1,11 +1,9 @@
 //! A polyline over the coordinate along it, extended by a ray at each end: wedge and table; a parabola.
 
 use std::iter;
-use std::sync::Arc;
 
-use super::graph::{Form, Graph};
-use super::row::{Foot, Local, Surface};
-use super::shape::{Geometry, ObstacleShape, Site};
+use super::shape::{Geometry, ObstacleShape, ObstacleSite};
+use super::swept::{Curve, CurveFoot, Local, Sweep};
 use crate::error::Error;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -63,7 +61,7 @@ impl Polyline {
     }
 }
 
-impl Surface for Polyline {
+impl Curve for Polyline {
     fn height(&self, along: f64) -> Option<f64> {
         if !(self.range.0..=self.range.1).contains(&along) {
             return None;
@@ -115,7 +113,7 @@ impl Surface for Polyline {
         Some(([first, last], off))
     }
 
-    fn closest(&self, node: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
+    fn closest(&self, node: Local, tolerance: f64) -> Result<Option<CurveFoot>, &'static str> {
         let candidates: Vec<Candidate> = self
             .pieces()
             .enumerate()
@@ -142,12 +140,12 @@ impl Surface for Polyline {
             // The pieces on both sides of a knot have the numbers `index` and `index + 1`.
             if nearest.distance <= tolerance {
                 let normal = bisector(&mut candidates.iter().skip(index).take(2).map(|piece| piece.normal));
-                return Ok(Some(Foot { normal, distance: along_normal(normal, knot) }));
+                return Ok(Some(CurveFoot { normal, distance: along_normal(normal, knot) }));
             }
             let inside = self.height(node[0].clamp(self.range.0, self.range.1)).is_some_and(|h| node[1] > h);
             let sense = if inside { -1.0 } else { 1.0 };
             let normal = [0, 1].map(|axis| sense * (knot[axis] - node[axis]) / nearest.distance);
-            return Ok(Some(Foot { normal, distance: sense * nearest.distance }));
+            return Ok(Some(CurveFoot { normal, distance: sense * nearest.distance }));
         }
         let distance = along_normal(nearest.normal, nearest.anchor);
         let mut ties = candidates
@@ -156,7 +154,7 @@ impl Surface for Polyline {
             .map(|other| other.normal);
         let normal = bisector(&mut ties);
         let cosine = normal[0] * nearest.normal[0] + normal[1] * nearest.normal[1];
-        Ok(Some(Foot { normal, distance: distance / cosine }))
+        Ok(Some(CurveFoot { normal, distance: distance / cosine }))
     }
 
     fn range(&self) -> (f64, f64) {
@@ -183,10 +181,10 @@ pub struct ParabolaSpec {
 }
 
 impl ObstacleShape for ParabolaSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let radius = site.positive("radius", self.radius)?;
-        Ok(Geometry::rigid(site, Graph::new(site, apex, Form::DrawnOut(Arc::new(Parabola { radius })))))
+        Ok(Sweep::DrawnOut.place(Parabola { radius }, site, apex))
     }
 }
 
@@ -196,24 +194,24 @@ pub(super) struct Parabola {
     pub radius: f64,
 }
 
-impl Surface for Parabola {
+impl Curve for Parabola {
     fn height(&self, along: f64) -> Option<f64> {
         Some(along * (along / self.radius) / 2.0)
     }
 
     /// The foot s of the closest point to (p, q) solves `s^3/(2R^2) + s(1 - q/R) - p = 0`, with the sign of p.
-    fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
+    fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<CurveFoot>, &'static str> {
         let stiffness = 1.0 - towards / self.radius;
         if along.abs() <= tolerance && stiffness < 0.0 {
             // On the axis beyond the centre of curvature both sides are equally close: take the direction of the axis.
-            return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
+            return Ok(Some(CurveFoot { normal: [0.0, 1.0], distance: -towards }));
         }
         let slope = positive_root(stiffness, along.abs() / self.radius).copysign(along);
         let length = slope.hypot(1.0);
         let normal = [-slope / length, 1.0 / length];
         let foot = [self.radius * slope, self.radius * slope * slope / 2.0];
         let distance = normal[0] * (foot[0] - along) + normal[1] * (foot[1] - towards);
-        Ok(Some(Foot { normal, distance }))
+        Ok(Some(CurveFoot { normal, distance }))
     }
 }
 

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use super::order::{Between, SideOrder};
-use super::row::{Local, Obstacle, RigidSurface, Ruled};
+use super::row::Obstacle;
+use super::surface::{Placed, Surface};
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{along_axis, shifted};
-use crate::scene::input::entry::{COORDINATE_ROUNDING, Files, positive, vector, wrong};
+use crate::scene::input::entry::{COORDINATE_ROUNDING, Files, PLACE_TOLERANCE, number, point, positive, vector, wrong};
 use crate::scene::input::schema::model::{Approach, Rule};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// An obstacle shape with its numbers.
 pub(crate) trait ObstacleShape {
     /// Checks the numbers, and places the surface.
-    fn place(&self, site: &Site) -> Result<Geometry, Error>;
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error>;
 
     /// The boundary that forms the surface, if it is the surface of another body.
     fn other_boundary(&self) -> Option<&str> {
@@ -45,13 +46,13 @@ pub(crate) enum Geometry {
 
 impl Geometry {
     /// A rigid surface; the rule of the site makes its rows.
-    pub(super) fn rigid(site: &Site, surface: impl RigidSurface + 'static) -> Self {
-        Geometry::Rigid(Arc::new(Ruled { surface, rule: site.rule, approach: site.direction() }))
+    pub(super) fn rigid(site: &ObstacleSite, surface: impl Surface + 'static) -> Self {
+        Geometry::Rigid(Arc::new(Placed { surface, rule: site.rule, approach: site.direction() }))
     }
 }
 
 /// The place of an obstacle in a scene.
-pub(crate) struct Site<'a> {
+pub(crate) struct ObstacleSite<'a> {
     /// JSON path of the obstacle, as `obstacles[0]`.
     pub obstacle: &'a str,
     /// JSON path of its shape, as `obstacles[0].shape.plane`.
@@ -94,7 +95,7 @@ impl Side {
     }
 }
 
-impl Site<'_> {
+impl ObstacleSite<'_> {
     /// The JSON path of a field of the shape.
     pub fn field(&self, name: &str) -> String {
         format!("{}.{name}", self.path)
@@ -107,7 +108,7 @@ impl Site<'_> {
     }
 
     /// A point or a direction of the plane in the axes of the obstacle: along its surface, and towards it.
-    pub fn local(&self, global: [f64; 3]) -> Local {
+    pub fn local(&self, global: [f64; 3]) -> [f64; 2] {
         let (axis, sense) = self.approach.axis();
         [global[1 - axis], sense * global[axis]]
     }
@@ -120,6 +121,28 @@ impl Site<'_> {
     /// A length below this is rounding of the coordinates of the body.
     pub fn rounding(&self) -> f64 {
         COORDINATE_ROUNDING * self.body.mesh().size()
+    }
+
+    /// Checks that every candidate lies over a surface: `what` reaches over each range of an axis, which a field of the
+    /// shape gives.
+    pub fn check_reach(&self, what: &str, ranges: &[(&str, usize, (f64, f64))]) -> Result<(), Error> {
+        let (mesh, rim) = (self.body.mesh(), PLACE_TOLERANCE * self.body.mesh().size());
+        for &(node, _) in self.candidates {
+            let at = mesh.nodes()[node];
+            for &(field, axis, (first, last)) in ranges {
+                if (first - rim..=last + rim).contains(&at[axis]) {
+                    continue;
+                }
+                let (name, place) = (["x", "y", "z"][axis], point(&at[..mesh.dimension()]));
+                let (first, last, needed) = (number(first), number(last), number(at[axis]));
+                let message = format!(
+                    "the {what} reaches from {name} = {first} to {last}, but candidate node {node} at {place} needs it at \
+                     {name} = {needed}"
+                );
+                return Err(wrong(self.field(field), message));
+            }
+        }
+        Ok(())
     }
 
     /// A field that is a point.

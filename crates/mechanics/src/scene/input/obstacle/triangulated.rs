@@ -1,14 +1,13 @@
 //! A closed surface of triangles from a file: the outside of a solid, or the inside of a hole.
 
-use std::sync::Arc;
-
-use super::row::{ObstacleRow, RigidSurface};
-use super::shape::{Geometry, ObstacleShape, Side, Site};
+use super::row::ObstacleRow;
+use super::shape::{Geometry, ObstacleShape, ObstacleSite, Side};
+use super::surface::Surface;
 use crate::error::Error;
-use crate::fem::geometry::minus;
+use crate::fem::geometry::shifted;
 use crate::fem::surface::{ClosedSurface, Crossing};
 use crate::scene::input::entry::{Files, located};
-use crate::scene::input::schema::model::{Approach, Rule};
+use crate::scene::input::schema::model::Approach;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -42,13 +41,12 @@ fn is_origin(at: &[f64; 3]) -> bool {
 }
 
 impl ObstacleShape for SurfaceSpec {
-    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+    fn place(&self, site: &ObstacleSite) -> Result<Geometry, Error> {
         let origin = site.point("origin", &self.origin)?;
         let file = site.files.named(&self.file, site.field("file"))?;
         let surface =
             ClosedSurface::read(&file, self.scale, origin).map_err(|error| located(error, &site.field("")))?;
-        let (surface, approach) = (Arc::new(surface), site.approach);
-        let (direction, rounding) = (site.direction(), site.rounding());
+        let (approach, direction, rounding) = (site.approach, site.direction(), site.rounding());
         Ok(Geometry::rigid(site, Triangulated { surface, side: self.side, approach, direction, rounding }))
     }
 
@@ -57,20 +55,21 @@ impl ObstacleShape for SurfaceSpec {
     }
 }
 
-/// A surface as an obstacle. Models with other gaps share it.
-#[derive(Clone, Debug)]
+/// A surface as an obstacle.
+#[derive(Debug)]
 struct Triangulated {
-    surface: Arc<ClosedSurface>,
+    surface: ClosedSurface,
     side: Side,
     approach: Approach,
     direction: [f64; 3],
     rounding: f64,
 }
 
-impl Triangulated {
-    /// The distance along the approach direction from a node to its entry into the obstacle: the first entry ahead, or
-    /// the last one behind for a node in the obstacle; `None` if no entry exists.
-    fn entry(&self, node: [f64; 3]) -> Option<f64> {
+impl Surface for Triangulated {
+    /// To the entry into the obstacle: the first entry ahead, or the last one behind for a node in the obstacle; `None`
+    /// if no entry exists.
+    fn gap(&self, node: [f64; 3], shift: f64) -> Option<f64> {
+        let node = shifted(node, -shift, self.direction);
         let (axis, sense) = self.approach.axis();
         let mut crossings: Vec<Crossing> = self.surface.crossings(axis, node);
         if sense < 0.0 {
@@ -92,15 +91,9 @@ impl Triangulated {
         }
         entry
     }
-}
 
-impl RigidSurface for Triangulated {
-    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        let node = minus(node, self.direction.map(|part| shift * part));
-        if rule == Rule::Approach {
-            return Ok(self.entry(node).map(|gap| ObstacleRow { normal: self.direction, gap }));
-        }
-        let sign = self.side.signed(1.0);
+    fn closest(&self, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let (node, sign) = (shifted(node, -shift, self.direction), self.side.signed(1.0));
         let closest = self.surface.closest(node, self.rounding, self.direction.map(|part| sign * part));
         Ok(Some(ObstacleRow { normal: closest.outward.map(|part| -sign * part), gap: sign * closest.height }))
     }

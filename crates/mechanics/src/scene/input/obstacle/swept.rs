@@ -1,136 +1,167 @@
-//! Obstacles as graphs over the coordinates perpendicular to the approach direction: in most cases a curve rotated or
-//! extruded. An obstacle in the plane is a curve extruded along z.
+//! Curves rotated about the approach direction or extruded perpendicular to it. An obstacle in the plane is a curve
+//! extruded along z.
 
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::patch::{PAIRS, distance_of_origin, extent, linear};
-use super::row::{ObstacleRow, RigidSurface, Surface};
-use super::shape::Site;
-use crate::fem::geometry::{cross, dot, minus};
-use crate::scene::input::schema::model::{Approach, Rule};
+use super::patch::{PAIRS, distance_of_origin, extent, gap_to};
+use super::row::ObstacleRow;
+use super::shape::{Geometry, ObstacleSite};
+use super::surface::{Axes, Surface, across};
+use crate::fem::geometry::{cross, minus};
 
 /// Largest number of pieces of a pictured surface; more cannot be seen.
 const MAX_SEGMENTS: usize = 10_000;
 
-/// A surface in its frame.
+/// Coordinates `[along, towards]`: along a curve, and towards the obstacle.
+pub(super) type Local = [f64; 2];
+
+/// The connection from a node to a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CurveFoot {
+    /// Unit normal at the foot, into the obstacle.
+    pub normal: Local,
+    /// Signed distance along the normal; negative inside.
+    pub distance: f64,
+}
+
+/// A curve as a graph over the coordinate along it: the obstacle lies at and above its height.
+pub(super) trait Curve: Debug + Send + Sync {
+    /// The height towards the obstacle, or `None` beyond the curve's reach.
+    fn height(&self, along: f64) -> Option<f64>;
+
+    /// The values of a quadratic function at both ends of a stretch within reach and in its middle, and the largest
+    /// distances `[below, above]` of the curve from it, which are zero for a curve that is quadratic itself.
+    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
+        Some((self.heights(from, to)?, [0.0; 2]))
+    }
+
+    /// For a curve that is symmetric to its axis, between two distances from it within reach, `0 <= near <= far`: the
+    /// heights at both of a linear function of the squared distance, and the largest distances `[below, above]` of the
+    /// curve from it, which are zero for a curve that is quadratic itself.
+    fn enclosed_turned(&self, near: f64, far: f64) -> Option<([f64; 2], [f64; 2])> {
+        Some(([self.height(near)?, self.height(far)?], [0.0; 2]))
+    }
+
+    /// The foot closest to `node`, or `None` if no part of the curve faces it; lengths below `tolerance` are
+    /// rounding.
+    ///
+    /// For a node behind a vertex or on an axis, equally close to both sides, the direction is along the axis.
+    ///
+    /// # Errors
+    /// A predicate of the node if it lies so deep that no meaningful closest point exists.
+    fn closest(&self, node: Local, tolerance: f64) -> Result<Option<CurveFoot>, &'static str>;
+
+    /// The reach, along the curve.
+    fn range(&self) -> (f64, f64) {
+        (f64::NEG_INFINITY, f64::INFINITY)
+    }
+
+    /// The heights at both ends and in the middle.
+    fn heights(&self, from: f64, to: f64) -> Option<[f64; 3]> {
+        Some([self.height(from)?, self.height((from + to) / 2.0)?, self.height(to)?])
+    }
+
+    /// The places of the corners of the curve, along it.
+    fn corners(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// The surface that a curve forms.
 #[derive(Clone, Debug)]
-pub(super) struct Graph {
-    /// Orthonormal: two axes perpendicular to the approach direction, and the approach direction.
-    axes: [[f64; 3]; 3],
-    origin: [f64; 3],
-    form: Form,
+pub(super) struct Swept {
+    curve: Arc<dyn Curve>,
+    sweep: Sweep,
+    axes: Axes,
     /// Extent of the pictured surface along the first axis, from the origin: beyond the body by its size on each side,
     /// so that a wall before a slender body does not end in the picture.
     extent: [f64; 2],
     rounding: f64,
 }
 
-/// The construction of the surface.
-#[derive(Clone, Debug)]
-pub(super) enum Form {
+/// The movement of a curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Sweep {
     /// A curve symmetric to its axis, rotated about it: towards = h(hypot(t1, t2)).
-    Turned(Arc<dyn Surface>),
-    /// A curve extruded along the second axis: towards = h(t1).
-    DrawnOut(Arc<dyn Surface>),
-    /// A grid: towards = h(t1, t2).
-    Grid(Arc<dyn Grid>),
+    Turned,
+    /// Extruded along the second axis: towards = h(t1).
+    DrawnOut,
 }
 
-/// A surface over a grid of the two coordinates perpendicular to the approach direction.
-pub(super) trait Grid: Debug + Send + Sync {
-    /// The height at a place, or `None` beyond the rim.
-    fn height(&self, at: [f64; 2]) -> Option<f64>;
-
-    /// The heights over a triangle with its corners at these places, as
-    /// [`Obstacle::gap_over`](super::row::Obstacle::gap_over) gives the gap.
-    fn enclosed(&self, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64; 2])>;
-
-    /// Unit normal into the obstacle at the closest point, and the distance along it; `None` beyond the rim. Lengths
-    /// below `tolerance` are rounding.
-    fn closest(&self, node: [f64; 3], tolerance: f64) -> Option<([f64; 3], f64)>;
+impl Sweep {
+    /// The obstacle with its apex at a point.
+    pub fn place(self, curve: impl Curve + 'static, site: &ObstacleSite, apex: [f64; 3]) -> Geometry {
+        Geometry::rigid(site, Swept::new(curve, self, site, apex))
+    }
 }
 
-impl Graph {
+impl Swept {
     /// The surface with its origin at a point.
-    pub fn new(site: &Site, origin: [f64; 3], form: Form) -> Self {
-        let [first, second] = across(site.approach);
-        let mut axes = [[0.0; 3]; 3];
-        (axes[0][first], axes[1][second], axes[2]) = (1.0, 1.0, site.direction());
+    pub fn new(curve: impl Curve + 'static, sweep: Sweep, site: &ObstacleSite, origin: [f64; 3]) -> Self {
+        let (axes, first) = (Axes::new(site.approach, origin), across(site.approach)[0]);
         let ((low, high), margin) = (site.body.mesh().extent(), site.body.mesh().size());
         let extent = [low[first] - margin - origin[first], high[first] + margin - origin[first]];
-        Graph { axes, origin, form, extent, rounding: site.rounding() }
-    }
-
-    /// A point in the frame, with the surface moved by `shift`.
-    fn local(&self, point: [f64; 3], shift: f64) -> [f64; 3] {
-        let from_origin = minus(point, self.origin);
-        let [t1, t2, towards] = self.axes.map(|axis| dot(axis, from_origin));
-        [t1, t2, towards - shift]
+        Swept { curve: Arc::new(curve), sweep, axes, extent, rounding: site.rounding() }
     }
 
     /// The same surface extruded along another unit vector perpendicular to the approach direction.
     pub fn along(mut self, axis: [f64; 3]) -> Self {
-        self.axes[1] = axis;
-        self.axes[0] = cross(axis, self.axes[2]);
+        let axes = &mut self.axes.axes;
+        (axes[1], axes[0]) = (axis, cross(axis, axes[2]));
         self
     }
 }
 
-impl RigidSurface for Graph {
-    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        let [t1, t2, towards] = self.local(node, shift);
-        let along_approach = |height: Option<f64>| height.map(|height| ([0.0, 0.0, 1.0], height - towards));
-        let way = match (&self.form, rule) {
-            (Form::Turned(curve), Rule::Approach) => along_approach(curve.height(t1.hypot(t2))),
-            (Form::DrawnOut(curve), Rule::Approach) => along_approach(curve.height(t1)),
-            (Form::Grid(map), Rule::Approach) => along_approach(map.height([t1, t2])),
-            (Form::Turned(curve), Rule::ClosestPoint) => {
-                let radius = t1.hypot(t2);
-                // The closest point lies in the half plane of the node; on the axis the normal has no component
-                // perpendicular to it.
-                let outwards = if radius > 0.0 { [t1 / radius, t2 / radius] } else { [0.0; 2] };
-                let foot = curve.closest([radius, towards], self.rounding)?;
-                foot.map(|foot| {
-                    let [across, along] = foot.normal;
-                    ([across * outwards[0], across * outwards[1], along], foot.distance)
-                })
-            }
-            (Form::DrawnOut(curve), Rule::ClosestPoint) => {
-                let foot = curve.closest([t1, towards], self.rounding)?;
-                foot.map(|foot| ([foot.normal[0], 0.0, foot.normal[1]], foot.distance))
-            }
-            (Form::Grid(map), Rule::ClosestPoint) => map.closest([t1, t2, towards], self.rounding),
+impl Surface for Swept {
+    fn gap(&self, node: [f64; 3], shift: f64) -> Option<f64> {
+        let [t1, t2, towards] = self.axes.local(node, shift);
+        let along = match self.sweep {
+            Sweep::Turned => t1.hypot(t2),
+            Sweep::DrawnOut => t1,
         };
-        Ok(way.map(|(local, gap)| {
-            let normal = [0, 1, 2].map(|i| (0..3).map(|axis| local[axis] * self.axes[axis][i]).sum());
-            ObstacleRow { normal, gap }
-        }))
+        Some(self.curve.height(along)? - towards)
+    }
+
+    fn closest(&self, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let [t1, t2, towards] = self.axes.local(node, shift);
+        let (along, outwards) = match self.sweep {
+            Sweep::DrawnOut => (t1, [1.0, 0.0]),
+            // The closest point lies in the half plane of the node; on the axis the normal has no component
+            // perpendicular to it.
+            Sweep::Turned => match t1.hypot(t2) {
+                radius if radius > 0.0 => (radius, [t1 / radius, t2 / radius]),
+                radius => (radius, [0.0; 2]),
+            },
+        };
+        let Some(CurveFoot { normal: [across, ahead], distance }) =
+            self.curve.closest([along, towards], self.rounding)?
+        else {
+            return Ok(None);
+        };
+        let normal = self.axes.global([across * outwards[0], across * outwards[1], ahead]);
+        Ok(Some(ObstacleRow { normal, gap: distance }))
     }
 
     fn gap_along(&self, from: [f64; 3], to: [f64; 3], shift: f64) -> Option<([f64; 3], [f64; 2])> {
-        let Form::DrawnOut(curve) = &self.form else { return None };
-        let ([from, _, low], [to, _, high]) = (self.local(from, shift), self.local(to, shift));
-        let (heights, off) = reached(curve.as_ref(), [from, to], |from, to| curve.enclosed(from, to))?;
+        let Sweep::DrawnOut = self.sweep else { return None };
+        let ([from, _, low], [to, _, high]) = (self.axes.local(from, shift), self.axes.local(to, shift));
+        let (heights, off) = reached(self.curve.as_ref(), [from, to], |from, to| self.curve.enclosed(from, to))?;
         Some((minus(heights, [low, (low + high) / 2.0, high]), off))
     }
 
     fn gap_over(&self, corners: [[f64; 3]; 3], shift: f64) -> Option<([f64; 6], [f64; 2])> {
-        let local = corners.map(|corner| self.local(corner, shift));
-        let places = local.map(|[t1, t2, _]| [t1, t2]);
-        let (mut gap, off) = match &self.form {
-            Form::Turned(curve) => turned(curve.as_ref(), places),
-            Form::DrawnOut(curve) => drawn_out(curve.as_ref(), places.map(|[t1, _]| t1)),
-            Form::Grid(map) => map.enclosed(places),
+        let local = corners.map(|corner| self.axes.local(corner, shift));
+        let (heights, off) = match self.sweep {
+            Sweep::Turned => turned(self.curve.as_ref(), local.map(|[t1, t2, _]| [t1, t2])),
+            Sweep::DrawnOut => drawn_out(self.curve.as_ref(), local.map(|[t1, ..]| t1)),
         }?;
-        let towards = linear(local.map(|[_, _, towards]| towards));
-        gap.iter_mut().zip(towards).for_each(|(gap, towards)| *gap -= towards);
-        Some((gap, off))
+        Some((gap_to(heights, local), off))
     }
 
     fn outline(&self, shift: f64, segments: usize) -> Vec<[f64; 2]> {
-        let Form::DrawnOut(curve) = &self.form else { return Vec::new() };
-        let (reach, [low, high]) = (curve.range(), self.extent);
+        let Sweep::DrawnOut = self.sweep else { return Vec::new() };
+        let (reach, [low, high]) = (self.curve.range(), self.extent);
         let (first, last) = (low.max(reach.0), high.min(reach.1));
         if first >= last {
             return Vec::new();
@@ -138,12 +169,12 @@ impl RigidSurface for Graph {
         let segments = segments.clamp(1, MAX_SEGMENTS);
         let sample = |i: usize| if i == segments { last } else { first + (last - first) * i as f64 / segments as f64 };
         let mut along: Vec<f64> = (0..=segments).map(sample).collect();
-        along.extend(curve.corners().into_iter().filter(|&corner| corner > first && corner < last));
+        along.extend(self.curve.corners().into_iter().filter(|&corner| corner > first && corner < last));
         along.sort_by(f64::total_cmp);
         along.dedup();
         let place = |along: f64| {
-            let local = [along, 0.0, curve.height(along)? + shift];
-            Some([0, 1].map(|i| self.origin[i] + (0..3).map(|axis| local[axis] * self.axes[axis][i]).sum::<f64>()))
+            let way = self.axes.global([along, 0.0, self.curve.height(along)? + shift]);
+            Some([0, 1].map(|i| self.axes.origin[i] + way[i]))
         };
         along.into_iter().filter_map(place).collect()
     }
@@ -153,7 +184,7 @@ impl RigidSurface for Graph {
 /// in the middle, and the distances `[below, above]`. Over a stretch that reaches beyond the curve the function is the
 /// lowest height of the curve there, with an infinite distance above; `None` if the stretch lies beyond the curve.
 fn reached(
-    curve: &dyn Surface,
+    curve: &dyn Curve,
     [from, to]: [f64; 2],
     enclosed: impl Fn(f64, f64) -> Option<([f64; 3], [f64; 2])>,
 ) -> Option<([f64; 3], [f64; 2])> {
@@ -177,7 +208,7 @@ fn bernstein([first, middle, last]: [f64; 3]) -> [f64; 3] {
 }
 
 /// The heights of an extruded curve over a triangle with its corners at these places along the curve.
-fn drawn_out(curve: &dyn Surface, places: [f64; 3]) -> Option<([f64; 6], [f64; 2])> {
+fn drawn_out(curve: &dyn Curve, places: [f64; 3]) -> Option<([f64; 6], [f64; 2])> {
     let [from, to] = extent(places);
     let (heights, off) = reached(curve, [from, to], |from, to| curve.enclosed(from, to))?;
     let [first, middle, last] = bernstein(heights);
@@ -191,7 +222,7 @@ fn drawn_out(curve: &dyn Surface, places: [f64; 3]) -> Option<([f64; 6], [f64; 2
 
 /// The heights of a rotated curve over a triangle with its corners at these places around the axis. The squared
 /// distance from the axis is quadratic on the triangle, with the scalar product as its polar form.
-fn turned(curve: &dyn Surface, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64; 2])> {
+fn turned(curve: &dyn Curve, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64; 2])> {
     let [_, far] = extent(places.map(|[t1, t2]| t1.hypot(t2)));
     let near = distance_of_origin(places).min(far);
     let ([first, _, last], off) = reached(curve, [near, far], |near, far| {
@@ -206,77 +237,76 @@ fn turned(curve: &dyn Surface, places: [[f64; 2]; 3]) -> Option<([f64; 6], [f64;
     Some((PAIRS.map(polar), off))
 }
 
-/// The two axes perpendicular to an approach direction, increasing.
-pub(super) fn across(approach: Approach) -> [usize; 2] {
-    [[1, 2], [0, 2], [0, 1]][approach.axis().0]
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::circle::round;
+    use super::super::circle::RoundCurve;
     use super::super::oracle::{ROUNDING, Random, checked, quarters, triangles};
     use super::super::polyline::Polyline;
     use super::super::shape::Side;
     use super::*;
-    use crate::fem::geometry::COORDINATES;
     use crate::scene::input::obstacle::polyline::Parabola;
+    use crate::scene::input::schema::model::Approach;
 
     const RADIUS: f64 = 2.0;
 
-    impl Graph {
+    impl Swept {
         /// A surface with the axes and the origin of space.
-        pub fn upright(form: Form) -> Self {
-            Graph { axes: COORDINATES, origin: [0.0; 3], form, extent: [0.0; 2], rounding: 0.0 }
+        pub fn upright(sweep: Sweep, curve: Arc<dyn Curve>) -> Self {
+            Swept { curve, sweep, axes: Axes::new(Approach::PlusZ, [0.0; 3]), extent: [0.0; 2], rounding: 0.0 }
         }
     }
 
-    fn parabola() -> Arc<dyn Surface> {
+    fn round(radius: f64, side: Side) -> Arc<dyn Curve> {
+        Arc::new(RoundCurve { radius, side })
+    }
+
+    fn parabola() -> Arc<dyn Curve> {
         Arc::new(Parabola { radius: RADIUS })
     }
 
-    fn wedge() -> Arc<dyn Surface> {
+    fn wedge() -> Arc<dyn Curve> {
         Arc::new(Polyline::wedge(0.7))
     }
 
     /// A symmetric curve with corners, from -2 to 2.
-    fn table() -> Arc<dyn Surface> {
+    fn table() -> Arc<dyn Curve> {
         let half = [[0.0, 0.1], [0.3, -0.2], [0.31, 0.4], [1.2, 0.4], [2.0, 1.5]];
         let mirrored = half.iter().skip(1).rev().map(|&[along, height]| [-along, height]);
         Arc::new(Polyline::table(mirrored.chain(half).collect(), 0.0).unwrap())
     }
 
-    fn forms() -> Vec<(&'static str, Form)> {
+    fn surfaces() -> Vec<(&'static str, Swept)> {
         let circle = |side| round(RADIUS, side);
         vec![
-            ("sphere", Form::Turned(circle(Side::Outside))),
-            ("cup", Form::Turned(circle(Side::Inside))),
-            ("paraboloid", Form::Turned(parabola())),
-            ("cone", Form::Turned(wedge())),
-            ("turned table", Form::Turned(table())),
-            ("cylinder", Form::DrawnOut(circle(Side::Outside))),
-            ("hole", Form::DrawnOut(circle(Side::Inside))),
-            ("parabola", Form::DrawnOut(parabola())),
-            ("wedge", Form::DrawnOut(wedge())),
-            ("table", Form::DrawnOut(table())),
+            ("sphere", Swept::upright(Sweep::Turned, circle(Side::Outside))),
+            ("cup", Swept::upright(Sweep::Turned, circle(Side::Inside))),
+            ("paraboloid", Swept::upright(Sweep::Turned, parabola())),
+            ("cone", Swept::upright(Sweep::Turned, wedge())),
+            ("turned table", Swept::upright(Sweep::Turned, table())),
+            ("cylinder", Swept::upright(Sweep::DrawnOut, circle(Side::Outside))),
+            ("hole", Swept::upright(Sweep::DrawnOut, circle(Side::Inside))),
+            ("parabola", Swept::upright(Sweep::DrawnOut, parabola())),
+            ("wedge", Swept::upright(Sweep::DrawnOut, wedge())),
+            ("table", Swept::upright(Sweep::DrawnOut, table())),
         ]
     }
 
     #[test]
     fn the_gap_over_any_triangle_stays_within_its_enclosure() {
-        for (name, form) in forms() {
-            let aligned = Graph::upright(form);
+        for (name, aligned) in surfaces() {
             let axes = [[0.6, 0.0, 0.8], [0.48, 0.8, -0.36], [-0.64, 0.6, 0.48]];
-            let skew = Graph { axes, origin: [0.3, -0.2, 0.5], ..aligned.clone() };
+            let origin = [0.3, -0.2, 0.5];
+            let skew = Swept { axes: Axes { origin, axes }, ..aligned.clone() };
             let mut random = Random(1);
             let (mut whole, mut part, mut none) = (0, 0, 0);
             for corners in triangles(&mut random) {
                 let shift = random.between(-0.5, 0.5);
                 let placed = corners.map(|local| {
                     let along = |i: usize| (0..3).map(|axis| local[axis] * axes[axis][i]).sum::<f64>();
-                    [0, 1, 2].map(|i| skew.origin[i] + along(i))
+                    [0, 1, 2].map(|i| origin[i] + along(i))
                 });
-                for (graph, corners) in [(&aligned, corners), (&skew, placed)] {
-                    match checked(graph, corners, shift, &mut random) {
+                for (surface, corners) in [(&aligned, corners), (&skew, placed)] {
+                    match checked(surface, corners, shift, &mut random) {
                         Some([_, above]) if above.is_finite() => whole += 1,
                         Some(_) => part += 1,
                         None => none += 1,
@@ -290,10 +320,10 @@ mod tests {
 
     #[test]
     fn the_enclosure_over_a_paraboloid_or_an_extruded_parabola_is_exact() {
-        for form in [Form::Turned(parabola()), Form::DrawnOut(parabola())] {
-            let (graph, mut random) = (Graph::upright(form), Random(2));
+        for surface in [Swept::upright(Sweep::Turned, parabola()), Swept::upright(Sweep::DrawnOut, parabola())] {
+            let mut random = Random(2);
             for corners in triangles(&mut random) {
-                assert_eq!(checked(&graph, corners, 0.1, &mut random), Some([0.0; 2]));
+                assert_eq!(checked(&surface, corners, 0.1, &mut random), Some([0.0; 2]));
             }
         }
     }
@@ -301,14 +331,14 @@ mod tests {
     #[test]
     fn the_enclosure_over_a_sphere_follows_its_curvature() {
         for side in [Side::Outside, Side::Inside] {
-            let (graph, mut random) = (Graph::upright(Form::Turned(round(RADIUS, side))), Random(3));
+            let (surface, mut random) = (Swept::upright(Sweep::Turned, round(RADIUS, side)), Random(3));
             let mut compared = 0;
             for corners in (0..5).flat_map(|_| triangles(&mut random)).collect::<Vec<_>>() {
                 let places = corners.map(|[t1, t2, _]| [t1, t2]);
                 let [_, far] = extent(places.map(|[t1, t2]| t1.hypot(t2)));
                 if far < RADIUS / 2.0 {
                     let range = far.powi(2) - distance_of_origin(places).powi(2);
-                    let [below, above] = checked(&graph, corners, 0.0, &mut random).unwrap();
+                    let [below, above] = checked(&surface, corners, 0.0, &mut random).unwrap();
                     assert!(below + above <= 2.0 * range.powi(2) / (8.0 * RADIUS.powi(3)), "{side:?} {corners:?}");
                     compared += 1;
                 }
@@ -321,8 +351,8 @@ mod tests {
     /// one: the distances have the order 2, and 3.
     #[test]
     fn a_quarter_of_a_small_triangle_has_a_quarter_of_the_distances() {
-        for (name, form) in forms() {
-            let (graph, mut random) = (Graph::upright(form), Random(4));
+        for (name, surface) in surfaces() {
+            let mut random = Random(4);
             let factor = match name {
                 "sphere" | "cup" | "cone" => 4.0,
                 "cylinder" | "hole" => 8.0,
@@ -332,7 +362,7 @@ mod tests {
                 let centre = [random.between(0.5, 1.2), random.between(-0.5, 0.5), 0.0];
                 let corners = [0, 1, 2].map(|_| centre.map(|coordinate| coordinate + random.between(-0.01, 0.01)));
                 let mut size = |corners| {
-                    let [below, above] = checked(&graph, corners, 0.0, &mut random).unwrap();
+                    let [below, above] = checked(&surface, corners, 0.0, &mut random).unwrap();
                     below.max(above)
                 };
                 let (whole, parts) = (size(corners), quarters(corners).map(size));
@@ -347,7 +377,7 @@ mod tests {
     fn the_distances_of_a_cone_and_a_sphere_are_those_of_the_formulas() {
         let corners = [[0.5, 0.0, 0.2], [1.5, 0.0, 0.1], [1.0, 0.0, 0.4]];
         let mut random = Random(5);
-        let mut off = |curve| checked(&Graph::upright(Form::Turned(curve)), corners, 0.0, &mut random).unwrap();
+        let mut off = |curve| checked(&Swept::upright(Sweep::Turned, curve), corners, 0.0, &mut random).unwrap();
         let [below, above] = off(wedge());
         // 0.7 (1.5 - 0.5)^2/(4 (1.5 + 0.5))
         assert!(below == 0.0 && (above - 0.0875).abs() < ROUNDING, "{below} {above}");
