@@ -3,12 +3,9 @@
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
-use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
+use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh};
 use crate::scene::input::entry::{Files, MeshFiles, wrong};
 use crate::scene::input::schema::model::ModelSpec;
-
-/// The approximate part of a round body's radius outside the core, along the diagonal.
-const SHELLS: f64 = 0.6;
 
 /// The name of a shape, of a body or of an obstacle, and the models that allow it.
 #[derive(Clone, Copy, Debug)]
@@ -146,22 +143,5 @@ impl Block {
             lengths: axes.iter().map(|axis| axis.length()).collect(),
             counts: kind.reference().counts,
         }
-    }
-}
-
-/// Estimated cells of a round body: from the lowest point to the corner of its core, from there to the cut, in the
-/// shells.
-pub(crate) struct RoundCells {
-    pub aside: f64,
-    pub down: f64,
-    pub shells: f64,
-}
-
-impl RoundCells {
-    pub fn of(zone: &Zone, radius: f64) -> Self {
-        let quarter = radius * std::f64::consts::FRAC_PI_4;
-        let (aside, last) = zone.count(quarter);
-        let (shells, _) = zone.count(radius * SHELLS);
-        RoundCells { aside, down: quarter / last, shells }
     }
 }
