@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::fan::{fan, fan_block};
 use super::lattice::{Cells, Key, places, points, steps};
-use super::shape::{Block, BodyShape, Sides, Site};
+use super::shape::{BodyShape, BodySite, CellBlock, Sides};
 use crate::error::Error;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, check_lines, fail};
 use crate::fem::{Axis, Integration};
@@ -37,20 +37,16 @@ pub struct DiscSpec {
 }
 
 impl BodyShape for DiscSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
     fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
         ["lower", "upper"].map(|name| (name, self.centre, self.radius)).to_vec()
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
         disc(self.centre, self.radius, &self.zone, Sides::of(self.symmetric), self.element.kind())
     }
 
-    fn block(&self, _: Option<Files>) -> Block {
+    fn block(&self, _: Option<Files>) -> CellBlock {
         let mut halves = fan_block(self.radius, &self.zone, &[Sides::of(self.symmetric)], self.element.kind());
         halves.cells[0] *= 2.0;
         halves
@@ -130,21 +126,17 @@ pub struct HalfDiscSpec {
 }
 
 impl BodyShape for HalfDiscSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
     fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
         vec![("arc", self.centre, self.radius)]
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
         let lower = half_disc(self.centre, self.radius, &self.zone, Sides::of(self.symmetric), self.element.kind())?;
         Ok(self.half.of(lower, 1, self.centre[1]))
     }
 
-    fn block(&self, _: Option<Files>) -> Block {
+    fn block(&self, _: Option<Files>) -> CellBlock {
         fan_block(self.radius, &self.zone, &[Sides::of(self.symmetric)], self.element.kind())
     }
 
@@ -201,24 +193,20 @@ pub struct RingSpec {
 }
 
 impl BodyShape for RingSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
     fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
         let ends = [self.radius.points.first(), self.radius.points.last()];
         let named = ["inner", "outer"].into_iter().zip(ends);
         named.filter_map(|(name, radius)| Some((name, self.centre, *radius?))).collect()
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
-        site.check_product(&[&self.radius, &self.angle])?;
-        ring(self.centre, &site.lines(&self.radius, "radius")?, &site.lines(&self.angle, "angle")?, self.element.kind())
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
+        let [radii, angles] = site.lines([("radius", &self.radius), ("angle", &self.angle)])?;
+        ring(self.centre, &radii, &angles, self.element.kind())
     }
 
-    fn block(&self, _: Option<Files>) -> Block {
+    fn block(&self, _: Option<Files>) -> CellBlock {
         // An angle is not a length.
-        Block { lengths: Vec::new(), ..Block::product(&[&self.radius, &self.angle], self.element.kind()) }
+        CellBlock { lengths: Vec::new(), ..CellBlock::product(&[&self.radius, &self.angle], self.element.kind()) }
     }
 
     fn refine(&mut self, times: usize) -> Result<(), Error> {

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::lattice::{Cells, Key, places, points, steps};
-use super::shape::{Block, Sides};
+use super::shape::{CellBlock, Sides};
 use crate::error::Error;
 use crate::fem::geometry::plus;
 use crate::fem::mesh::axis::Grading;
@@ -97,7 +97,7 @@ fn add_shells(cells: &mut Cells, shells: usize, [i, j, k]: [usize; 3], step: usi
 }
 
 /// The estimated cells of a fan: around the core, and from its middle to the circle or sphere.
-pub(super) fn fan_block(radius: f64, zone: &Zone, sides: &[Sides], kind: ElementKind) -> Block {
+pub(super) fn fan_block(radius: f64, zone: &Zone, sides: &[Sides], kind: ElementKind) -> CellBlock {
     let quarter = radius * FRAC_PI_4;
     let ((aside, last), (shells, _)) = (zone.count(quarter), zone.count(radius * SHELLS));
     let down = quarter / last;
@@ -112,5 +112,5 @@ pub(super) fn fan_block(radius: f64, zone: &Zone, sides: &[Sides], kind: Element
         [_] => vec![around, outward],
         _ => vec![around.sqrt(), around.sqrt(), outward],
     };
-    Block { cells, lengths: Vec::new(), counts: kind.reference().counts }
+    CellBlock { cells, lengths: Vec::new(), counts: kind.reference().counts }
 }

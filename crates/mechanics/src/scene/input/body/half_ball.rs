@@ -1,7 +1,7 @@
 //! The lower half of a ball, or its mirror image: a fan of bricks.
 
 use super::fan::{fan, fan_block};
-use super::shape::{Block, BodyShape, Sides, Site};
+use super::shape::{BodyShape, BodySite, CellBlock, Sides};
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::mesh::{ElementKind, Mesh, Zone};
@@ -54,15 +54,11 @@ impl HalfBallSpec {
 }
 
 impl BodyShape for HalfBallSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
     fn is_round(&self) -> bool {
         true
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
         let kind = self.element.kind();
         if !kind.is_product() {
@@ -76,7 +72,7 @@ impl BodyShape for HalfBallSpec {
         Ok(self.half.of(lower, 2, self.centre[2]))
     }
 
-    fn block(&self, _: Option<Files>) -> Block {
+    fn block(&self, _: Option<Files>) -> CellBlock {
         fan_block(self.radius, &self.zone, &self.sides(), self.element.kind())
     }
 

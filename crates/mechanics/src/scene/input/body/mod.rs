@@ -15,8 +15,9 @@ pub use half_ball::{HalfBallSpec, half_ball};
 pub use mesh_file::{DeckSpec, GmshSpec};
 pub use rectangle::{BarSpec, BoxSpec, RectangleSpec, bar, cuboid, rectangle};
 pub use shape::Sides;
-pub(crate) use shape::{About, BodyShape, Site};
+pub(crate) use shape::{About, BodyShape, BodySite};
 
+use crate::fem::Integration;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -80,6 +81,21 @@ bodies! {
 }
 
 impl BodySpec {
+    /// The integration of the stiffness that the scene asks for.
+    pub(crate) fn integration(&self) -> Integration {
+        match self {
+            BodySpec::Rectangle(spec) => spec.integration,
+            BodySpec::Bar(_) => Integration::Standard,
+            BodySpec::Box(spec) => spec.integration,
+            BodySpec::Disc(spec) => spec.integration,
+            BodySpec::HalfDisc(spec) => spec.integration,
+            BodySpec::HalfBall(spec) => spec.integration,
+            BodySpec::Ring(spec) => spec.integration,
+            BodySpec::Gmsh(spec) => spec.integration,
+            BodySpec::Deck(spec) => spec.integration,
+        }
+    }
+
     /// The bodies allowed in a model of `dimension` coordinates, as `box, half-ball or gmsh`.
     pub(crate) fn fitting(dimension: usize) -> String {
         let fits = |about: &&About| about.dimensions.contains(&dimension);

@@ -1,7 +1,7 @@
 //! The structured bar, rectangle and box: products of graded axes.
 
 use super::lattice::{Side, product, steps};
-use super::shape::{Block, BodyShape, Site};
+use super::shape::{BodyShape, BodySite, CellBlock};
 use crate::error::Error;
 use crate::fem::mesh::{ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
@@ -30,17 +30,13 @@ pub struct RectangleSpec {
 }
 
 impl BodyShape for RectangleSpec {
-    fn integration(&self) -> Integration {
-        self.integration
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
+        let [x, y] = site.lines([("x", &self.x), ("y", &self.y)])?;
+        rectangle(&x, &y, self.element.kind())
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
-        site.check_product(&[&self.x, &self.y])?;
-        rectangle(&site.lines(&self.x, "x")?, &site.lines(&self.y, "y")?, self.element.kind())
-    }
-
-    fn block(&self, _: Option<Files>) -> Block {
-        Block::product(&[&self.x, &self.y], self.element.kind())
+    fn block(&self, _: Option<Files>) -> CellBlock {
+        CellBlock::product(&[&self.x, &self.y], self.element.kind())
     }
 
     fn refine(&mut self, times: usize) -> Result<(), Error> {
@@ -80,20 +76,17 @@ pub struct BarSpec {
 }
 
 impl BodyShape for BarSpec {
-    fn integration(&self) -> Integration {
-        Integration::Standard
-    }
-
     fn area(&self) -> f64 {
         self.area
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
-        bar(&site.lines(&self.x, "x")?)
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
+        let [x] = site.lines([("x", &self.x)])?;
+        bar(&x)
     }
 
-    fn block(&self, _: Option<Files>) -> Block {
-        Block::product(&[&self.x], ElementKind::Line2)
+    fn block(&self, _: Option<Files>) -> CellBlock {
+        CellBlock::product(&[&self.x], ElementKind::Line2)
     }
 
     fn refine(&mut self, times: usize) -> Result<(), Error> {
@@ -142,17 +135,13 @@ pub struct BoxSpec {
 }
 
 impl BodyShape for BoxSpec {
-    fn integration(&self) -> Integration {
-        self.integration
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
+        let [x, y, z] = site.lines([("x", &self.x), ("y", &self.y), ("z", &self.z)])?;
+        cuboid(&x, &y, &z, self.element.kind())
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
-        site.check_product(&[&self.x, &self.y, &self.z])?;
-        cuboid(&site.lines(&self.x, "x")?, &site.lines(&self.y, "y")?, &site.lines(&self.z, "z")?, self.element.kind())
-    }
-
-    fn block(&self, _: Option<Files>) -> Block {
-        Block::product(&[&self.x, &self.y, &self.z], self.element.kind())
+    fn block(&self, _: Option<Files>) -> CellBlock {
+        CellBlock::product(&[&self.x, &self.y, &self.z], self.element.kind())
     }
 
     fn refine(&mut self, times: usize) -> Result<(), Error> {
