@@ -40,7 +40,7 @@ use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::boundary;
 use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::tie::StiffnessOf;
-use crate::scene::input::schema::{Place, SupportSpec, TieSpec};
+use crate::scene::input::schema::{PlaceSpec, SupportSpec, TieSpec};
 use crate::scene::models::load::{Acting, acting};
 use crate::scene::models::model::{check_multiplier, place};
 use crate::scene::models::rows::ContactRow;
@@ -194,7 +194,7 @@ pub(crate) fn add_springs(
     gradient: &mut [f64],
 ) -> Result<(), Error> {
     for (index, spec) in scene.springs.iter().enumerate() {
-        let Some(Place::Boundary(name)) = &spec.on else { continue };
+        let Some(PlaceSpec::Boundary(name)) = &spec.on else { continue };
         let path = format!("springs[{index}]");
         let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
         let (along, normal) = spec.per_area(&path, body, boundary)?;

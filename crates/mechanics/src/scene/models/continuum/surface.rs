@@ -11,7 +11,7 @@ use crate::scene::Model;
 use crate::scene::input::entry::boundary;
 use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::condition::{LoadSpec, PressureSpec, ProfileSpec, TractionSpec};
-use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
+use crate::scene::input::schema::{PlaceSpec, Scene, TieSpec, TiedSurfacesSpec};
 use crate::scene::models::held::components;
 use crate::scene::models::load::spread;
 use signorini_guarantee::{Circle, Condition, Held, Linear, Point};
@@ -42,7 +42,7 @@ pub(super) fn conditions(
     }
     for (index, springs) in scene.springs.iter().enumerate() {
         let path = format!("springs[{index}]");
-        let Some(Place::Boundary(name)) = &springs.on else {
+        let Some(PlaceSpec::Boundary(name)) = &springs.on else {
             let message = "a spring at a point holds nothing in a continuum, so that there is no guaranteed bound; spread it \
                            over a boundary";
             return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
@@ -99,7 +99,7 @@ pub(super) fn conditions(
 
 fn add_supports(scene: &Scene, model: &Model, surface: &mut Surface) -> Result<(), WhyNot> {
     for (index, support) in scene.supports.iter().enumerate() {
-        let Place::Boundary(name) = &support.on else {
+        let PlaceSpec::Boundary(name) = &support.on else {
             let message = "a support at a point holds nothing in a continuum, so that there is no guaranteed bound; \
                            hold a boundary";
             return Err(none(format!("supports[{index}].on"), message));
