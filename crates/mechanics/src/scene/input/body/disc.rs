@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::fan::{fan, fan_block};
-use super::lattice::{Cells, Key, places, points, steps};
+use super::lattice::{Key, LatticeCells, places, points, steps};
 use super::shape::{BodyShape, BodySite, CellBlock, Sides};
 use crate::error::Error;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, check_lines, fail};
@@ -243,7 +243,7 @@ pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) 
     let (layers, sectors) = (radii.len() - 1, angles.len() - 1);
     let is_closed = span == 360.0;
     let step = steps(kind.reference());
-    let mut cells = Cells::of(kind);
+    let mut cells = LatticeCells::of(kind);
     for [layer, sector, _] in places([0; 3], [layers, sectors, 1]) {
         cells.add(|[outward, around, _]| {
             let angle = step * sector + around;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::lattice::{Cells, Key, places, points, steps};
+use super::lattice::{Key, LatticeCells, places, points, steps};
 use super::shape::{CellBlock, Sides};
 use crate::error::Error;
 use crate::fem::geometry::plus;
@@ -29,7 +29,7 @@ pub(super) fn fan(
     check_count(count, shells, is_plane)?;
 
     // Keys are a shell, which is 0 in the core, and the lines along the axes, of which the last one leads down.
-    let mut cells = Cells::of(kind);
+    let mut cells = LatticeCells::of(kind);
     for cell in places([0; 3], count) {
         cells.add(|at| {
             let mut key = [0, 1, 2].map(|axis| step * cell[axis] + at[axis]);
@@ -69,7 +69,7 @@ fn check_count([i, j, k]: [usize; 3], shells: usize, is_plane: bool) -> Result<(
 }
 
 /// Adds the shells around a core: on all its facets but those of the cut and of the planes of symmetry.
-fn add_shells(cells: &mut Cells, shells: usize, [i, j, k]: [usize; 3], step: usize, sides: &[Sides]) {
+fn add_shells(cells: &mut LatticeCells, shells: usize, [i, j, k]: [usize; 3], step: usize, sides: &[Sides]) {
     let is_plane = sides.len() == 1;
     let mut add = |along: usize, across: usize, point: &dyn Fn(usize, usize) -> [usize; 3]| {
         for [shell, a, b] in places([0; 3], [shells, along, across]) {

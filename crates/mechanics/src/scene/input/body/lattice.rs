@@ -98,17 +98,17 @@ pub(super) fn product(axes: &[&[f64]], kind: ElementKind, sides: &[Side]) -> Res
 pub(super) type Key = [usize; 4];
 
 /// Cells between points that are numbered when a cell first has them.
-pub(super) struct Cells {
+pub(super) struct LatticeCells {
     kind: ElementKind,
     nodes: Vec<[usize; 3]>,
     lattice: Lattice<Key>,
     connectivity: Vec<usize>,
 }
 
-impl Cells {
+impl LatticeCells {
     /// Without a cell; each will be cut into elements of a kind.
     pub fn of(kind: ElementKind) -> Self {
-        Cells { kind, nodes: cut_cell(kind), lattice: Lattice::default(), connectivity: Vec::new() }
+        LatticeCells { kind, nodes: cut_cell(kind), lattice: Lattice::default(), connectivity: Vec::new() }
     }
 
     /// Adds a cell with right-handed axes. `key` gives a point by its steps from the first corner.
