@@ -258,11 +258,7 @@ impl Zone {
     }
 }
 
-// Nodes of structured meshes by their position in a lattice, and cells cut into elements.
-//
-// Keys count half steps, so that mid-sides have keys too; only nodes that an element uses are made.
-
-/// The nodes made so far.
+/// The nodes of a structured mesh made so far, by their keys.
 #[derive(Default)]
 pub struct Lattice<K> {
     numbers: HashMap<K, usize>,
@@ -276,22 +272,6 @@ impl<K: Copy + Eq + Hash> Lattice<K> {
             self.keys.push(key);
             self.keys.len() - 1
         })
-    }
-
-    /// Adds the elements of a plane cell. `key` gives the key at half steps 0, 1, 2 in the two directions of the
-    /// cell, which turn counterclockwise; triangles are cut from (0, 0) to (2, 2).
-    pub fn add_cell(&mut self, kind: ElementKind, key: impl Fn(usize, usize) -> K, connectivity: &mut Vec<usize>) {
-        const QUADRILATERAL: [&[[usize; 2]]; 1] = [&[[0, 0], [2, 0], [2, 2], [0, 2]]];
-        const TRIANGLES: [&[[usize; 2]]; 2] = [&[[0, 0], [2, 0], [2, 2]], &[[0, 0], [2, 2], [0, 2]]];
-        let parts: &[&[[usize; 2]]] = if kind.corners() == 4 { &QUADRILATERAL } else { &TRIANGLES };
-        for corners in parts {
-            connectivity.extend(corners.iter().map(|&[a, b]| self.node(key(a, b))));
-            if kind.is_quadratic() {
-                let next = corners.iter().cycle().skip(1);
-                let middles = corners.iter().zip(next).map(|(p, q)| [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2]);
-                connectivity.extend(middles.map(|[a, b]| self.node(key(a, b))));
-            }
-        }
     }
 }
 

@@ -116,8 +116,8 @@ impl Mesh {
     /// The mesh with these boundaries alone, each with all faces that have only marked nodes; a boundary without a face
     /// is left out.
     #[doc(hidden)]
-    pub fn with_sides(mut self, sides: &[(&str, &dyn Fn(usize) -> bool)]) -> Self {
-        self.boundaries = sides.iter().filter_map(|(name, marked)| self.boundary_where(name, marked)).collect();
+    pub fn with_sides<'a>(mut self, sides: impl Iterator<Item = (&'a str, impl Fn(usize) -> bool)>) -> Self {
+        self.boundaries = sides.filter_map(|(name, marked)| self.boundary_where(name, marked)).collect();
         self
     }
 

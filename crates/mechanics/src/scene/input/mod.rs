@@ -1,5 +1,8 @@
 //! A scene as it is written: its JSON, its schema, and the kinds of bodies and obstacles.
 
+#[macro_use]
+mod spec;
+
 pub mod absent;
 pub mod body;
 pub mod deck;

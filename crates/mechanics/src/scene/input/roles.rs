@@ -80,7 +80,7 @@ pub(crate) struct Roles {
 }
 
 /// What is pressed, with its nodes that the plate touches first.
-struct Pressed {
+struct PressedFacets {
     chosen: Chosen,
     way: Way,
     extent: Extent,
@@ -97,7 +97,7 @@ enum Fit {
 }
 
 /// The sides of the bodies that may be held or pressed.
-struct Sides<'a> {
+struct BodySides<'a> {
     body: &'a ElasticBody,
     /// The surface of each body.
     surfaces: Vec<Boundary>,
@@ -113,13 +113,13 @@ pub(crate) fn roles(body: &ElasticBody) -> Vec<Roles> {
     let mesh = body.mesh();
     let surfaces: Vec<Boundary> = body.regions().iter().map(|region| mesh.surface(region.elements())).collect();
     let named = mesh.boundaries().iter().filter(|boundary| is_outside(boundary, &surfaces)).collect();
-    let sides = Sides { body, surfaces, pieces: mesh.pieces(), named };
+    let sides = BodySides { body, surfaces, pieces: mesh.pieces(), named };
     let mut found: Vec<(Fit, Roles)> = sides.of_names().into_iter().chain(sides.of_axes()).collect();
     found.sort_by_key(|(fit, _)| *fit);
     found.into_iter().map(|(_, roles)| roles).collect()
 }
 
-impl Sides<'_> {
+impl BodySides<'_> {
     /// The best roles of two named boundaries.
     fn of_names(&self) -> Option<(Fit, Roles)> {
         let by_word: Vec<&Boundary> =
@@ -133,9 +133,9 @@ impl Sides<'_> {
             (!has(&PRESSED, &boundary.name), faces_all, std::cmp::Reverse(*place))
         });
         let held: Vec<&Boundary> = by_word.iter().chain(&self.named).copied().collect();
-        let mut best: Option<(Fit, Pressed, &Boundary)> = None;
+        let mut best: Option<(Fit, PressedFacets, &Boundary)> = None;
         for (_, boundary) in pressed {
-            let Some(pressed) = Pressed::of(self.body, boundary) else { continue };
+            let Some(pressed) = PressedFacets::of(self.body, boundary) else { continue };
             let others = held.iter().filter(|other| other.name != boundary.name);
             let fits = others.filter_map(|other| Some((self.fit(&pressed, boundary, other)?, *other)));
             let Some((fit, other)) = fits.min_by_key(|(fit, _)| *fit) else { continue };
@@ -169,7 +169,7 @@ impl Sides<'_> {
                 let Some(top) = side(upper, way) else { continue };
                 for (lower, held) in &lows {
                     let chosen = Chosen::Facing(way, of(upper));
-                    let Some(pressed) = Pressed::new(self.body, &top, chosen, way) else { break };
+                    let Some(pressed) = PressedFacets::new(self.body, &top, chosen, way) else { break };
                     let Some(fit) = self.fit(&pressed, &top, held) else { continue };
                     let as_low = lows.iter().filter(|(other, _)| other != lower);
                     let also = as_low.map(|(other, side)| (Chosen::Facing(back, of(*other)), side)).collect();
@@ -181,7 +181,7 @@ impl Sides<'_> {
     }
 
     /// How well a pressed and a held side go together; `None` if they do not.
-    fn fit(&self, pressed: &Pressed, facets: &Boundary, held: &Boundary) -> Option<Fit> {
+    fn fit(&self, pressed: &PressedFacets, facets: &Boundary, held: &Boundary) -> Option<Fit> {
         if !pressed.is_free_of(held) || !self.holds_all(held) {
             return None;
         }
@@ -227,7 +227,12 @@ impl Sides<'_> {
         has(&HELD, &held.name) && other.name != held.name && own_name(other) == own_name(held)
     }
 
-    fn roles(&self, pressed: Pressed, (chosen, held): (Chosen, &Boundary), also: Vec<(Chosen, &Boundary)>) -> Roles {
+    fn roles(
+        &self,
+        pressed: PressedFacets,
+        (chosen, held): (Chosen, &Boundary),
+        also: Vec<(Chosen, &Boundary)>,
+    ) -> Roles {
         let fits = |(_, other): &(Chosen, &Boundary)| pressed.is_free_of(other) && self.holds_all(other);
         let also: Vec<(Chosen, &Boundary)> = also.into_iter().filter(fits).collect();
         let fixed = also.iter().map(|(_, other)| *other).chain([held]);
@@ -258,7 +263,7 @@ impl Sides<'_> {
     }
 }
 
-impl Pressed {
+impl PressedFacets {
     /// The boundary, if its normals allow it, or else its facets that face its direction; `None` without such facets.
     fn of(body: &ElasticBody, boundary: &Boundary) -> Option<Self> {
         let way = facing(mean_normal(body, boundary), body.dimension() - 1);
@@ -279,7 +284,7 @@ impl Pressed {
         let is_first = |node: usize| height(node) > top - AS_HIGH * body.mesh().size();
         let allows = |&(node, lean): &(usize, f64)| lean > if is_first(node) { FIRST } else { -SIDEWAYS };
         let first = leans.iter().map(|&(node, _)| node).filter(|&node| is_first(node)).collect();
-        leans.iter().all(allows).then(|| Pressed { chosen, way, extent: extent(&places), first })
+        leans.iter().all(allows).then(|| PressedFacets { chosen, way, extent: extent(&places), first })
     }
 
     /// Returns `true` if `held` holds none of the nodes that the plate touches first: they would stop it.

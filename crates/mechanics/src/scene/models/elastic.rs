@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::{self, ElementKind, Formulation, Integration, Mesh, Region};
 use crate::scene::Warning;
-use crate::scene::input::body::{BodySpec, Site};
+use crate::scene::input::body::{BodySite, BodySpec};
 use crate::scene::input::entry::{MeshFiles, finite, located, point, vector, wrong};
 use crate::scene::input::parse::files;
 use crate::scene::input::schema::{InitialStressSpec, ModelSpec, Scene, TemperatureSpec, Units};
@@ -96,7 +96,7 @@ impl DescribedBody<'_> {
     /// The mesh of the shape.
     fn mesh(&self, read: &MeshFiles) -> Result<Mesh, Error> {
         let (path, names_groups) = (self.path(""), self.names_groups());
-        let site = Site { path, model: self.scene.model, files: files(self.scene), read, names_groups };
+        let site = BodySite { path, model: self.scene.model, files: files(self.scene), read, names_groups };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
 
@@ -162,7 +162,7 @@ impl DescribedBody<'_> {
         };
         let body = ElasticBody::new(self.mesh(read)?, first, formulation).map_err(at_body)?;
         let body = self.with_own_stress(self.materials.placed(body)?)?;
-        body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
+        body.with_integration(self.spec.integration()).map_err(|error| match error {
             fem::Error::Mesh { message } => wrong(self.path(".integration"), message),
             other => other.into(),
         })

@@ -9,7 +9,7 @@ use crate::fem::geometry::{COORDINATES, dot, minus};
 use crate::fem::mesh::Mesh;
 use crate::scene::input::entry::{boundary, finite, node_at, nodes_named_once, number, point, vector, wrong};
 use crate::scene::input::profile::Profile;
-use crate::scene::input::schema::{Place, Scene, SupportSpec};
+use crate::scene::input::schema::{PlaceSpec, Scene, SupportSpec};
 
 /// A normal depends on the earlier ones if the sine of its angle to their span is below this: the rounding of written
 /// components.
@@ -265,9 +265,9 @@ pub(crate) fn held(scene: &Scene, body: &ElasticBody) -> Result<Held, Error> {
         let path = format!("supports[{index}]");
         let components = components(scene, index, support)?;
         let nodes = match &support.on {
-            Place::Boundary(name) => boundary(mesh, name, &format!("{path}.on.boundary"))?.nodes(),
-            Place::Point(at) => vec![node_at(mesh, at, &format!("{path}.on.point"))?],
-            Place::Nodes(names) => nodes_named_once(mesh, names, &format!("{path}.on.nodes"))?,
+            PlaceSpec::Boundary(name) => boundary(mesh, name, &format!("{path}.on.boundary"))?.nodes(),
+            PlaceSpec::Point(at) => vec![node_at(mesh, at, &format!("{path}.on.point"))?],
+            PlaceSpec::Nodes(names) => nodes_named_once(mesh, names, &format!("{path}.on.nodes"))?,
         };
         let profile = support.profile.as_ref();
         let profile = profile.map(|spec| Profile::of(spec, &format!("{path}.profile"), body.dimension()));
@@ -278,7 +278,7 @@ pub(crate) fn held(scene: &Scene, body: &ElasticBody) -> Result<Held, Error> {
                 held.prescribe(node, Component { value: factor * component.value, ..*component });
             }
         }
-        let boundary = if let Place::Boundary(name) = &support.on { Some(name.clone()) } else { None };
+        let boundary = if let PlaceSpec::Boundary(name) = &support.on { Some(name.clone()) } else { None };
         held.supports.push(Support { boundary, components, profile });
     }
     Ok(held)

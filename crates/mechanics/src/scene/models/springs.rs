@@ -8,7 +8,7 @@ use crate::fem::assembly::{LinearForm, Springs, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::scene::input::entry::{boundary, node_at, positive, wrong};
 use crate::scene::input::schema::tie::StiffnessOf;
-use crate::scene::input::schema::{Place, Scene, SpringSpec};
+use crate::scene::input::schema::{PlaceSpec, Scene, SpringSpec};
 
 /// The refusal of a spring that is written in two ways.
 const BOTH: &str = "has both a place `on` and `terms` with `along`; give one of them";
@@ -30,21 +30,21 @@ impl SpringSpec {
             return Err(wrong(path, BOTH));
         }
         match on {
-            Place::Point(_) if self.normal.is_some() => {
+            PlaceSpec::Point(_) if self.normal.is_some() => {
                 Err(wrong(format!("{path}.normal"), "a node alone has no normal; give x, y or z"))
             }
-            Place::Point(_) if self.stiffness == StiffnessOf::PerArea => {
+            PlaceSpec::Point(_) if self.stiffness == StiffnessOf::PerArea => {
                 Err(wrong(format!("{path}.stiffness"), "a node has no area; `total` is the stiffness of the spring"))
             }
-            Place::Point(at) => {
+            PlaceSpec::Point(at) => {
                 let node = node_at(body.mesh(), at, &format!("{path}.on.point"))?;
                 Ok(Springs::at_node(node, self.along_axes(path, dimension)?))
             }
-            Place::Nodes(_) => Err(wrong(
+            PlaceSpec::Nodes(_) => Err(wrong(
                 format!("{path}.on.nodes"),
                 "a spring holds a boundary, or the node at a point; give one of them, or `terms` with `along`",
             )),
-            Place::Boundary(name) => {
+            PlaceSpec::Boundary(name) => {
                 let boundary = boundary(body.mesh(), name, &format!("{path}.on.boundary"))?;
                 let (along, normal) = self.spread_over(path, body, boundary)?;
                 Ok(Springs::under(body, boundary, along, normal))

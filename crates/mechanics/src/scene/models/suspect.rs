@@ -13,7 +13,7 @@ use crate::fem::geometry::dot;
 use crate::fem::{Boundary, DofMap, ElasticBody};
 use crate::scene::Warning;
 use crate::scene::input::entry::COORDINATE_ROUNDING;
-use crate::scene::input::schema::{EquationSpec, Place, Scene, SupportSpec, SymmetryPlane, TieSpec};
+use crate::scene::input::schema::{EquationSpec, PlaceSpec, Scene, SupportSpec, SymmetryPlane, TieSpec};
 
 /// A load on the free dofs below this share of the whole load is rounding.
 const NOTHING: f64 = 1e-9;
@@ -72,7 +72,7 @@ pub(crate) fn suspect(scene: &Scene, body: &ElasticBody, dofs: &DofMap) -> Resul
 fn free_symmetries(scene: &Scene, body: &ElasticBody) -> Vec<Warning> {
     let is_held = |name: &str| {
         let of_plane = |plane: &SymmetryPlane| name.strip_prefix(SYMMETRY) == Some(plane.name());
-        let of_support = |support: &SupportSpec| matches!(&support.on, Place::Boundary(on) if on == name);
+        let of_support = |support: &SupportSpec| matches!(&support.on, PlaceSpec::Boundary(on) if on == name);
         scene.symmetry.iter().any(of_plane) || scene.supports.iter().any(of_support)
     };
     let names = body.mesh().boundaries().iter().map(|boundary| boundary.name.as_str());

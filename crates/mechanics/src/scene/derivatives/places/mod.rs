@@ -40,7 +40,7 @@ use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::boundary;
 use crate::scene::input::profile::Profile;
 use crate::scene::input::schema::tie::StiffnessOf;
-use crate::scene::input::schema::{Place, SupportSpec, TieSpec};
+use crate::scene::input::schema::{PlaceSpec, SupportSpec, TieSpec};
 use crate::scene::models::load::{Acting, acting};
 use crate::scene::models::model::{check_multiplier, place};
 use crate::scene::models::rows::ContactRow;
@@ -194,7 +194,7 @@ pub(crate) fn add_springs(
 ) -> Result<(), Error> {
     let body = model.body();
     for ((index, spec), springs) in scene.springs.iter().enumerate().zip(&model.parts.conditions.springs) {
-        let (Some(Place::Boundary(name)), Some((along, normal))) = (&spec.on, springs.per_area) else { continue };
+        let (Some(PlaceSpec::Boundary(name)), Some((along, normal))) = (&spec.on, springs.per_area) else { continue };
         let boundary = boundary(body.mesh(), name, &format!("springs[{index}].on.boundary"))?;
         let density = |point: &FacetPoint| {
             let [u, w] = fields.map(|field| at_point(body, field, point));

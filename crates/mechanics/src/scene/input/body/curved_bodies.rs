@@ -36,8 +36,22 @@ fn farthest(mesh: &Mesh, name: &str, off: impl Fn([f64; 3]) -> f64) -> f64 {
     boundary.nodes().iter().map(|&node| off(mesh.nodes()[node]).abs()).fold(0.0, f64::max)
 }
 
-fn rate(errors: &[f64]) -> f64 {
-    (errors[errors.len() - 2] / errors[errors.len() - 1]).log2()
+/// Checks meshes of refinements that double from 1 on: the ratio of Jacobian determinants in their elements, the order at
+/// which their area or volume converges, and the last error of it.
+fn converges(mesh: impl Fn(usize) -> Mesh, count: u32, exact: f64, [quality, order, last]: [f64; 3], name: &str) {
+    let error = |refinement: u32| {
+        let (total, worst) = measure(&mesh(1 << refinement));
+        assert!(worst > quality, "{name}: Jacobian ratio {worst}");
+        (total - exact).abs()
+    };
+    let errors: Vec<f64> = (0..count).map(error).collect();
+    let [.., before, found] = errors[..] else { panic!("{name}: two refinements have an order") };
+    assert!((before / found).log2() > order && found < last, "{name}: {errors:?}");
+}
+
+/// A zone that is as wide on every mesh.
+fn refined(width: f64, divisions: usize, refinement: usize) -> Zone {
+    Zone { width, divisions: divisions * refinement, growth: 1.6_f64.powf(1.0 / refinement as f64) }
 }
 
 #[test]
@@ -67,19 +81,10 @@ fn a_disc_consists_of_two_half_discs_joined_along_the_cut() {
 #[test]
 fn half_discs_have_good_cells_and_their_area_converges() {
     for kind in PLANE {
-        for sides in [Sides::Both, Sides::Beyond] {
-            let exact = if sides == Sides::Beyond { PI } else { 2.0 * PI };
-            let error = |refinement: usize| {
-                let growth = 1.6_f64.powf(1.0 / refinement as f64);
-                let zone = Zone { width: 0.3, divisions: 3 * refinement, growth };
-                let (area, worst) = measure(&half_disc([3.0, -1.0], 2.0, &zone, sides, kind).unwrap());
-                assert!(worst > 0.2, "{kind:?}: Jacobian ratio {worst}");
-                (area - exact).abs()
-            };
-            let errors = [1, 2, 4].map(error);
-            let expected = if kind.is_quadratic() { 3.5 } else { 1.8 };
-            assert!(rate(&errors) > expected, "{kind:?}: {errors:?}");
-            assert!(errors[2] < if kind.is_quadratic() { 1e-6 } else { 1e-2 }, "{kind:?}: {errors:?}");
+        let expected = if kind.is_quadratic() { [0.2, 3.5, 1e-6] } else { [0.2, 1.8, 1e-2] };
+        for (sides, exact) in [(Sides::Beyond, PI), (Sides::Both, 2.0 * PI)] {
+            let mesh = |times| half_disc([3.0, -1.0], 2.0, &refined(0.3, 3, times), sides, kind).unwrap();
+            converges(mesh, 3, exact, expected, kind.name());
         }
     }
 }
@@ -129,15 +134,8 @@ fn half_balls_have_good_cells_and_their_volume_converges() {
     let (both, beyond) = (Sides::Both, Sides::Beyond);
     for (sides, part) in [([both; 2], 0.5), ([beyond, both], 0.25), ([both, beyond], 0.25), ([beyond; 2], 0.125)] {
         let exact = part * 4.0 / 3.0 * PI * 8.0;
-        let error = |refinement: usize| {
-            let growth = 1.6_f64.powf(1.0 / refinement as f64);
-            let zone = Zone { width: 0.6, divisions: 2 * refinement, growth };
-            let (volume, worst) = measure(&half_ball([1.0, 2.0, 3.0], 2.0, &zone, sides).unwrap());
-            assert!(worst > 0.1, "Jacobian ratio {worst}");
-            (volume / exact - 1.0).abs()
-        };
-        let errors = [1, 2].map(error);
-        assert!(rate(&errors) > 1.7 && errors[1] < 0.01, "{sides:?}: {errors:?}");
+        let mesh = |times| half_ball([1.0, 2.0, 3.0], 2.0, &refined(0.6, 2, times), sides).unwrap();
+        converges(mesh, 2, exact, [0.1, 1.7, 0.01 * exact], &format!("{sides:?}"));
     }
 }
 
@@ -174,20 +172,19 @@ fn nodes_on_the_boundaries_of_half_balls_are_on_sphere_and_planes() {
 fn rings_close_and_their_area_converges() {
     for kind in PLANE {
         for (angles, part) in [([0.0, 360.0], 1.0), ([-90.0, 90.0], 0.5), ([30.0, 75.0], 0.125)] {
-            let exact = part * PI * 3.0;
-            let error = |cells: usize| {
-                let lines: Vec<f64> =
-                    (0..=cells).map(|line| angles[0] + (angles[1] - angles[0]) * line as f64 / cells as f64).collect();
+            let mesh = |times: usize| {
+                let cells = 8 * times;
+                let line = |line: usize| angles[0] + (angles[1] - angles[0]) * line as f64 / cells as f64;
+                let lines: Vec<f64> = (0..=cells).map(line).collect();
                 let mesh = ring([1.0, 0.0], &[1.0, 1.4, 2.0], &lines, kind).unwrap();
-                let (area, worst) = measure(&mesh);
-                assert!(worst > 0.3, "{kind:?}: {worst}");
-                assert!(farthest(&mesh, "outer", |[x, y, _]| (x - 1.0).hypot(y) - 2.0) < 1e-15 * 4.0);
-                assert!(farthest(&mesh, "inner", |[x, y, _]| (x - 1.0).hypot(y) - 1.0) < 1e-15 * 4.0);
+                for (name, radius) in [("outer", 2.0), ("inner", 1.0)] {
+                    assert!(farthest(&mesh, name, |[x, y, _]| (x - 1.0).hypot(y) - radius) < 1e-15 * 4.0);
+                }
                 assert_eq!(mesh.boundaries().len(), if part == 1.0 { 2 } else { 4 });
-                (area - exact).abs()
+                mesh
             };
-            let errors = [8, 16].map(error);
-            assert!(rate(&errors) > if kind.is_quadratic() { 3.5 } else { 1.8 }, "{kind:?}: {errors:?}");
+            let order = if kind.is_quadratic() { 3.5 } else { 1.8 };
+            converges(mesh, 2, part * PI * 3.0, [0.3, order, f64::INFINITY], kind.name());
         }
     }
     // The end nodes are exactly on the axis, so that such a half ring can be revolved.

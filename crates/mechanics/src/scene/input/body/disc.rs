@@ -1,9 +1,12 @@
 //! The disc: a half disc and its mirror image, joined along the cut; the half disc; the ring.
 
-use super::shape::{Block, BodyShape, RoundCells, Sides, Site};
+use std::collections::HashSet;
+
+use super::fan::{fan, fan_block};
+use super::lattice::{Key, LatticeCells, places, points, steps};
+use super::shape::{BodyShape, BodySite, CellBlock, Sides};
 use crate::error::Error;
-use crate::fem::mesh::axis::{Grading, Lattice, half_steps};
-use crate::fem::mesh::{Boundary, ElementKind, MAX_NODES, Mesh, Zone, check_lines, fail};
+use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, check_lines, fail};
 use crate::fem::{Axis, Integration};
 use crate::scene::input::entry::Files;
 use crate::scene::input::schema::model::{ElementSpec, HalfSpec};
@@ -34,21 +37,17 @@ pub struct DiscSpec {
 }
 
 impl BodyShape for DiscSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
     fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
         ["lower", "upper"].map(|name| (name, self.centre, self.radius)).to_vec()
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
         disc(self.centre, self.radius, &self.zone, Sides::of(self.symmetric), self.element.kind())
     }
 
-    fn block(&self, _: Option<Files>) -> Block {
-        let mut halves = half_disc_block(&self.zone, self.radius, Sides::of(self.symmetric), self.element.kind());
+    fn block(&self, _: Option<Files>) -> CellBlock {
+        let mut halves = fan_block(self.radius, &self.zone, &[Sides::of(self.symmetric)], self.element.kind());
         halves.cells[0] *= 2.0;
         halves
     }
@@ -78,18 +77,13 @@ impl BodyShape for DiscSpec {
 pub fn disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: ElementKind) -> Result<Mesh, Error> {
     let lower = half_disc(centre, radius, zone, sides, kind)?;
     let upper = lower.clone().mirrored(1, centre[1]);
-    let Some(cut) = lower.boundary("cut").map(Boundary::nodes) else {
-        return fail("a half disc without a cut cannot be joined".into());
-    };
-    let mut nodes = lower.nodes().to_vec();
-    let mut number: Vec<usize> = vec![usize::MAX; nodes.len()];
-    cut.iter().for_each(|&node| number[node] = node);
-    for (node, at) in upper.nodes().iter().enumerate() {
-        if number[node] == usize::MAX {
-            number[node] = nodes.len();
-            nodes.push(*at);
-        }
-    }
+    let cut: HashSet<usize> = lower.boundary("cut").map(Boundary::nodes).into_iter().flatten().collect();
+    let count = lower.nodes().len();
+    let mut further = count..;
+    let number = (0..count).filter_map(|node| if cut.contains(&node) { Some(node) } else { further.next() });
+    let number: Vec<usize> = number.collect();
+    let beyond = upper.nodes().iter().enumerate().filter(|(node, _)| !cut.contains(node)).map(|(_, at)| at);
+    let nodes = lower.nodes().iter().chain(beyond).copied().collect();
     let mirrored = |nodes: &[usize]| nodes.iter().map(|&node| number[node]).collect::<Vec<usize>>();
     let mut connectivity: Vec<usize> = lower.elements().flatten().copied().collect();
     upper.elements().for_each(|element| connectivity.extend(mirrored(element)));
@@ -132,22 +126,18 @@ pub struct HalfDiscSpec {
 }
 
 impl BodyShape for HalfDiscSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
     fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
         vec![("arc", self.centre, self.radius)]
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
         let lower = half_disc(self.centre, self.radius, &self.zone, Sides::of(self.symmetric), self.element.kind())?;
         Ok(self.half.of(lower, 1, self.centre[1]))
     }
 
-    fn block(&self, _: Option<Files>) -> Block {
-        half_disc_block(&self.zone, self.radius, Sides::of(self.symmetric), self.element.kind())
+    fn block(&self, _: Option<Files>) -> CellBlock {
+        fan_block(self.radius, &self.zone, &[Sides::of(self.symmetric)], self.element.kind())
     }
 
     fn refine(&mut self, times: usize) -> Result<(), Error> {
@@ -180,60 +170,7 @@ pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind:
     if kind.dimension() != 2 {
         return fail(format!("a half disc cannot have a mesh of {}", kind.name()));
     }
-    let graded = Grading::new(radius, zone)?;
-    let across = sides.lines(&graded.aside);
-    let (columns, rows, shells) = (across.len() - 1, graded.down.len() - 1, graded.shells.len() - 1);
-    let cells = columns.saturating_mul(rows).saturating_add((columns + 2 * rows).saturating_mul(shells));
-    if cells > MAX_NODES / 4 {
-        return fail(format!("{cells} cells make more than the {MAX_NODES} nodes that are allowed"));
-    }
-
-    // Keys are [shell, column, row] in half steps. Shell 0 is the core, in which columns run right and rows run down.
-    let mut lattice = Lattice::default();
-    let mut connectivity = Vec::new();
-    for row in 0..rows {
-        for column in 0..columns {
-            let key = |right: usize, up: usize| [0, 2 * column + right, 2 * row + 2 - up];
-            lattice.add_cell(kind, key, &mut connectivity);
-        }
-    }
-    // Around the core, with its inside on the left: down its left side, along its bottom, up its right side.
-    let left = (0..2 * rows).map(|row| [0, row]).filter(|_| sides == Sides::Both);
-    let bottom = (0..2 * columns).map(|column| [column, 2 * rows]);
-    let right = (0..=2 * rows).rev().map(|row| [2 * columns, row]);
-    let around: Vec<[usize; 2]> = left.chain(bottom).chain(right).collect();
-    for ends in around.windows(3).step_by(2) {
-        for shell in 0..shells {
-            // From the outside of the shell inwards.
-            let key = |along: usize, inward: usize| [2 * shell + 2 - inward, ends[along][0], ends[along][1]];
-            lattice.add_cell(kind, key, &mut connectivity);
-        }
-    }
-
-    let (across, down, outward) = (half_steps(&across), half_steps(&graded.down), half_steps(&graded.shells));
-    let place = |&[shell, column, row]: &[usize; 3]| {
-        let direction = [graded.tangent(across[column]), -graded.tangent(down[row]), 0.0];
-        let at = graded.place(direction, outward[shell]);
-        [centre[0] + at[0], centre[1] + at[1], 0.0]
-    };
-    let mesh = Mesh::new(lattice.keys.iter().map(place).collect(), kind, connectivity, Vec::new())?;
-    let keys = &lattice.keys;
-    let (cut, arc) = (|node: usize| keys[node][2] == 0, |node: usize| keys[node][0] == 2 * shells);
-    let symmetry = |node: usize| keys[node][1] == 0;
-    let boundaries: [(&str, &dyn Fn(usize) -> bool); 3] = [("cut", &cut), ("arc", &arc), ("symmetry-x", &symmetry)];
-    Ok(mesh.with_sides(match sides {
-        Sides::Both => &boundaries[..2],
-        Sides::Beyond => &boundaries,
-    }))
-}
-
-/// The estimated cells of half a disc: around the core, and from its middle to the arc.
-pub(super) fn half_disc_block(zone: &Zone, radius: f64, sides: Sides, kind: ElementKind) -> Block {
-    let RoundCells { aside, down, shells } = RoundCells::of(zone, radius);
-    let count = if sides == Sides::Both { 2.0 } else { 1.0 };
-    let around = count * (aside + down);
-    let core = count * aside * down;
-    Block { cells: vec![around, shells + core / around], lengths: Vec::new(), counts: kind.reference().counts }
+    fan([centre[0], centre[1], 0.0], (radius, zone), &[sides], kind)
 }
 
 /// A ring or a sector of a ring: the product of a radial axis and an angle.
@@ -256,24 +193,20 @@ pub struct RingSpec {
 }
 
 impl BodyShape for RingSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
     fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
         let ends = [self.radius.points.first(), self.radius.points.last()];
         let named = ["inner", "outer"].into_iter().zip(ends);
         named.filter_map(|(name, radius)| Some((name, self.centre, *radius?))).collect()
     }
 
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
-        site.check_product(&[&self.radius, &self.angle])?;
-        ring(self.centre, &site.lines(&self.radius, "radius")?, &site.lines(&self.angle, "angle")?, self.element.kind())
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
+        let [radii, angles] = site.lines([("radius", &self.radius), ("angle", &self.angle)])?;
+        ring(self.centre, &radii, &angles, self.element.kind())
     }
 
-    fn block(&self, _: Option<Files>) -> Block {
+    fn block(&self, _: Option<Files>) -> CellBlock {
         // An angle is not a length.
-        Block { lengths: Vec::new(), ..Block::product(&[&self.radius, &self.angle], self.element.kind()) }
+        CellBlock { lengths: Vec::new(), ..CellBlock::product(&[&self.radius, &self.angle], self.element.kind()) }
     }
 
     fn refine(&mut self, times: usize) -> Result<(), Error> {
@@ -296,7 +229,7 @@ pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) 
     if kind.dimension() != 2 {
         return fail(format!("a ring cannot have a mesh of {}", kind.name()));
     }
-    check_lines(&[("radius", radii), ("angle", angles)], if kind.is_quadratic() { 2 } else { 1 })?;
+    check_lines(&[("radius", radii), ("angle", angles)], steps(kind.reference()))?;
     if radii[0] <= 0.0 {
         return fail(format!("the inner radius is {}; it must be positive", radii[0]));
     }
@@ -309,29 +242,21 @@ pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) 
     }
     let (layers, sectors) = (radii.len() - 1, angles.len() - 1);
     let is_closed = span == 360.0;
-    let (radii, angles) = (half_steps(radii), half_steps(angles));
-    let mut lattice = Lattice::default();
-    let mut connectivity = Vec::new();
-    for sector in 0..sectors {
-        for layer in 0..layers {
-            let key = |outward: usize, around: usize| {
-                let angle = 2 * sector + around;
-                [2 * layer + outward, if is_closed && angle == 2 * sectors { 0 } else { angle }]
-            };
-            lattice.add_cell(kind, key, &mut connectivity);
-        }
+    let step = steps(kind.reference());
+    let mut cells = LatticeCells::of(kind);
+    for [layer, sector, _] in places([0; 3], [layers, sectors, 1]) {
+        cells.add(|[outward, around, _]| {
+            let angle = step * sector + around;
+            [step * layer + outward, if is_closed && angle == step * sectors { 0 } else { angle }, 0, 0]
+        });
     }
-    let place = |&[layer, angle]: &[usize; 2]| {
+    let (radii, angles) = (points(radii, kind), points(angles, kind));
+    let place = |[layer, angle, ..]: Key| {
         let (sine, cosine) = sine_cosine(angles[angle]);
         [centre[0] + radii[layer] * cosine, centre[1] + radii[layer] * sine, 0.0]
     };
-    let mesh = Mesh::new(lattice.keys.iter().map(place).collect(), kind, connectivity, Vec::new())?;
-    let keys = &lattice.keys;
-    let (inner, outer) = (|node: usize| keys[node][0] == 0, |node: usize| keys[node][0] == 2 * layers);
-    let (start, end) = (|node: usize| keys[node][1] == 0, |node: usize| keys[node][1] == 2 * sectors);
-    let sides: [(&str, &dyn Fn(usize) -> bool); 4] =
-        [("inner", &inner), ("outer", &outer), ("start", &start), ("end", &end)];
-    Ok(mesh.with_sides(if is_closed { &sides[..2] } else { &sides }))
+    let sides = [("inner", 0, 0), ("outer", 0, step * layers), ("start", 1, 0), ("end", 1, step * sectors)];
+    cells.mesh(place, if is_closed { &sides[..2] } else { &sides })
 }
 
 /// Sine and cosine of an angle in degrees, exact at multiples of 90.

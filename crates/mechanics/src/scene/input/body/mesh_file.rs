@@ -1,6 +1,6 @@
 //! A body from a mesh file of Gmsh, or from an input deck of CalculiX.
 
-use super::shape::{Block, BodyShape, Site};
+use super::shape::{BodyShape, BodySite, CellBlock};
 use crate::error::Error;
 use crate::fem::mesh::deck::Deck;
 use crate::fem::{ElementKind, Integration, Mesh};
@@ -35,11 +35,7 @@ pub struct GmshSpec {
 }
 
 impl BodyShape for GmshSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
         let file = site.read.gmsh(site.files.named(&self.file, format!("{}.file", site.path))?)?;
         let bodies = file.bodies();
         if self.group.is_empty() && bodies.len() > 1 && !site.names_groups {
@@ -55,7 +51,7 @@ impl BodyShape for GmshSpec {
         site.fitting(file.mesh(&groups, self.scale)?)
     }
 
-    fn block(&self, files: Option<Files>) -> Block {
+    fn block(&self, files: Option<Files>) -> CellBlock {
         block_of_file(&self.file, files)
     }
 
@@ -65,11 +61,11 @@ impl BodyShape for GmshSpec {
 }
 
 /// The block for a mesh file, by its length.
-pub(super) fn block_of_file(file: &str, files: Option<Files>) -> Block {
+pub(super) fn block_of_file(file: &str, files: Option<Files>) -> CellBlock {
     let bytes = files.map_or(0.0, |files| files.length(file));
     // A plane mesh has fewer elements per node; the estimate of its size hardly depends on that.
     let side = (bytes / OF_MESH_FILE).sqrt();
-    Block { cells: vec![side; 2], lengths: Vec::new(), counts: ElementKind::T3.reference().counts }
+    CellBlock { cells: vec![side; 2], lengths: Vec::new(), counts: ElementKind::T3.reference().counts }
 }
 
 /// The mesh of an input deck of CalculiX, a `.inp` file: nodes, elements, sets and surfaces. Its other cards are not
@@ -99,11 +95,7 @@ pub struct DeckSpec {
 }
 
 impl BodyShape for DeckSpec {
-    fn integration(&self) -> Integration {
-        self.integration
-    }
-
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error> {
         let file = site.files.named(&self.file, format!("{}.file", site.path))?;
         let folder = Some(site.files.folder).filter(|_| !site.files.reads_outside);
         let deck = site.read.deck(file, folder, self.step)?;
@@ -122,7 +114,7 @@ impl BodyShape for DeckSpec {
         site.fitting(deck.mesh(&groups, self.scale)?)
     }
 
-    fn block(&self, files: Option<Files>) -> Block {
+    fn block(&self, files: Option<Files>) -> CellBlock {
         block_of_file(&self.file, files)
     }
 

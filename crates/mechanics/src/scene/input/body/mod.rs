@@ -3,7 +3,9 @@
 #[cfg(test)]
 mod curved_bodies;
 mod disc;
+mod fan;
 mod half_ball;
+mod lattice;
 mod mesh_file;
 mod rectangle;
 mod shape;
@@ -13,94 +15,84 @@ pub use half_ball::{HalfBallSpec, half_ball};
 pub use mesh_file::{DeckSpec, GmshSpec};
 pub use rectangle::{BarSpec, BoxSpec, RectangleSpec, bar, cuboid, rectangle};
 pub use shape::Sides;
-pub(crate) use shape::{About, BodyShape, Site};
+pub(crate) use shape::{About, BodyShape, BodySite};
 
+use crate::fem::Integration;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The elastic body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum BodySpec {
+/// The kinds of bodies: each with its variant, its numbers, its name and the dimensions of the models that allow it.
+macro_rules! bodies {
+    ($($(#[$about:meta])* $kind:ident($spec:ty): $name:literal $dimensions:expr,)*) => {
+        /// The elastic body.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum BodySpec {
+            $($(#[$about])* $kind($spec),)*
+        }
+
+        /// All body shapes, in the order of messages.
+        const ALL: &[About] = &[$(About { name: $name, dimensions: $dimensions }),*];
+
+        impl BodySpec {
+            /// The name of the body shape and the models that allow it.
+            pub(crate) fn about(&self) -> About {
+                match self { $(BodySpec::$kind(_) => About { name: $name, dimensions: $dimensions },)* }
+            }
+
+            /// The numbers of the body shape, of whatever kind it is.
+            pub(crate) fn shape(&self) -> &dyn BodyShape {
+                match self { $(BodySpec::$kind(spec) => spec,)* }
+            }
+
+            /// The same, for changes.
+            pub(crate) fn shape_mut(&mut self) -> &mut dyn BodyShape {
+                match self { $(BodySpec::$kind(spec) => spec,)* }
+            }
+        }
+    };
+}
+
+bodies! {
     /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric
     /// model it is the section of the body.
-    Rectangle(RectangleSpec),
+    Rectangle(RectangleSpec): "rectangle" &[2],
     /// A bar along x; its boundaries are `left`, `right`.
-    Bar(BarSpec),
+    Bar(BarSpec): "bar" &[1],
     /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
     /// `top` (along z).
-    Box(BoxSpec),
+    Box(BoxSpec): "box" &[3],
     /// A disc, graded towards its lowest and its highest point; its boundaries are `lower`, `upper` and, if only its
     /// right part is meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is a ball.
-    Disc(DiscSpec),
+    Disc(DiscSpec): "disc" &[2],
     /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, if only
     /// its right part is meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is half
     /// a ball.
-    HalfDisc(HalfDiscSpec),
+    HalfDisc(HalfDiscSpec): "half-disc" &[2],
     /// Half of a ball, or a quarter or an eighth of one, graded towards its lowest (highest) point; its boundaries are
     /// `cut` (flat), `round` and the planes `symmetry-x` and `symmetry-y`.
-    HalfBall(HalfBallSpec),
+    HalfBall(HalfBallSpec): "half-ball" &[3],
     /// A ring or a sector of a ring; its boundaries are `inner`, `outer` and, if it is not closed, `start` and `end`.
-    Ring(RingSpec),
+    Ring(RingSpec): "ring" &[2],
     /// A mesh written by Gmsh; its physical groups are the boundaries.
-    Gmsh(GmshSpec),
+    Gmsh(GmshSpec): "gmsh" &[1, 2, 3],
     /// The mesh of an input deck of CalculiX; its surfaces are the boundaries.
-    Deck(DeckSpec),
+    Deck(DeckSpec): "deck" &[2, 3],
 }
 
-// A shape by its name, with the dimensions of the models that allow it.
-const RECTANGLE: About = About { name: "rectangle", dimensions: &[2] };
-const BAR: About = About { name: "bar", dimensions: &[1] };
-const BOX: About = About { name: "box", dimensions: &[3] };
-const DISC: About = About { name: "disc", dimensions: &[2] };
-const HALF_DISC: About = About { name: "half-disc", dimensions: &[2] };
-const HALF_BALL: About = About { name: "half-ball", dimensions: &[3] };
-const RING: About = About { name: "ring", dimensions: &[2] };
-const GMSH: About = About { name: "gmsh", dimensions: &[1, 2, 3] };
-const DECK: About = About { name: "deck", dimensions: &[2, 3] };
-
-/// The names of all body shapes, in the order of messages.
-const ALL: [About; 9] = [RECTANGLE, BAR, BOX, DISC, HALF_DISC, HALF_BALL, RING, GMSH, DECK];
-
 impl BodySpec {
-    /// The name of the body shape and the models that allow it.
-    pub(crate) fn about(&self) -> About {
-        self.described().0
-    }
-
-    /// The numbers of the body shape, of whatever kind it is.
-    pub(crate) fn shape(&self) -> &dyn BodyShape {
-        self.described().1
-    }
-
-    /// What [`about`](Self::about) and [`shape`](Self::shape) return: the only place that distinguishes the kinds of
-    /// bodies.
-    fn described(&self) -> (About, &dyn BodyShape) {
+    /// The integration of the stiffness that the scene asks for.
+    pub(crate) fn integration(&self) -> Integration {
         match self {
-            BodySpec::Rectangle(spec) => (RECTANGLE, spec),
-            BodySpec::Bar(spec) => (BAR, spec),
-            BodySpec::Box(spec) => (BOX, spec),
-            BodySpec::Disc(spec) => (DISC, spec),
-            BodySpec::HalfDisc(spec) => (HALF_DISC, spec),
-            BodySpec::HalfBall(spec) => (HALF_BALL, spec),
-            BodySpec::Ring(spec) => (RING, spec),
-            BodySpec::Gmsh(spec) => (GMSH, spec),
-            BodySpec::Deck(spec) => (DECK, spec),
-        }
-    }
-
-    /// The shape, for changes.
-    pub(crate) fn shape_mut(&mut self) -> &mut dyn BodyShape {
-        match self {
-            BodySpec::Rectangle(spec) => spec,
-            BodySpec::Bar(spec) => spec,
-            BodySpec::Box(spec) => spec,
-            BodySpec::Disc(spec) => spec,
-            BodySpec::HalfDisc(spec) => spec,
-            BodySpec::HalfBall(spec) => spec,
-            BodySpec::Ring(spec) => spec,
-            BodySpec::Gmsh(spec) => spec,
-            BodySpec::Deck(spec) => spec,
+            BodySpec::Rectangle(spec) => spec.integration,
+            BodySpec::Bar(_) => Integration::Standard,
+            BodySpec::Box(spec) => spec.integration,
+            BodySpec::Disc(spec) => spec.integration,
+            BodySpec::HalfDisc(spec) => spec.integration,
+            BodySpec::HalfBall(spec) => spec.integration,
+            BodySpec::Ring(spec) => spec.integration,
+            BodySpec::Gmsh(spec) => spec.integration,
+            BodySpec::Deck(spec) => spec.integration,
         }
     }
 

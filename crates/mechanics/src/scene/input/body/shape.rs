@@ -1,14 +1,11 @@
 //! The trait of every body shape: its mesh, its size before the mesh is built, its refinement.
 
 use crate::error::Error;
-use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
-use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
+use crate::fem::mesh::axis::AxisError;
+use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh};
 use crate::scene::input::entry::{Files, MeshFiles, wrong};
 use crate::scene::input::schema::model::ModelSpec;
-
-/// The approximate part of a round body's radius outside the core, along the diagonal.
-const SHELLS: f64 = 0.6;
 
 /// The name of a shape, of a body or of an obstacle, and the models that allow it.
 #[derive(Clone, Copy, Debug)]
@@ -21,9 +18,6 @@ pub struct About {
 
 /// A body shape with its numbers.
 pub(crate) trait BodyShape {
-    /// The integration of the stiffness that the scene asks for.
-    fn integration(&self) -> Integration;
-
     /// The cross-section of a bar, in area.
     fn area(&self) -> f64 {
         1.0
@@ -40,17 +34,17 @@ pub(crate) trait BodyShape {
     }
 
     /// The mesh; errors without a place in the scene count as errors of the whole body.
-    fn mesh(&self, site: &Site) -> Result<Mesh, Error>;
+    fn mesh(&self, site: &BodySite) -> Result<Mesh, Error>;
 
     /// A block of cells that represents the mesh, which may be one of `files`.
-    fn block(&self, files: Option<Files>) -> Block;
+    fn block(&self, files: Option<Files>) -> CellBlock;
 
     /// Cuts every cell into `times` cells along each edge.
     fn refine(&mut self, times: usize) -> Result<(), Error>;
 }
 
 /// The place of a body in a scene.
-pub(crate) struct Site<'a> {
+pub(crate) struct BodySite<'a> {
     /// Its JSON path, as `body.ring`.
     pub path: String,
     pub model: ModelSpec,
@@ -62,12 +56,7 @@ pub(crate) struct Site<'a> {
     pub names_groups: bool,
 }
 
-impl Site<'_> {
-    /// The mesh lines of an axis that is the field `name`.
-    pub fn lines(&self, axis: &Axis, name: &str) -> Result<Vec<f64>, Error> {
-        axis.coordinates().map_err(|error| wrong(format!("{}.{name}.{}", self.path, error.field), error.message))
-    }
-
+impl BodySite<'_> {
     /// Refuses a mesh from a file that has another number of coordinates than the model.
     pub fn fitting(&self, mesh: Mesh) -> Result<Mesh, Error> {
         if mesh.dimension() == self.model.dimension() {
@@ -78,22 +67,28 @@ impl Site<'_> {
         Err(wrong(format!("{}.file", self.path), message))
     }
 
-    /// Refuses a product of divisions with more nodes than allowed, before its lines are made.
-    pub fn check_product(&self, axes: &[&Axis]) -> Result<(), Error> {
-        let cells: Vec<usize> = axes.iter().map(|axis| axis.cells()).collect();
+    /// The mesh lines of axes, by the names of their fields. A product of divisions with more nodes than allowed is
+    /// refused before its lines are made.
+    pub fn lines<const N: usize>(&self, axes: [(&str, &Axis); N]) -> Result<[Vec<f64>; N], Error> {
+        let cells = axes.map(|(_, axis)| axis.cells());
         // A single axis with too many cells is refused at its own path.
         let possible = cells.iter().all(|&cells| cells <= MAX_NODES);
         let product = cells.iter().fold(1_usize, |product, &cells| product.saturating_mul(cells));
         if possible && product > MAX_NODES {
-            let cells: Vec<String> = cells.iter().map(usize::to_string).collect();
-            let message = format!("{} cells make more than the {MAX_NODES} nodes that are allowed", cells.join(" x "));
+            let cells = cells.map(|cells| cells.to_string()).join(" x ");
+            let message = format!("{cells} cells make more than the {MAX_NODES} nodes that are allowed");
             return Err(wrong(self.path.clone(), message));
         }
-        Ok(())
+        let mut lines = axes.map(|_| Vec::new());
+        for (lines, (name, axis)) in lines.iter_mut().zip(axes) {
+            let at_field = |error: AxisError| wrong(format!("{}.{name}.{}", self.path, error.field), error.message);
+            *lines = axis.coordinates().map_err(at_field)?;
+        }
+        Ok(lines)
     }
 
-    /// The same by an estimate, which refuses only sizes far beyond the limit.
-    pub fn check_estimate(&self, block: &Block) -> Result<(), Error> {
+    /// Refuses a number of cells far beyond the limit, by an estimate.
+    pub fn check_estimate(&self, block: &CellBlock) -> Result<(), Error> {
         let cells: f64 = block.cells.iter().product();
         if cells > 4.0 * MAX_NODES as f64 {
             let message = format!("about {cells:.0e} cells make more than the {MAX_NODES} nodes that are allowed");
@@ -128,7 +123,7 @@ impl Sides {
 }
 
 /// A block of cells that represents the mesh of a body.
-pub(crate) struct Block {
+pub(crate) struct CellBlock {
     /// Cells along each axis.
     pub cells: Vec<f64>,
     /// Lengths along each axis, if they are known.
@@ -137,31 +132,14 @@ pub(crate) struct Block {
     pub counts: LatticeCounts,
 }
 
-impl Block {
+impl CellBlock {
     /// The product of divided axes.
     pub fn product(axes: &[&Axis], kind: ElementKind) -> Self {
         let of = |axis: &Axis| axis.divisions.iter().map(|&cells| cells as f64).sum::<f64>();
-        Block {
+        CellBlock {
             cells: axes.iter().map(|axis| of(axis)).collect(),
             lengths: axes.iter().map(|axis| axis.length()).collect(),
             counts: kind.reference().counts,
         }
-    }
-}
-
-/// Estimated cells of a round body: from the lowest point to the corner of its core, from there to the cut, in the
-/// shells.
-pub(crate) struct RoundCells {
-    pub aside: f64,
-    pub down: f64,
-    pub shells: f64,
-}
-
-impl RoundCells {
-    pub fn of(zone: &Zone, radius: f64) -> Self {
-        let quarter = radius * std::f64::consts::FRAC_PI_4;
-        let (aside, last) = zone.count(quarter);
-        let (shells, _) = zone.count(radius * SHELLS);
-        RoundCells { aside, down: quarter / last, shells }
     }
 }

@@ -113,7 +113,7 @@ impl<'de> Deserializer<'de> for Typed<'de> {
 
     fn deserialize_struct<V: Visitor<'de>>(self, _: &'static str, _: Names, visitor: V) -> Result<V::Value, Fault> {
         let Value::Object(object) = self.0 else { return self.not(OBJECT) };
-        let mut fields = Fields { rest: object.properties.iter(), last: None };
+        let mut fields = ObjectFields { rest: object.properties.iter(), last: None };
         // A fault without a place is one of a key that has come before, or of one that may stand before the closing
         // bracket.
         visitor.visit_map(&mut fields).map_err(|fault| match (&fault.what, fields.last) {
@@ -130,7 +130,7 @@ impl<'de> Deserializer<'de> for Typed<'de> {
             let name = twice.name.as_str();
             return Err(Fault::at(twice.start(), What::Other(format!("the key `{name}` stands twice"))));
         }
-        visitor.visit_map(Fields { rest: object.properties.iter(), last: None })
+        visitor.visit_map(ObjectFields { rest: object.properties.iter(), last: None })
     }
 
     fn deserialize_enum<V: Visitor<'de>>(self, _: &'static str, known: Names, visitor: V) -> Result<V::Value, Fault> {
@@ -155,12 +155,12 @@ impl<'a> SeqAccess<'a> for Items<'a> {
     }
 }
 
-struct Fields<'a> {
+struct ObjectFields<'a> {
     rest: Iter<'a, ObjectProp<'a>>,
     last: Option<&'a ObjectProp<'a>>,
 }
 
-impl<'a> MapAccess<'a> for Fields<'a> {
+impl<'a> MapAccess<'a> for ObjectFields<'a> {
     type Error = Fault;
 
     fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Fault> {

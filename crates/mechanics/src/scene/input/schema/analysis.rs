@@ -1,8 +1,5 @@
 //! The analysis of a scene: its equilibrium, or, if requested, its motion or its natural vibrations.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use crate::fem::MassForm;
 use crate::motion::SchemeSpec;
 
@@ -12,9 +9,8 @@ pub(crate) const PATH: &str = "analysis.dynamic";
 /// The JSON path of the fields of a request for modes in a scene.
 pub(crate) const MODES: &str = "analysis.modes";
 
+specs! {
 /// What is computed beyond the equilibrium; a scene without it is static.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub enum AnalysisSpec {
     /// The motion from given displacements and velocities.
     Dynamic(Box<DynamicSpec>),
@@ -24,8 +20,6 @@ pub enum AnalysisSpec {
 
 /// The natural vibrations about the equilibrium: rows that are closed there stay closed. Every material needs a
 /// density.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ModesSpec {
     /// Number of the lowest modes, at most 1000.
     #[schemars(extend("minimum" = 1, "maximum" = 1000))]
@@ -33,20 +27,17 @@ pub struct ModesSpec {
 }
 
 /// The motion of the bodies: the scene integrated in time. Every material needs a density.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub struct DynamicSpec {
     /// Duration, positive, in time.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub duration: f64,
     /// Time step, positive. If it is left out, `courant` determines it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub step: Option<f64>,
     /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element,
     /// 0.5 if left out. With `central-difference`: the step over the largest stable step, at most 1, and 0.9 if left
     /// out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub courant: Option<f64>,
     /// The scheme.
@@ -54,24 +45,19 @@ pub struct DynamicSpec {
     pub scheme: SchemeSpec,
     /// The form of the mass. If left out: `averaged` for `fox-goodwin`, `lumped` for `central-difference`,
     /// `redistributed` for `midpoint`, `consistent` for the others.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub mass: Option<MassForm>,
     /// Damping of `hht`: from -1/3 to 0, -0.1 if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0))]
     pub alpha: Option<f64>,
     /// Stiffness of `penalty` in multiples of the local stiffness of a step, positive; 10 if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub penalty: Option<f64>,
     /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest
     /// displacement of the body; positive and at most 0.1, 1e-6 if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.1))]
     pub threshold: Option<f64>,
     /// Velocity of a node after its impact over that before, in `central-difference`, from 0 to 1; 0 if left out. Above
     /// 0 the energy of a mesh can grow; smaller steps reduce the growth.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     pub restitution: Option<f64>,
     /// Rayleigh damping.
@@ -100,22 +86,22 @@ pub struct DynamicSpec {
 }
 
 /// A point with output at every step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub enum WatchSpec {
     /// A node of the mesh, from 0.
     Node(usize),
     /// A point of the undeformed body, one entry for each coordinate; values are interpolated in the element around it.
     Point(Vec<f64>),
 }
+}
 
 fn frames() -> usize {
     60
 }
 
+specs! {
 /// Rayleigh damping C = `mass` M + `stiffness` K.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Default)]
+#[serde(default)]
 pub struct DampingSpec {
     /// Share of the mass, zero or positive, in one over time.
     #[schemars(extend("minimum" = 0))]
@@ -126,23 +112,16 @@ pub struct DampingSpec {
 }
 
 /// Initial displacement and velocity of one body or of all.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct InitialSpec {
     /// Name of a further body; all bodies if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Initial displacement.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub displacement: Option<FieldSpec>,
     /// Initial velocity.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity: Option<FieldSpec>,
 }
 
 /// A linear field: `value + gradient . x`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct FieldSpec {
     /// Value at the origin, one entry for each coordinate.
     pub value: Vec<f64>,
@@ -153,8 +132,7 @@ pub struct FieldSpec {
 }
 
 /// The choices for nodes that start inside an obstacle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Copy, Default, Eq)]
 pub enum PenetrationSpec {
     /// An error with the node and the depth.
     #[default]
@@ -164,8 +142,6 @@ pub enum PenetrationSpec {
 }
 
 /// The change of one load with time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct LoadInTimeSpec {
     /// Number of the entry of `loads`, from 0.
     pub load: usize,
@@ -174,8 +150,6 @@ pub struct LoadInTimeSpec {
 }
 
 /// The motion of one rigid obstacle, as that of a cam or of a shaker.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ObstacleInTimeSpec {
     /// Number of the entry of `obstacles`, from 0.
     pub obstacle: usize,
@@ -187,8 +161,6 @@ pub struct ObstacleInTimeSpec {
 }
 
 /// A factor over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub enum FactorSpec {
     /// Straight lines between points; constant before the first and after the last.
     Table(FactorTableSpec),
@@ -201,8 +173,6 @@ pub enum FactorSpec {
 }
 
 /// Points of a factor over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct FactorTableSpec {
     /// Times, at least one, increasing.
     #[schemars(extend("minItems" = 1))]
@@ -213,8 +183,6 @@ pub struct FactorTableSpec {
 }
 
 /// A sine over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SineSpec {
     /// Frequency, positive, in one over time.
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -225,12 +193,11 @@ pub struct SineSpec {
 }
 
 /// An interval of time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct IntervalSpec {
     /// Start of the interval.
     #[serde(default)]
     pub start: f64,
     /// End of the interval, later than its start.
     pub end: f64,
+}
 }

@@ -1,37 +1,27 @@
 //! Materials, parts of boundaries and further bodies as they are written in a scene.
 
 use crate::scene::input::body::BodySpec;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
+specs! {
 /// A linear elastic material: isotropic with `young` and `poisson`, or `orthotropic`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
     /// Young's modulus, positive, in force per area.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub young: Option<f64>,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5))]
     pub poisson: Option<f64>,
     /// Elasticity with three planes of symmetry, instead of `young` and `poisson`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub orthotropic: Option<OrthotropicSpec>,
     /// Thermal expansion in all directions, in strain per degree; needed for a `temperature`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub expansion: Option<f64>,
     /// Density, positive, in mass per volume; needed for a dynamic analysis, gravity and centrifugal forces.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: Option<f64>,
 }
 
 /// Orthotropic elasticity, along the axes 1, 2, 3 of the material. These are x, y, z unless they are rotated; in an
 /// axisymmetric model the radius, y and the hoop direction. A bar lies along axis 1.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct OrthotropicSpec {
     /// Young's moduli `[E1, E2, E3]`, positive, in force per area.
     #[schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0}))]
@@ -43,28 +33,21 @@ pub struct OrthotropicSpec {
     #[schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0}))]
     pub shear: [f64; 3],
     /// Thermal expansion along axes 1, 2, 3, in strain per degree.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub expansion: Option<[f64; 3]>,
     /// The angle from x to axis 1, counterclockwise, in degrees; only in plane and axisymmetric models.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
     /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both vectors, at right angles to
     /// axis 1.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub axes: Option<[Vec<f64>; 2]>,
     /// A line around which the axes turn: axis 1 leads away from it, 2 around it, 3 along it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub around: Option<LineSpec>,
 }
 
 /// A line in space, or, in the plane, a point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct LineSpec {
     /// A point on it.
     pub point: Vec<f64>,
     /// A vector along it, of any length; only in space, z if it is left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub along: Option<Vec<f64>>,
 }
 
@@ -72,14 +55,11 @@ pub struct LineSpec {
 /// elements in both.
 ///
 /// If several parts contain an element, the last one counts. The elements are chosen again on every mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MaterialPartSpec {
     /// The physical group of the mesh file whose elements have this material.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// A box along the coordinate axes: its elements have this material.
-    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box")]
     pub cuboid: Option<PartBoxSpec>,
     /// The material of these elements.
     pub material: MaterialSpec,
@@ -88,14 +68,11 @@ pub struct MaterialPartSpec {
 /// The temperature of a body above the stress-free one, or of its part in a group, in a box, or in both: `value` plus
 /// the gradient times the position. If several entries contain an element, the last one counts; elements in no entry
 /// are stress-free.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct TemperatureSpec {
     /// The physical group of the mesh file whose elements have this temperature.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// A box along the coordinate axes: its elements have this temperature.
-    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box")]
     pub cuboid: Option<PartBoxSpec>,
     /// The temperature difference at the origin, in degrees.
     pub value: f64,
@@ -109,14 +86,13 @@ pub struct TemperatureSpec {
 ///
 /// Allowed components: xx in a bar; xx, yy, xy in plane stress; also zz in plane strain; also zz, the hoop stress, in
 /// an axisymmetric body; all six in space.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Default)]
+#[serde(default)]
 pub struct InitialStressSpec {
     /// The physical group of the mesh file whose elements have this stress.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// A box along the coordinate axes: its elements have this stress.
-    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box")]
     pub cuboid: Option<PartBoxSpec>,
     /// Normal stress along x.
     pub xx: f64,
@@ -133,8 +109,7 @@ pub struct InitialStressSpec {
 }
 
 /// An elastic body besides the first, with the same model and thickness, and its own elements.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub struct FurtherBodySpec {
     /// Its name; its boundaries are called `name.boundary`.
     #[schemars(extend("minLength" = 1))]
@@ -142,7 +117,6 @@ pub struct FurtherBodySpec {
     /// The body.
     pub body: BodySpec,
     /// The material of all elements outside `materials`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialSpec>,
     /// The materials of its parts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -159,29 +133,22 @@ pub struct FurtherBodySpec {
 /// around the direction. A condition that is left out is always met.
 ///
 /// The facets are chosen again on every mesh: a part that ends within a facet changes with the mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PartSpec {
     /// Its name: a boundary for supports, loads, obstacles and later parts.
     #[schemars(extend("minLength" = 1))]
     pub name: String,
     /// The boundary, or a further body to choose its whole surface; the whole surface of the first body if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
     /// A box along the coordinate axes that contains the centroids of the facets.
-    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "box")]
     pub cuboid: Option<PartBoxSpec>,
     /// A sphere; in the plane a circle.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub sphere: Option<PartSphereSpec>,
     /// Directions of outward normals.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<PartNormalSpec>,
 }
 
 /// A box along the coordinate axes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PartBoxSpec {
     /// Its smallest coordinates.
     pub min: Vec<f64>,
@@ -190,8 +157,6 @@ pub struct PartBoxSpec {
 }
 
 /// A sphere.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PartSphereSpec {
     /// The centre of the sphere.
     pub centre: Vec<f64>,
@@ -201,12 +166,11 @@ pub struct PartSphereSpec {
 }
 
 /// Directions around a given one.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PartNormalSpec {
     /// The direction in their middle, of any length except zero.
     pub direction: Vec<f64>,
     /// The largest angle to this direction, in degrees, from 0 to 180.
     #[schemars(extend("minimum" = 0, "maximum" = 180))]
     pub within: f64,
+}
 }

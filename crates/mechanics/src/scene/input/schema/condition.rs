@@ -3,12 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::scene::input::names;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
+specs! {
 /// An external load. Body forces, gravity and centrifugal forces act on all bodies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub enum LoadSpec {
     /// A traction on a boundary.
     Traction(TractionSpec),
@@ -29,6 +26,7 @@ pub enum LoadSpec {
     /// The centrifugal force of a rotation. Needs a density.
     Centrifugal(CentrifugalSpec),
 }
+}
 
 impl LoadSpec {
     /// Returns `true` for a force at a single point.
@@ -42,41 +40,32 @@ impl LoadSpec {
     }
 }
 
+specs! {
 /// A force per area on a boundary, constant or with a profile.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct TractionSpec {
     /// The boundary that the traction acts on.
     pub boundary: String,
     /// The traction, in force per area.
     pub value: Vec<f64>,
     /// A factor for the traction that changes along a direction.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }
 
 /// A pressure on a boundary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PressureSpec {
     /// The boundary that the pressure acts on.
     pub boundary: String,
     /// The pressure, in force per area; a positive pressure pushes on the body.
     pub value: f64,
     /// A factor for the pressure that changes along a direction.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }
 
 /// A force at a node, or spread over a boundary as a constant traction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ForceSpec {
     /// The point; a node must lie there.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Vec<f64>>,
     /// The boundary, instead of a point.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<String>,
     /// The force on the whole thickness, or on the full circle of a body of revolution; its radial component is summed
     /// around the circle.
@@ -86,16 +75,13 @@ pub struct ForceSpec {
 /// A moment on a boundary: a traction proportional to the distance from the centre of the boundary, at right angles to
 /// the vector from there and to an axis; on a flat end it is the traction of pure bending. Its force is zero, so that
 /// its moment is the same about every point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MomentSpec {
     /// The boundary; required.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     #[schemars(required)]
     pub boundary: Option<String>,
     /// Refused: a node of a solid has no rotation, and cannot carry a moment.
     #[schemars(skip)]
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Vec<f64>>,
     /// The moment, in force times length: `[m]` about z in the plane, on the whole thickness, counterclockwise; three
     /// components in space.
@@ -105,22 +91,16 @@ pub struct MomentSpec {
 /// The centrifugal force of a rotation: density times the square of omega times the vector from the axis.
 ///
 /// In a plane model the axis is normal to the plane; in an axisymmetric model it is the axis of revolution.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CentrifugalSpec {
     /// The angular velocity, in radians per time.
     pub omega: f64,
     /// The direction of the axis, of any length except zero; only in space, and required there.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<Vec<f64>>,
     /// A point on the axis; the origin if left out; not in an axisymmetric model.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub point: Option<Vec<f64>>,
 }
 
 /// A factor that changes along a direction: straight lines between places, constant beyond the first and the last.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ProfileSpec {
     /// The direction, of any length except zero.
     pub along: Vec<f64>,
@@ -133,9 +113,8 @@ pub struct ProfileSpec {
 }
 
 /// The place on the body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Place {
+#[schemars(rename = "Place")]
+pub enum PlaceSpec {
     /// All nodes of a named boundary.
     Boundary(String),
     /// The node at this point.
@@ -150,34 +129,25 @@ pub enum Place {
 ///
 /// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, the
 /// components along the plane are free. In an axisymmetric model the plane is a cone.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SupportSpec {
-    pub on: Place,
+    pub on: PlaceSpec,
     /// Prescribed displacement along x.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// Prescribed displacement along y.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// Prescribed displacement along z.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
     /// Normal of an inclined plane, of either sense and of any length except zero.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<Vec<f64>>,
     /// Prescribed displacement along the normal, in length; 0 if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// A factor for all these displacements that changes along a direction.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }
 
 /// A plane of symmetry, given by the axis normal to it. It lies at the flat end of the body, at zero if the body has a
 /// flat end there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Copy, Eq)]
 pub enum SymmetryPlane {
     /// Normal to x.
     X,
@@ -185,6 +155,7 @@ pub enum SymmetryPlane {
     Y,
     /// Normal to z.
     Z,
+}
 }
 
 impl SymmetryPlane {
@@ -199,13 +170,11 @@ impl SymmetryPlane {
     }
 }
 
+specs! {
 /// A boundary that moves as a rigid plate: a displacement of its centre and a rotation about it. Components that are
 /// not prescribed follow from the force and the moment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct RigidFaceSpec {
     /// The boundary, or `nodes` instead.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<String>,
     /// The nodes of a set, or of several, of a deck.
     #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
@@ -213,39 +182,29 @@ pub struct RigidFaceSpec {
     pub nodes: Vec<String>,
     /// The centre of rotation, at which the force acts; the centroid of the boundary's area, or the mean of the
     /// nodes, if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<Vec<f64>>,
     /// Prescribed displacement of the centre along x.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// Prescribed displacement of the centre along y.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// Prescribed displacement of the centre along z.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
     /// Prescribed rotations about the centre.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationSpec>,
     /// The force on it; zero if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<Vec<f64>>,
     /// The moment on it about the centre: about z in the plane, three components in space; zero if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub moment: Option<Vec<f64>>,
 }
 
 /// Prescribed rotations, in radians, small; a rotation that is left out is free.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Default)]
 pub struct RotationSpec {
     /// About x, in space.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// About y, in space.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// About z.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
+}
 }

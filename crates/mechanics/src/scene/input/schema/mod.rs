@@ -17,7 +17,7 @@ pub use analysis::{
 pub use body::{
     FurtherBodySpec, InitialStressSpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec, PartSpec, TemperatureSpec,
 };
-pub use condition::{LoadSpec, Place, RigidFaceSpec, SupportSpec, SymmetryPlane};
+pub use condition::{LoadSpec, PlaceSpec, RigidFaceSpec, SupportSpec, SymmetryPlane};
 pub use model::{ModelSpec, Rule};
 pub use obstacle::{ContactSpec, ObstacleSpec};
 pub use tie::{

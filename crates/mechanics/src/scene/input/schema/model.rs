@@ -24,22 +24,12 @@ pub enum ModelSpec {
 impl ModelSpec {
     /// The model as a scene writes it, such as `plane-strain`.
     pub fn name(self) -> &'static str {
-        match self {
-            ModelSpec::Bar => "bar",
-            ModelSpec::PlaneStrain => "plane-strain",
-            ModelSpec::PlaneStress => "plane-stress",
-            ModelSpec::Axisymmetric => "axisymmetric",
-            ModelSpec::Space => "space",
-        }
+        ["bar", "plane-strain", "plane-stress", "axisymmetric", "space"][self as usize]
     }
 
     /// Coordinates of a point: 1 in a bar, 2 in plane and axisymmetric models, 3 in space.
     pub fn dimension(self) -> usize {
-        match self {
-            ModelSpec::Bar => 1,
-            ModelSpec::PlaneStrain | ModelSpec::PlaneStress | ModelSpec::Axisymmetric => 2,
-            ModelSpec::Space => 3,
-        }
+        [1, 2, 2, 2, 3][self as usize]
     }
 }
 
@@ -91,12 +81,7 @@ pub enum HalfSpec {
 
 impl ElementSpec {
     pub(crate) fn kind(self) -> ElementKind {
-        match self {
-            ElementSpec::T3 => ElementKind::T3,
-            ElementSpec::T6 => ElementKind::T6,
-            ElementSpec::Q4 => ElementKind::Q4,
-            ElementSpec::Q8 => ElementKind::Q8,
-        }
+        [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8][self as usize]
     }
 }
 
@@ -107,12 +92,7 @@ impl SolidElementSpec {
     }
 
     pub(crate) fn kind(self) -> ElementKind {
-        match self {
-            SolidElementSpec::Tet4 => ElementKind::Tet4,
-            SolidElementSpec::Hex8 => ElementKind::Hex8,
-            SolidElementSpec::Tet10 => ElementKind::Tet10,
-            SolidElementSpec::Hex20 => ElementKind::Hex20,
-        }
+        [ElementKind::Tet4, ElementKind::Hex8, ElementKind::Tet10, ElementKind::Hex20][self as usize]
     }
 }
 
@@ -156,26 +136,12 @@ pub enum Approach {
 impl Approach {
     /// The axis, 0 to 2, and the sense along it, 1 or -1.
     pub fn axis(self) -> (usize, f64) {
-        match self {
-            Approach::PlusX => (0, 1.0),
-            Approach::MinusX => (0, -1.0),
-            Approach::PlusY => (1, 1.0),
-            Approach::MinusY => (1, -1.0),
-            Approach::PlusZ => (2, 1.0),
-            Approach::MinusZ => (2, -1.0),
-        }
+        (self as usize / 2, [1.0, -1.0][self as usize % 2])
     }
 
     /// The direction as a scene writes it, such as `-y`.
     pub fn name(self) -> &'static str {
-        match self {
-            Approach::PlusX => "+x",
-            Approach::MinusX => "-x",
-            Approach::PlusY => "+y",
-            Approach::MinusY => "-y",
-            Approach::PlusZ => "+z",
-            Approach::MinusZ => "-z",
-        }
+        ["+x", "-x", "+y", "-y", "+z", "-z"][self as usize]
     }
 }
 

@@ -2,12 +2,10 @@
 
 use super::model::{Approach, Rule};
 use crate::scene::input::obstacle::ShapeSpec;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
+specs! {
 /// How the contacts between bodies are given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Copy, Eq)]
 pub enum ContactSpec {
     /// All surfaces of different bodies that face each other within reach are found; those that an obstacle names stay
     /// as they are.
@@ -15,36 +13,30 @@ pub enum ContactSpec {
 }
 
 /// A frictionless obstacle and the boundary that may touch it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
     /// The boundary that contains the candidate nodes.
     pub boundary: String,
     /// The direction from the body to the obstacle. Another body with the rule `closest-point` needs none.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub approach: Option<Approach>,
     /// The rule for the contact row of a node.
     #[serde(default)]
     pub rule: Rule,
     /// Shift of this obstacle along its approach direction, in addition to that of the whole scene; a negative shift
     /// moves it towards the body.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
     /// The force, positive, that presses the obstacle against its approach direction; the obstacle moves only along
     /// this direction. In force; for a body of revolution that of the full circle. The travel of the obstacle is
     /// computed.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub force: Option<f64>,
     /// The mass of an obstacle that moves along its approach direction in a motion, positive, as a hammer does; for a
     /// body of revolution that of the full circle. It starts at its `gap`, with its `speed`, under its `force`, if it
     /// has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub mass: Option<f64>,
     /// The velocity towards the body with which an obstacle with `mass` starts, in length over time; 0 if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
     /// The surface of the obstacle.
     pub shape: ShapeSpec,
+}
 }

@@ -1,13 +1,10 @@
 //! Ties, springs and reference points as they are written in a scene: sums of displacements.
 
-use super::condition::{Place, RotationSpec};
+use super::condition::{PlaceSpec, RotationSpec};
 use crate::scene::input::names;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
+specs! {
 /// One tie of displacements: between two surfaces, or by an equation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub enum TieSpec {
     /// Two surfaces that move together in all directions.
     Surfaces(TiedSurfacesSpec),
@@ -21,53 +18,41 @@ pub enum TieSpec {
 
 /// Two surfaces that stay together, in the mean over the area of each node of one of them. Their meshes need not match.
 /// The softer body, or the one with the smaller facets, takes the means.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct TiedSurfacesSpec {
     /// The boundary of one body.
     pub boundary: String,
     /// The boundary of the other.
     pub to: String,
     /// The largest distance, positive, at which the surfaces are tied; one length of a facet if it is left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub reach: Option<f64>,
 }
 
 /// The preload of a bolt that is cut across: the two faces of the cut move together along themselves, and towards each
 /// other by one shortening. Their meshes need not match. Give a force, a shortening or a point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PreloadSpec {
     /// The face of the cut on one part of the bolt.
     pub boundary: String,
     /// The face on the other part, at the same place.
     pub to: String,
     /// The tension in the bolt, positive if it draws the parts together, in force; of the modelled part.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
     /// The length by which the bolt is shortened.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub shortening: Option<f64>,
     /// The name of a reference point that stands for the bolt: its displacement along x is the shortening, its force
     /// along x the tension.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// The direction from the first part to the other, of any length: it points out of the first part. If it is left
     /// out, it is the mean outward normal of the face.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<Vec<f64>>,
 }
 
 /// Nodes that follow a reference point as those of a rigid body, or whose mean motion the point follows. Couplings to
 /// one point join their nodes, also those of several bodies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CouplingSpec {
     /// The name of the point.
     pub point: String,
     /// The boundary that is coupled; `nodes` instead of it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<String>,
     /// The coupled nodes: those of a set, or of several, of a deck.
     #[serde(default, with = "names", skip_serializing_if = "Vec::is_empty")]
@@ -79,8 +64,6 @@ pub struct CouplingSpec {
 }
 
 /// An equation: the sum of the terms is the value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct EquationSpec {
     /// Displacements of nodes and motions of points, each with its coefficients.
     pub terms: Vec<TermSpec>,
@@ -91,8 +74,6 @@ pub struct EquationSpec {
 
 /// The displacement of one node, or the motion of one reference point: the sum of its components times their
 /// coefficients, which are dimensionless; lengths for rotations.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct TermSpec {
     /// The node or the reference point.
     pub on: TermPlace,
@@ -111,8 +92,6 @@ pub struct TermSpec {
 }
 
 /// The node or the reference point of a term.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
 pub enum TermPlace {
     /// The only node of a named boundary.
     Boundary(String),
@@ -127,8 +106,8 @@ pub enum TermPlace {
 }
 
 /// Coefficients of rotations, in length.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Copy, Default)]
+#[serde(default)]
 pub struct Turns {
     /// Of the rotation about x, in space.
     pub x: f64,
@@ -137,6 +116,7 @@ pub struct Turns {
     /// Of the rotation about z.
     pub z: f64,
 }
+}
 
 impl Turns {
     fn is_none(&self) -> bool {
@@ -144,37 +124,31 @@ impl Turns {
     }
 }
 
+specs! {
 /// Springs, which act in tension and compression: between the body and the ground at a node, or spread over a boundary
 /// as an elastic foundation; or between nodes.
 ///
 /// A direction that is left out has no spring.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub struct SpringSpec {
     /// The place of a spring to the ground.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub on: Option<Place>,
+    pub on: Option<PlaceSpec>,
     /// The elongation of a spring between nodes, instead of `on`: the sum of these terms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub terms: Vec<TermSpec>,
     /// Stiffness along the elongation that the terms give, positive.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub along: Option<f64>,
     /// Stiffness along x, positive.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub x: Option<f64>,
     /// Stiffness along y, positive.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub y: Option<f64>,
     /// Stiffness along z, positive.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub z: Option<f64>,
     /// Stiffness along the normal of the boundary at every place, positive.
-    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub normal: Option<f64>,
     /// The reference of the stiffnesses.
@@ -183,8 +157,7 @@ pub struct SpringSpec {
 }
 
 /// The reference of a stiffness on a boundary.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Copy, Default, Eq)]
 pub enum StiffnessOf {
     /// The whole spring, in force per length; on a boundary it is distributed evenly over its area.
     #[default]
@@ -196,29 +169,22 @@ pub enum StiffnessOf {
 /// A reference point: it has displacements and small rotations, and is no node of a mesh. Couplings, equations and
 /// springs join it to nodes and to other points. Components that are not prescribed follow from the force and the
 /// moment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PointSpec {
     /// The name, by which ties and springs name it.
     pub name: String,
     /// Its place, about which it turns.
     pub at: Vec<f64>,
     /// Displacement of the point along x, if it is prescribed, in length.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
     /// Displacement of the point along y, if it is prescribed, in length.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
     /// Displacement of the point along z, if it is prescribed, in length.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
     /// Rotations of the point that are prescribed.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationSpec>,
     /// The force on the point; zero if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<Vec<f64>>,
     /// The moment on the point: about z in the plane, three components in space; zero if left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub moment: Option<Vec<f64>>,
+}
 }

@@ -9,7 +9,7 @@ use crate::fem::geometry::{COORDINATES, cross, dot, minus, sorted, unit};
 use crate::fem::mesh::pieces::Pieces;
 use crate::scene::Model;
 use crate::scene::input::profile::Profile;
-use crate::scene::input::schema::{Place, Scene, TieSpec, TiedSurfacesSpec};
+use crate::scene::input::schema::{PlaceSpec, Scene, TieSpec, TiedSurfacesSpec};
 use crate::scene::models::load::{Acting, acting, spread};
 use signorini_guarantee::{Condition, HeldComponent, Linear, Point, SideCircle};
 
@@ -39,7 +39,7 @@ pub(super) fn conditions(
     }
     for (index, springs) in scene.springs.iter().enumerate() {
         let path = format!("springs[{index}]");
-        let Some(Place::Boundary(name)) = &springs.on else {
+        let Some(PlaceSpec::Boundary(name)) = &springs.on else {
             let message = "a spring at a point holds nothing in a continuum, so that there is no guaranteed bound; spread it \
                            over a boundary";
             return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
