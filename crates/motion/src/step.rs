@@ -107,7 +107,7 @@ pub(super) struct Stepping {
 }
 
 /// The result of a step: change of the displacement, multipliers, closed rows.
-pub(super) struct Found {
+pub(super) struct Moved {
     pub change: Vec<f64>,
     pub multiplier: Vec<f64>,
     pub contact_set: ContactSet,
@@ -138,17 +138,17 @@ impl Stepping {
     ///
     /// A gap that is the rounding of the change is none: a part of the body that had to follow it would move by
     /// rounding alone, which no certificate can judge.
-    pub fn solve(&self, force: Vec<f64>, mut gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
+    pub fn solve(&self, force: Vec<f64>, mut gap: Vec<f64>, start: &ContactSet) -> Result<Moved, Error> {
         let changes = force.iter().zip(&self.diagonal).map(|(force, diagonal)| (force / diagonal).abs());
         let rounding = f64::EPSILON * changes.filter(|change| change.is_finite()).fold(0.0, f64::max);
         gap.iter_mut().filter(|gap| gap.abs() <= rounding).for_each(|gap| *gap = 0.0);
         let boundary = self.prepared.with_load(force)?.starting_from(start).step(&gap)?;
         let change = boundary.displacement();
-        Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
+        Ok(Moved { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
     }
 
     /// The smallest change in the norm of the matrix with these gaps; `None`, without a solve, if that is zero.
-    pub fn smallest(&self, gap: Vec<f64>, start: &ContactSet) -> Result<Option<Found>, Error> {
+    pub fn smallest(&self, gap: Vec<f64>, start: &ContactSet) -> Result<Option<Moved>, Error> {
         if gap.iter().all(|&gap| gap >= 0.0) {
             return Ok(None);
         }

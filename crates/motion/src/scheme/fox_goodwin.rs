@@ -30,7 +30,7 @@
 //! Numer. Methods Eng. 53 (2002) 245-274: velocities that change at release so that energy is restored.
 
 use super::newmark::TRAPEZOIDAL;
-use crate::step::{Advance, Facts, Found, HalfStep, Stepping, halfway, next, plus};
+use crate::step::{Advance, Facts, HalfStep, Moved, Stepping, halfway, next, plus};
 use crate::{Balance, DynamicProblem, State};
 use signorini_fem::assembly::MassForm;
 use signorini_qp::Error;
@@ -147,7 +147,7 @@ impl Advance for FoxGoodwin {
 
 impl FoxGoodwin {
     /// The end of the step with the given change; `pull` are the forces, as multipliers, that let rows go.
-    fn after(&self, problem: &DynamicProblem, step: f64, state: &State, found: &Found, pull: Option<&[f64]>) -> State {
+    fn after(&self, problem: &DynamicProblem, step: f64, state: &State, found: &Moved, pull: Option<&[f64]>) -> State {
         let share = if state.steps == 0 { 0.5 } else { 1.0 };
         let velocity: Vec<f64> = found.change.iter().map(|w| w / step).collect();
         let displacement = plus(&state.displacement, 1.0, &found.change);
@@ -178,7 +178,7 @@ impl FoxGoodwin {
         problem: &DynamicProblem,
         step: f64,
         state: &State,
-        found: &Found,
+        found: &Moved,
         end: &State,
     ) -> Option<Vec<f64>> {
         if state.kept.iter().all(|&kept| kept <= 0.0) {

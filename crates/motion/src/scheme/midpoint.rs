@@ -18,7 +18,7 @@
 //! Methods Appl. Mech. Eng. 190 (2000) 1763-1783: midpoint forces corrected so that their work is the change of energy.
 
 use super::newmark::TRAPEZOIDAL;
-use crate::step::{Advance, Facts, Found, Stepping, next, plus};
+use crate::step::{Advance, Facts, Moved, Stepping, next, plus};
 use crate::{Balance, DynamicProblem, State};
 use signorini_fem::assembly::MassForm;
 use signorini_qp::Error;
@@ -162,7 +162,7 @@ impl Advance for Midpoint {
 
 impl Midpoint {
     /// The end of the step from `state` with the given change at its middle.
-    fn after(&self, problem: &DynamicProblem, step: f64, state: &State, found: &Found) -> Result<State, Error> {
+    fn after(&self, problem: &DynamicProblem, step: f64, state: &State, found: &Moved) -> Result<State, Error> {
         let mut displacement = plus(&state.displacement, 2.0, &found.change);
         let changes = state.velocity.iter().zip(&found.change);
         let velocity: Vec<f64> = changes.map(|(v, w)| 4.0 / step * w - v).collect();
@@ -185,7 +185,7 @@ impl Midpoint {
         problem: &DynamicProblem,
         step: f64,
         state: &State,
-        (found, mut load): (&Found, Vec<f64>),
+        (found, mut load): (&Moved, Vec<f64>),
         massless: &Massless,
         next: &State,
     ) -> Result<Option<State>, Error> {
@@ -214,7 +214,7 @@ impl Midpoint {
             let rounding = NEGLIGIBLE_FORCE * largest(&multiplier);
             multiplier.iter_mut().filter(|lambda| **lambda > -rounding).for_each(|lambda| *lambda = 0.0);
             let contact_set = ContactSet::from_fn(multiplier.len(), |row| multiplier[row] < 0.0);
-            let corrected = Found { change: plus(&found.change, share, &response), multiplier, contact_set };
+            let corrected = Moved { change: plus(&found.change, share, &response), multiplier, contact_set };
             let end = self.after(problem, step, state, &corrected)?;
             let off = imbalance(state, &end, &load);
             Ok((end, off))

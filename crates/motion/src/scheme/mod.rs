@@ -39,34 +39,59 @@ pub enum SchemeSpec {
     CentralDifference,
 }
 
-impl SchemeSpec {
-    /// All schemes: the default first, those for comparison after the others, the explicit scheme last.
-    pub const ALL: [SchemeSpec; 8] = [
-        SchemeSpec::FoxGoodwin,
-        SchemeSpec::Midpoint,
-        SchemeSpec::ContactStabilised,
-        SchemeSpec::Hht,
-        SchemeSpec::Trapezoidal,
-        SchemeSpec::Penalty,
-        SchemeSpec::PenaltyLoop,
-        SchemeSpec::CentralDifference,
-    ];
+/// Writes what follows from the list of the schemes: variant, key of its value, description.
+macro_rules! schemes {
+    ($($scheme:ident $({ $parameter:ident })? => $about:expr,)*) => {
+        impl SchemeSpec {
+            /// All schemes: the default first, those for comparison after the others, the explicit scheme last.
+            pub const ALL: [SchemeSpec; 8] = [$(SchemeSpec::$scheme),*];
 
-    /// The scheme with a value of its parameter, or with the default value.
-    pub fn with(self, value: Option<f64>) -> Scheme {
-        let value = value.or(self.parameter().map(|parameter| parameter.default)).unwrap_or_default();
-        match self {
-            SchemeSpec::FoxGoodwin => Scheme::FoxGoodwin,
-            SchemeSpec::Midpoint => Scheme::Midpoint,
-            SchemeSpec::Trapezoidal => Scheme::Trapezoidal,
-            SchemeSpec::ContactStabilised => Scheme::ContactStabilised,
-            SchemeSpec::Hht => Scheme::Hht { alpha: value },
-            SchemeSpec::Penalty => Scheme::Penalty { penalty: value },
-            SchemeSpec::PenaltyLoop => Scheme::PenaltyLoop { threshold: value },
-            SchemeSpec::CentralDifference => Scheme::CentralDifference { restitution: value },
+            /// The scheme with a value of its parameter, or with the default value.
+            pub fn with(self, value: Option<f64>) -> Scheme {
+                let value = value.or(self.parameter().map(|parameter| parameter.default)).unwrap_or_default();
+                match self {
+                    $(SchemeSpec::$scheme => Scheme::$scheme $({ $parameter: value })?,)*
+                }
+            }
+
+            fn about(self) -> &'static Facts {
+                match self {
+                    $(SchemeSpec::$scheme => &$about,)*
+                }
+            }
         }
-    }
 
+        impl Scheme {
+            /// The scheme without the value of its parameter.
+            pub fn spec(self) -> SchemeSpec {
+                match self {
+                    $(Scheme::$scheme { .. } => SchemeSpec::$scheme,)*
+                }
+            }
+
+            /// The value of the parameter, dimensionless; 0 if the scheme has none.
+            pub fn value(self) -> f64 {
+                match self {
+                    $($(Scheme::$scheme { $parameter } => $parameter,)?)*
+                    _ => 0.0,
+                }
+            }
+        }
+    };
+}
+
+schemes! {
+    FoxGoodwin => fox_goodwin::ABOUT,
+    Midpoint => midpoint::ABOUT,
+    ContactStabilised => newmark::CONTACT_STABILISED,
+    Hht { alpha } => newmark::HHT,
+    Trapezoidal => newmark::TRAPEZOIDAL,
+    Penalty { penalty } => newmark::PENALTY,
+    PenaltyLoop { threshold } => newmark::PENALTY_LOOP,
+    CentralDifference { restitution } => central_difference::ABOUT,
+}
+
+impl SchemeSpec {
     /// The name by which a scene asks for the scheme.
     pub fn name(self) -> &'static str {
         self.about().name
@@ -80,19 +105,6 @@ impl SchemeSpec {
     /// Returns `true` for a scheme that is stable only below a limit of the step.
     pub fn is_explicit(self) -> bool {
         self.about().is_explicit
-    }
-
-    fn about(self) -> &'static Facts {
-        match self {
-            SchemeSpec::FoxGoodwin => &fox_goodwin::ABOUT,
-            SchemeSpec::Midpoint => &midpoint::ABOUT,
-            SchemeSpec::Trapezoidal => &newmark::TRAPEZOIDAL,
-            SchemeSpec::ContactStabilised => &newmark::CONTACT_STABILISED,
-            SchemeSpec::Hht => &newmark::HHT,
-            SchemeSpec::Penalty => &newmark::PENALTY,
-            SchemeSpec::PenaltyLoop => &newmark::PENALTY_LOOP,
-            SchemeSpec::CentralDifference => &central_difference::ABOUT,
-        }
     }
 }
 
@@ -166,31 +178,6 @@ pub enum Scheme {
 }
 
 impl Scheme {
-    /// The scheme without the value of its parameter.
-    pub fn spec(self) -> SchemeSpec {
-        match self {
-            Scheme::FoxGoodwin => SchemeSpec::FoxGoodwin,
-            Scheme::Midpoint => SchemeSpec::Midpoint,
-            Scheme::Trapezoidal => SchemeSpec::Trapezoidal,
-            Scheme::ContactStabilised => SchemeSpec::ContactStabilised,
-            Scheme::Hht { .. } => SchemeSpec::Hht,
-            Scheme::Penalty { .. } => SchemeSpec::Penalty,
-            Scheme::PenaltyLoop { .. } => SchemeSpec::PenaltyLoop,
-            Scheme::CentralDifference { .. } => SchemeSpec::CentralDifference,
-        }
-    }
-
-    /// The value of the parameter, dimensionless; 0 if the scheme has none.
-    pub fn value(self) -> f64 {
-        match self {
-            Scheme::FoxGoodwin | Scheme::Midpoint | Scheme::Trapezoidal | Scheme::ContactStabilised => 0.0,
-            Scheme::Hht { alpha: value }
-            | Scheme::Penalty { penalty: value }
-            | Scheme::PenaltyLoop { threshold: value }
-            | Scheme::CentralDifference { restitution: value } => value,
-        }
-    }
-
     /// The name of the scheme in scenes and reports.
     pub fn name(self) -> &'static str {
         self.spec().name()

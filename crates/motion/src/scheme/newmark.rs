@@ -10,7 +10,7 @@
 //! H. M. Hilber, T. J. R. Hughes, R. L. Taylor, *Improved numerical dissipation for time integration algorithms in
 //! structural dynamics*, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292.
 
-use crate::step::{Advance, Facts, Found, Parameter, Stepping, next, plus};
+use crate::step::{Advance, Facts, Moved, Parameter, Stepping, next, plus};
 use crate::{Balance, DynamicProblem, State};
 use signorini_fem::assembly::MassForm;
 use signorini_qp as qp;
@@ -79,7 +79,7 @@ impl Newmark {
         step: f64,
         state: &State,
         predicted: &Predicted,
-        found: Found,
+        found: Moved,
     ) -> State {
         let Newmark { beta, gamma, .. } = *self;
         let displacement = plus(&predicted.displacement, 1.0, &found.change);

@@ -35,7 +35,7 @@ pub(super) fn total_error(given: &Asked, problem: &ContinuumProblem, mesh: Simpl
     // An error of the solver that is small beside the goal does not matter.
     let least = given.goal.force_error.map_or(given.goal.total_error, |force| force.min(given.goal.total_error));
     let settings = given.settings.clone().with_accuracy(OF_SOLVER * least);
-    let search = Search { given, problem, settings };
+    let search = Proving { given, problem, settings };
     let mut found = search.run(mesh)?;
     given.settings.watch.step("answer", 0);
     match found.guarantee.as_ref().map(|guarantee| on_last_mesh(given, &guarantee.answer, guarantee.distance)) {
@@ -83,13 +83,13 @@ pub(super) fn compared(answer: &Answer, of_bound: &ContinuumAnswer) -> Result<[f
 }
 
 /// The continuum problem and the settings of a guaranteed bound, the same on every mesh.
-struct Search<'a> {
+struct Proving<'a> {
     given: &'a Asked<'a>,
     problem: &'a ContinuumProblem,
     settings: Settings,
 }
 
-impl Search<'_> {
+impl Proving<'_> {
     fn run(&self, first: SimplexMesh) -> Result<TotalError, Error> {
         let mut now = self.given.begun(None);
         let (mut next, mut own, mut touching) = (first, None, None);

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::parameter::{self, Kind, Parameter};
+use super::parameter::{self, Datum, Variable};
 use crate::error::Error;
 use crate::fem::ElasticBody;
 use crate::fem::assembly::internal_force;
@@ -38,7 +38,7 @@ impl Effect {
 }
 
 /// The effect of a parameter of `scene` at an answer; `active` are the rows that may be closed.
-pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usize]) -> Result<Effect, Why> {
+pub(super) fn effect(scene: &Scene, parameter: &Variable, answer: &Answer, active: &[usize]) -> Result<Effect, Why> {
     let parts = &answer.model().parts;
     let nodal_load = |scene: &Scene, index: usize| -> Result<Vec<f64>, Why> {
         let mut nodal = vec![0.0; parts.body.nodal_dofs()];
@@ -50,29 +50,29 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
         Ok(Effect::of(Change { load, ..unchanged(answer) }))
     };
     match &parameter.kind {
-        Kind::Gap | Kind::GapOf(_) | Kind::InShape(..) => of_rows(scene, parameter, answer, active),
-        Kind::Force(obstacle) => {
+        Datum::Gap | Datum::GapOf(_) | Datum::InShape(..) => of_rows(scene, parameter, answer, active),
+        Datum::Force(obstacle) => {
             let mut change = unchanged(answer);
             if let Some(travel) = parts.travel(*obstacle) {
                 change.load[travel] = parts.share_of(*obstacle, 1.0);
             }
             Ok(Effect::of(change))
         }
-        Kind::Load(index) => of_load(&nodal_load(scene, *index)?),
-        Kind::InLoad(index, _) if parameter.is_linear() => {
+        Datum::Load(index) => of_load(&nodal_load(scene, *index)?),
+        Datum::InLoad(index, _) if parameter.is_linear() => {
             let unit = parameter::unit_load(scene, parameter).map_err(in_words)?;
             of_load(&nodal_load(&unit, *index)?)
         }
-        Kind::InLoad(index, _) => {
+        Datum::InLoad(index, _) => {
             let varied = |by: f64| parameter::varied(scene, parameter, by).map_err(in_words);
             let at = |by: f64| nodal_load(&varied(by)?, *index);
             let scale = if parameter.value == 0.0 { 1.0 } else { parameter.value.abs() };
             let nodal = derivative(at, scale)?.ok_or_else(|| corner(parameter))?;
             of_load(&nodal)
         }
-        Kind::Young(_) | Kind::Poisson(_) | Kind::Temperature(_) => {
+        Datum::Young(_) | Datum::Poisson(_) | Datum::Temperature(_) => {
             let body = derivative_of_body(scene, parameter, &parts.body)?;
-            if let (Kind::Young(_), true) = (&parameter.kind, is_proportional(answer)) {
+            if let (Datum::Young(_), true) = (&parameter.kind, is_proportional(answer)) {
                 let forces = answer.model().problem().stiffness().mul(answer.unknowns());
                 let load = forces.iter().map(|force| -force / parameter.value).collect();
                 return Ok(Effect { body: Some(body), ..Effect::of(Change { load, ..unchanged(answer) }) });
@@ -81,7 +81,7 @@ pub(super) fn effect(scene: &Scene, parameter: &Parameter, answer: &Answer, acti
             let nodal: Vec<f64> = forces.iter().map(|force| -force).collect();
             Ok(Effect { body: Some(body), ..of_load(&nodal)? })
         }
-        Kind::Places => Err("the places of all nodes are many parameters".to_string()),
+        Datum::Places => Err("the places of all nodes are many parameters".to_string()),
     }
 }
 
@@ -100,10 +100,10 @@ fn unchanged(answer: &Answer) -> Change {
 }
 
 /// The body of derivatives by a number of a material, or by a temperature.
-fn derivative_of_body(scene: &Scene, parameter: &Parameter, body: &ElasticBody) -> Result<ElasticBody, Why> {
+fn derivative_of_body(scene: &Scene, parameter: &Variable, body: &ElasticBody) -> Result<ElasticBody, Why> {
     let by = match parameter.kind {
-        Kind::Young(_) => PhaseNumber::Young,
-        Kind::Poisson(_) => PhaseNumber::Poisson,
+        Datum::Young(_) => PhaseNumber::Young,
+        Datum::Poisson(_) => PhaseNumber::Poisson,
         _ => PhaseNumber::Temperature,
     };
     let numbers: Vec<PhaseNumber> = match body.phases().len() {
@@ -127,7 +127,7 @@ fn derivative_of_body(scene: &Scene, parameter: &Parameter, body: &ElasticBody) 
 }
 
 /// The effect of a parameter of the obstacles: of the rows that may be closed.
-fn of_rows(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usize]) -> Result<Effect, Why> {
+fn of_rows(scene: &Scene, parameter: &Variable, answer: &Answer, active: &[usize]) -> Result<Effect, Why> {
     let (model, dimension) = (answer.model(), answer.model().body().dimension());
     let (parts, problem) = (&model.parts, model.problem());
     let mut columns: Vec<(usize, usize)> = Vec::new();
@@ -166,7 +166,7 @@ fn of_rows(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usiz
     };
     let scale = match parameter.unit.is_empty() {
         // A direction or a slope.
-        true if matches!(parameter.kind, Kind::InShape(..)) => parameter.value.abs().max(1.0),
+        true if matches!(parameter.kind, Datum::InShape(..)) => parameter.value.abs().max(1.0),
         _ => parameter.value.abs().max(model.mesh().size()),
     };
     let found = derivative(at, scale)?.ok_or_else(|| corner(parameter))?;
@@ -188,17 +188,12 @@ fn of_rows(scene: &Scene, parameter: &Parameter, answer: &Answer, active: &[usiz
 }
 
 /// The obstacles, and the gap of the scene, with a parameter changed.
-fn obstacles(
-    scene: &Scene,
-    parameter: &Parameter,
-    answer: &Answer,
-    by: f64,
-) -> Result<(Vec<PlacedObstacle>, f64), Why> {
+fn obstacles(scene: &Scene, parameter: &Variable, answer: &Answer, by: f64) -> Result<(Vec<PlacedObstacle>, f64), Why> {
     let parts = &answer.model().parts;
     let (mut obstacles, gap) = (parts.obstacles.clone(), answer.model().gap());
     match &parameter.kind {
-        Kind::GapOf(index) => obstacles[*index] = obstacles[*index].moved(by),
-        Kind::InShape(index, _) => {
+        Datum::GapOf(index) => obstacles[*index] = obstacles[*index].moved(by),
+        Datum::InShape(index, _) => {
             let varied = parameter::varied(scene, parameter, by).map_err(in_words)?;
             // Only rigid shapes have such parameters: the order of bodies does not matter.
             let order = SideOrder::of(&parts.body, std::iter::empty());
@@ -211,7 +206,7 @@ fn obstacles(
     Ok((obstacles, gap))
 }
 
-fn corner(parameter: &Parameter) -> Why {
+fn corner(parameter: &Variable) -> Why {
     format!("`{}` moves a node over a corner of the obstacle, or over an edge of its facets", parameter.name)
 }
 

@@ -30,11 +30,11 @@ const COMPONENTS: [&str; 7] = ["xx", "yy", "zz", "xy", "yz", "zx", "von-mises"];
 pub(crate) struct Output {
     /// As `obstacles[0].force`.
     pub name: String,
-    kind: Kind,
+    kind: Aspect,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Kind {
+enum Aspect {
     /// The sum of the contact forces, of the whole body. This and the next two are of one obstacle or of all.
     Force(Option<usize>),
     PeakPressure(Option<usize>),
@@ -128,24 +128,24 @@ impl Output {
         })
     }
 
-    fn plain(name: &str) -> Option<Kind> {
+    fn plain(name: &str) -> Option<Aspect> {
         let (obstacle, what) = match name.strip_prefix("obstacles[").and_then(|rest| rest.split_once("].")) {
             Some((index, what)) => (Some(index.parse().ok()?), what),
             None => (None, name),
         };
         Some(match what {
-            "force" => Kind::Force(obstacle),
-            "peak-pressure" => Kind::PeakPressure(obstacle),
-            "width" => Kind::Width(obstacle),
-            "travel" => Kind::Travel(obstacle?),
-            "moment" => Kind::Moment(obstacle?, 2),
-            "largest-displacement" => Kind::LargestDisplacement,
-            "strain-energy" => Kind::StrainEnergy,
-            axis => Kind::Moment(obstacle?, axis.strip_prefix("moment[")?.strip_suffix(']')?.parse().ok()?),
+            "force" => Aspect::Force(obstacle),
+            "peak-pressure" => Aspect::PeakPressure(obstacle),
+            "width" => Aspect::Width(obstacle),
+            "travel" => Aspect::Travel(obstacle?),
+            "moment" => Aspect::Moment(obstacle?, 2),
+            "largest-displacement" => Aspect::LargestDisplacement,
+            "strain-energy" => Aspect::StrainEnergy,
+            axis => Aspect::Moment(obstacle?, axis.strip_prefix("moment[")?.strip_suffix(']')?.parse().ok()?),
         })
     }
 
-    fn at_place(what: &str, place: &str, model: &Model, name: &str) -> Result<Option<Kind>, Error> {
+    fn at_place(what: &str, place: &str, model: &Model, name: &str) -> Result<Option<Aspect>, Error> {
         let (place, component) = match place.split_once(':') {
             Some((place, component)) => (place, Some(component)),
             None => (place, None),
@@ -158,9 +158,9 @@ impl Output {
         };
         let at = [0, 1, 2].map(|axis| at.get(axis).copied().unwrap_or(0.0));
         Ok(match (what, component) {
-            ("pressure", None) if !model.obstacles().is_empty() => Some(Kind::PressureAt(at)),
+            ("pressure", None) if !model.obstacles().is_empty() => Some(Aspect::PressureAt(at)),
             ("stress", Some(component)) => {
-                COMPONENTS.iter().position(|known| *known == component).map(|component| Kind::StressAt(at, component))
+                COMPONENTS.iter().position(|known| *known == component).map(|component| Aspect::StressAt(at, component))
             }
             _ => None,
         })
@@ -173,17 +173,17 @@ impl Output {
             (force, length) => format!("{force} {length}"),
         };
         match self.kind {
-            Kind::Force(_) => units.force.clone(),
-            Kind::Moment(..) | Kind::StrainEnergy => product(),
-            Kind::Travel(_) | Kind::Width(_) | Kind::LargestDisplacement => units.length.clone(),
-            Kind::PeakPressure(_) | Kind::PressureAt(_) | Kind::StressAt(..) => units.pressure(),
+            Aspect::Force(_) => units.force.clone(),
+            Aspect::Moment(..) | Aspect::StrainEnergy => product(),
+            Aspect::Travel(_) | Aspect::Width(_) | Aspect::LargestDisplacement => units.length.clone(),
+            Aspect::PeakPressure(_) | Aspect::PressureAt(_) | Aspect::StressAt(..) => units.pressure(),
         }
     }
 
     /// What the number does not say by itself: that it is of several obstacles.
     pub(super) fn note(&self, model: &Model) -> Option<String> {
         let count = model.obstacles().len();
-        let is_sum = matches!(self.kind, Kind::Force(None) | Kind::Width(None)) && count > 1;
+        let is_sum = matches!(self.kind, Aspect::Force(None) | Aspect::Width(None)) && count > 1;
         is_sum
             .then(|| format!("the sum over all {count} obstacles; `obstacles[0].{}` is of the first alone", self.name))
     }
@@ -209,23 +209,23 @@ impl Output {
             vec![branch]
         };
         Ok(match self.kind {
-            Kind::Force(None) => of_rows(&|_| -model.parts_of_whole(), Direct::None),
-            Kind::Force(Some(obstacle)) => {
+            Aspect::Force(None) => of_rows(&|_| -model.parts_of_whole(), Direct::None),
+            Aspect::Force(Some(obstacle)) => {
                 let parts = model.parts.parts_of_obstacle(obstacle);
                 of_rows(&|row| if row.obstacle == obstacle { -parts } else { 0.0 }, Direct::None)
             }
-            Kind::Moment(obstacle, axis) => {
+            Aspect::Moment(obstacle, axis) => {
                 let arm = |row: &ContactRow| moment_of(model, obstacle, place(model, row.node), row.normal, axis);
                 let coefficient = |row: &ContactRow| if row.obstacle == obstacle { arm(row) } else { 0.0 };
                 of_rows(&coefficient, Direct::Moment(obstacle, axis))
             }
-            Kind::Travel(obstacle) => {
+            Aspect::Travel(obstacle) => {
                 let travel = model.parts.travel(obstacle).ok_or("no force presses the obstacle")?;
                 let mut branch = Smooth { value: answer.unknowns()[travel], ..blank() };
                 branch.by_displacement[travel] = 1.0;
                 vec![branch]
             }
-            Kind::PeakPressure(obstacle) => {
+            Aspect::PeakPressure(obstacle) => {
                 let is_of = |row: usize| obstacle.is_none_or(|own| own == model.rows()[row].obstacle);
                 let counts = |row: &usize| is_of(*row) && has_own_pressure(answer, *row);
                 let rows: Vec<usize> = (0..lambda.len()).filter(counts).collect();
@@ -237,14 +237,14 @@ impl Output {
                 let tied = rows.into_iter().filter(|&row| pressure(row) >= (1.0 - TIE) * largest);
                 tied.map(|row| of_pressure(answer, row, blank())).collect()
             }
-            Kind::PressureAt(at) => {
+            Aspect::PressureAt(at) => {
                 let away = |row: &usize| distance(model.mesh().nodes()[model.rows()[*row].node], at);
                 let rows = (0..lambda.len()).filter(|&row| has_own_pressure(answer, row));
                 let nearest = rows.min_by(|a, b| away(a).total_cmp(&away(b))).ok_or("there are no candidates")?;
                 vec![of_pressure(answer, nearest, blank())]
             }
-            Kind::Width(obstacle) => vec![width(answer, obstacle, blank())?],
-            Kind::LargestDisplacement => {
+            Aspect::Width(obstacle) => vec![width(answer, obstacle, blank())?],
+            Aspect::LargestDisplacement => {
                 let values = answer.displacement();
                 let largest = signorini_qp::largest(values);
                 if largest == 0.0 {
@@ -259,14 +259,14 @@ impl Output {
                 };
                 tied.map(of_dof).collect::<Result<_, Why>>()?
             }
-            Kind::StrainEnergy => {
+            Aspect::StrainEnergy => {
                 let parts = model.parts_of_whole();
                 let forces = internal_force(model.body(), answer.displacement()).map_err(in_words)?;
                 let value = parts * (work_to(answer, model.body())? + own_energy(model.body()));
                 let by_displacement = of_nodal(model, &forces)?.iter().map(|force| parts * force).collect();
                 vec![Smooth { value, by_displacement, direct: Direct::Energy, ..blank() }]
             }
-            Kind::StressAt(place, component) => vec![stress(answer, place, component, blank())?],
+            Aspect::StressAt(place, component) => vec![stress(answer, place, component, blank())?],
         })
     }
 }

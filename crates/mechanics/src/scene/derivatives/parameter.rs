@@ -14,10 +14,10 @@ const NO_LENGTHS: [&str; 4] = ["normal", "axis", "slope", "angle"];
 
 /// A number of a scene, or the places of all nodes.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Parameter {
+pub(crate) struct Variable {
     /// As `obstacles[0].radius`.
     pub name: String,
-    pub kind: Kind,
+    pub kind: Datum,
     /// Its value; zero for the places of the nodes.
     pub value: f64,
     /// The unit of the parameter; empty if it is dimensionless.
@@ -26,7 +26,7 @@ pub(crate) struct Parameter {
 
 /// The part of a scene that a parameter is a number of.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum Datum {
     Gap,
     GapOf(usize),
     Force(usize),
@@ -45,7 +45,7 @@ pub(crate) enum Kind {
     Places,
 }
 
-pub(crate) fn named(scene: &Scene, name: &str) -> Result<Parameter, Error> {
+pub(crate) fn named(scene: &Scene, name: &str) -> Result<Variable, Error> {
     let all = all(scene);
     if let Some(found) = all.iter().find(|parameter| parameter.name == name) {
         return Ok(found.clone());
@@ -57,19 +57,19 @@ pub(crate) fn named(scene: &Scene, name: &str) -> Result<Parameter, Error> {
     Err(wrong("--to", format!("there is no parameter `{name}`; there are {}{more}{meant}", listed.join(", "))))
 }
 
-pub(crate) fn all(scene: &Scene) -> Vec<Parameter> {
+pub(crate) fn all(scene: &Scene) -> Vec<Variable> {
     let (length, force) = (scene.units.length.clone(), scene.units.force.clone());
     let (pressure, none) = (scene.units.pressure(), String::new);
     let mut all = Vec::new();
-    let mut add = |name: String, kind: Kind, value: f64, unit: String| all.push(Parameter { name, kind, value, unit });
+    let mut add = |name: String, kind: Datum, value: f64, unit: String| all.push(Variable { name, kind, value, unit });
     if !scene.obstacles.is_empty() {
-        add("gap".into(), Kind::Gap, scene.gap, length.clone());
+        add("gap".into(), Datum::Gap, scene.gap, length.clone());
     }
     for (index, obstacle) in scene.obstacles.iter().enumerate() {
         let named = |field: &str| format!("obstacles[{index}].{field}");
         match obstacle.force {
-            Some(value) => add(named("force"), Kind::Force(index), value, force.clone()),
-            None => add(named("gap"), Kind::GapOf(index), obstacle.gap.unwrap_or(0.0), length.clone()),
+            Some(value) => add(named("force"), Datum::Force(index), value, force.clone()),
+            None => add(named("gap"), Datum::GapOf(index), obstacle.gap.unwrap_or(0.0), length.clone()),
         }
         if obstacle.shape.shape().other_boundary().is_some() {
             continue;
@@ -77,11 +77,11 @@ pub(crate) fn all(scene: &Scene) -> Vec<Parameter> {
         for (pointer, value) in numbers_of(&obstacle.shape) {
             let is_length = !NO_LENGTHS.iter().any(|word| pointer.split('/').any(|part| part == *word));
             let unit = if is_length { length.clone() } else { none() };
-            add(named(&in_words(&pointer)), Kind::InShape(index, pointer), value, unit);
+            add(named(&in_words(&pointer)), Datum::InShape(index, pointer), value, unit);
         }
     }
     for (index, load) in scene.loads.iter().enumerate() {
-        add(format!("loads[{index}]"), Kind::Load(index), 1.0, none());
+        add(format!("loads[{index}]"), Datum::Load(index), 1.0, none());
         for (pointer, value) in numbers_of(load) {
             let name = in_words(&pointer);
             let name = if name.starts_with('[') || name.is_empty() { name } else { format!(".{name}") };
@@ -93,97 +93,93 @@ pub(crate) fn all(scene: &Scene) -> Vec<Parameter> {
                 Some("nodal-forces") => force.clone(),
                 _ => none(),
             };
-            add(format!("loads[{index}]{name}"), Kind::InLoad(index, pointer), value, unit);
+            add(format!("loads[{index}]{name}"), Datum::InLoad(index, pointer), value, unit);
         }
     }
     let text = serde_json::to_value(scene).unwrap_or_default();
-    let (mut materials, mut temperatures) = (Vec::new(), Vec::new());
+    let number = |pointer: &str| text.pointer(pointer).and_then(Value::as_f64);
+    let count = |pointer: String| text.pointer(&pointer).and_then(Value::as_array).map_or(0, Vec::len);
     let further = (0..scene.further_bodies.len())
         .map(|body| (format!("further-bodies[{body}]."), format!("/further-bodies/{body}")));
-    for (name, place) in std::iter::once((String::new(), String::new())).chain(further) {
-        let count = |key: &str| text.pointer(&format!("{place}/{key}")).and_then(Value::as_array).map_or(0, Vec::len);
-        materials.push((name.clone(), format!("{place}/material")));
-        for part in 0..count("materials") {
-            materials.push((format!("{name}materials[{part}]."), format!("{place}/materials/{part}/material")));
-        }
-        for entry in 0..count("temperature") {
-            temperatures.push((format!("{name}temperature[{entry}]"), format!("{place}/temperature/{entry}/value")));
-        }
-    }
-    let number = |pointer: &str| text.pointer(pointer).and_then(Value::as_f64);
-    for (name, place) in materials {
-        let [young, poisson] = ["young", "poisson"].map(|key| format!("{place}/{key}"));
-        if let Some(value) = number(&young) {
-            add(format!("{name}young"), Kind::Young(young), value, pressure.clone());
-        }
-        if let Some(value) = number(&poisson) {
-            add(format!("{name}poisson"), Kind::Poisson(poisson), value, none());
+    let bodies: Vec<(String, String)> = std::iter::once((String::new(), String::new())).chain(further).collect();
+    for (name, body) in &bodies {
+        let of_part = |part| (format!("{name}materials[{part}]."), format!("{body}/materials/{part}/material"));
+        let parts = (0..count(format!("{body}/materials"))).map(of_part);
+        for (name, material) in std::iter::once((name.clone(), format!("{body}/material"))).chain(parts) {
+            let [young, poisson] = ["young", "poisson"].map(|key| format!("{material}/{key}"));
+            if let Some(value) = number(&young) {
+                add(format!("{name}young"), Datum::Young(young), value, pressure.clone());
+            }
+            if let Some(value) = number(&poisson) {
+                add(format!("{name}poisson"), Datum::Poisson(poisson), value, none());
+            }
         }
     }
-    for (name, pointer) in temperatures {
-        if let Some(value) = number(&pointer) {
-            add(name, Kind::Temperature(pointer), value, "degree".into());
+    for (name, body) in &bodies {
+        for entry in 0..count(format!("{body}/temperature")) {
+            let place = format!("{body}/temperature/{entry}/value");
+            if let Some(value) = number(&place) {
+                let name = format!("{name}temperature[{entry}]");
+                add(name, Datum::Temperature(place), value, "degree".into());
+            }
         }
     }
-    add("nodes".into(), Kind::Places, 0.0, length);
+    add("nodes".into(), Datum::Places, 0.0, length);
     all
 }
 
 /// The scene with a parameter of its shapes, loads, materials or temperatures changed by `by`.
-pub(crate) fn varied(scene: &Scene, parameter: &Parameter, by: f64) -> Result<Scene, Error> {
+pub(crate) fn varied(scene: &Scene, parameter: &Variable, by: f64) -> Result<Scene, Error> {
     let mut varied = scene.clone();
     let value = parameter.value + by;
     let refused = |error: serde_json::Error| wrong(parameter.name.as_str(), error.to_string());
     match &parameter.kind {
-        Kind::Gap => varied.gap = value,
-        Kind::GapOf(index) => varied.obstacles[*index].gap = Some(value),
-        Kind::Force(index) => varied.obstacles[*index].force = Some(value),
-        Kind::InLoad(index, pointer) => {
-            varied.loads[*index] = with_number(&varied.loads[*index], pointer, value).map_err(refused)?;
+        Datum::Gap => varied.gap = value,
+        Datum::GapOf(index) => varied.obstacles[*index].gap = Some(value),
+        Datum::Force(index) => varied.obstacles[*index].force = Some(value),
+        Datum::InLoad(index, place) => {
+            varied.loads[*index] = with_numbers(&scene.loads[*index], [(place, value)]).map_err(refused)?;
         }
-        Kind::InShape(index, pointer) => {
-            let shape = &varied.obstacles[*index].shape;
-            varied.obstacles[*index].shape = with_number(shape, pointer, value).map_err(refused)?;
+        Datum::InShape(index, place) => {
+            let shape = &scene.obstacles[*index].shape;
+            varied.obstacles[*index].shape = with_numbers(shape, [(place, value)]).map_err(refused)?;
         }
-        Kind::Young(pointer) | Kind::Poisson(pointer) | Kind::Temperature(pointer) => {
-            let changed: Scene = with_number(scene, pointer, value).map_err(refused)?;
+        Datum::Young(place) | Datum::Poisson(place) | Datum::Temperature(place) => {
+            let changed: Scene = with_numbers(scene, [(place, value)]).map_err(refused)?;
             let (folder, reads_outside, is_linear) = (scene.folder.clone(), scene.reads_outside, scene.is_linear);
             varied = Scene { folder, reads_outside, is_linear, noted: scene.noted.clone(), ..changed };
         }
-        Kind::Load(index) => {
-            for (pointer, number) in numbers_of(&scene.loads[*index]) {
-                let number = match is_linear_in(&pointer) {
-                    true => number * value,
-                    false if pointer.ends_with("/omega") => number * value.max(0.0).sqrt(),
-                    false => continue,
-                };
-                varied.loads[*index] = with_number(&varied.loads[*index], &pointer, number).map_err(refused)?;
-            }
+        Datum::Load(index) => {
+            let numbers = numbers_of(&scene.loads[*index]);
+            let times = numbers.iter().filter_map(|(place, number)| match is_linear_in(place) {
+                true => Some((place, number * value)),
+                false if place.ends_with("/omega") => Some((place, number * value.max(0.0).sqrt())),
+                false => None,
+            });
+            varied.loads[*index] = with_numbers(&scene.loads[*index], times).map_err(refused)?;
         }
-        Kind::Places => return Err(wrong("nodes", "the places of all nodes are no single number")),
+        Datum::Places => return Err(wrong("nodes", "the places of all nodes are no single number")),
     }
     Ok(varied)
 }
 
-impl Parameter {
+impl Variable {
     /// Returns `true` for a number of a load to which its forces are proportional.
     pub fn is_linear(&self) -> bool {
-        matches!(&self.kind, Kind::InLoad(_, pointer) if is_linear_in(pointer))
+        matches!(&self.kind, Datum::InLoad(_, pointer) if is_linear_in(pointer))
     }
 }
 
 /// The scene with a one in the place of a number to which a load is proportional, and zeros in those of its other
 /// components.
-pub(crate) fn unit_load(scene: &Scene, parameter: &Parameter) -> Result<Scene, Error> {
+pub(crate) fn unit_load(scene: &Scene, parameter: &Variable) -> Result<Scene, Error> {
     let mut unit = scene.clone();
-    let Kind::InLoad(index, own) = &parameter.kind else { return Ok(unit) };
-    for (pointer, _) in numbers_of(&scene.loads[*index]) {
-        if is_linear_in(&pointer) {
-            let number = if pointer == *own { 1.0 } else { 0.0 };
-            unit.loads[*index] = with_number(&unit.loads[*index], &pointer, number)
-                .map_err(|error| wrong(parameter.name.as_str(), error.to_string()))?;
-        }
-    }
+    let Datum::InLoad(index, own) = &parameter.kind else { return Ok(unit) };
+    let numbers = numbers_of(&scene.loads[*index]);
+    let linear = numbers.iter().map(|(place, _)| place).filter(|place| is_linear_in(place));
+    let ones = linear.map(|place| (place, if place == own { 1.0 } else { 0.0 }));
+    unit.loads[*index] =
+        with_numbers(&scene.loads[*index], ones).map_err(|error| wrong(parameter.name.as_str(), error.to_string()))?;
     Ok(unit)
 }
 
@@ -227,14 +223,16 @@ fn in_words(place: &str) -> String {
     name
 }
 
-fn with_number<T: serde::Serialize + serde::de::DeserializeOwned>(
+/// A part of a scene with numbers at some places of its text.
+fn with_numbers<'a, T: serde::Serialize + serde::de::DeserializeOwned>(
     part: &T,
-    place: &str,
-    value: f64,
+    numbers: impl IntoIterator<Item = (&'a String, f64)>,
 ) -> Result<T, serde_json::Error> {
     let mut text = serde_json::to_value(part)?;
-    if let Some(entry) = text.pointer_mut(place) {
-        *entry = Value::from(value);
+    for (place, value) in numbers {
+        if let Some(entry) = text.pointer_mut(place) {
+            *entry = Value::from(value);
+        }
     }
     serde_json::from_value(text)
 }

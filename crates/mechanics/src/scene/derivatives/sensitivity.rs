@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::effect::{Effect, Why, effect};
 use super::output::{Output, Smooth};
-use super::parameter::{self, Kind, Parameter};
+use super::parameter::{self, Datum, Variable};
 use super::places::{Pairing, by_places};
 use crate::error::Error;
 use crate::scene::answers::answer::Answer;
@@ -91,7 +91,7 @@ impl Sensitivities {
             return Err(wrong("analysis", message));
         }
         let outputs: Vec<Output> = outputs.iter().map(|name| Output::of(name, &model)).collect::<Result<_, _>>()?;
-        let parameters: Vec<Parameter> =
+        let parameters: Vec<Variable> =
             parameters.iter().map(|name| parameter::named(scene, name)).collect::<Result<_, _>>()?;
         let (answer, solution, derivatives) = proven(&model, settings)?;
         let clock = Instant::now();
@@ -119,10 +119,10 @@ struct At<'a> {
 }
 
 impl At<'_> {
-    fn all(&self, outputs: &[Output], parameters: &[Parameter]) -> Result<Vec<Sensitivity>, Error> {
+    fn all(&self, outputs: &[Output], parameters: &[Variable]) -> Result<Vec<Sensitivity>, Error> {
         let active = self.active();
-        let of = |parameter: &Parameter| match parameter.kind {
-            Kind::Places => None,
+        let of = |parameter: &Variable| match parameter.kind {
+            Datum::Places => None,
             _ => Some(effect(self.scene, parameter, self.answer, &active)),
         };
         let effects: Vec<Option<Result<Effect, Why>>> = parameters.iter().map(of).collect();
@@ -142,13 +142,13 @@ impl At<'_> {
     fn of_output(
         &self,
         output: &Output,
-        parameters: &[Parameter],
+        parameters: &[Variable],
         effects: &[Option<Result<Effect, Why>>],
     ) -> Result<Sensitivity, Error> {
         let model = self.answer.model();
         let unit = output.unit(model);
         let unknown = |why: &Why| Derivative::Unknown { why: why.clone() };
-        let row = |parameter: &Parameter, derivative, relative, places| ByParameter {
+        let row = |parameter: &Variable, derivative, relative, places| ByParameter {
             parameter: parameter.name.clone(),
             value: parameter.value,
             unit: parameter.unit.clone(),

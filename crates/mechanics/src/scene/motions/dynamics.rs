@@ -78,6 +78,36 @@ pub struct MovingObstacle {
 
 pub(crate) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<Dynamics>, Error> {
     let Some(spec) = scene.dynamic() else { return Ok(None) };
+    let (scheme, form) = checked(model, spec)?;
+    let path = |index: usize| format!("{PATH}.watch[{index}]");
+    let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
+    let watched = watched.collect::<Result<_, Error>>()?;
+    let loads = loads_in_time(scene, model.body(), spec)?;
+    let nodal_mass = mass_of_nodes(model, form)?;
+    let mass = mass_of_unknowns(model, &nodal_mass)?;
+    let moving = moving(model, spec, mass, &loads)?;
+    let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
+    let mut problem = starting(model, spec, moving)?;
+    if scheme.about().uses_frequency {
+        problem = problem.bounded_by(largest_frequency(model, form)?);
+    }
+    let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
+    let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
+    let gains = |name: &str| {
+        let message = format!(
+            "the scheme `{name}` can gain energy at every impact: it is for comparison only; take `fox-goodwin` or \
+             `contact-stabilised` for answers"
+        );
+        Warning::new("gains-energy", message)
+    };
+    let warnings = scheme.gains_energy().then(|| gains(scheme.name())).into_iter().collect();
+    let windows = [WINDOW * crossing_time(model).unwrap_or(0.0), PEAK_CELLS * wave_time(model.body())];
+    let frames = spec.frames;
+    Ok(Some(Dynamics { problem, scheme, step, steps, frames, windows, watched, supports, obstacles, warnings }))
+}
+
+/// The scheme and the form of the mass of a motion that is possible.
+fn checked(model: &Model, spec: &DynamicSpec) -> Result<(Scheme, MassForm), Error> {
     let quadratic = model.mesh().kinds().find(|kind| kind.is_quadratic());
     if let Some(kind) = quadratic.filter(|_| !model.dofs().basis.is_nodal()) {
         let message = format!(
@@ -121,31 +151,7 @@ pub(crate) fn dynamics(scene: &Scene, model: &Model) -> Result<Option<Dynamics>,
         );
         return Err(refused("unstable", format!("{PATH}.mass"), message));
     }
-    let path = |index: usize| format!("{PATH}.watch[{index}]");
-    let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
-    let watched = watched.collect::<Result<_, Error>>()?;
-    let loads = loads_in_time(scene, model.body(), spec)?;
-    let nodal_mass = mass_of_nodes(model, form)?;
-    let mass = mass_of_unknowns(model, &nodal_mass)?;
-    let moving = moving(model, spec, mass, &loads)?;
-    let (moving, obstacles) = spec.with_moving_obstacles(model, moving, scheme)?;
-    let mut problem = starting(model, spec, moving)?;
-    if scheme.about().uses_frequency {
-        problem = problem.bounded_by(largest_frequency(model, form)?);
-    }
-    let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
-    let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
-    let gains = |name: &str| {
-        let message = format!(
-            "the scheme `{name}` can gain energy at every impact: it is for comparison only; take `fox-goodwin` or \
-             `contact-stabilised` for answers"
-        );
-        Warning::new("gains-energy", message)
-    };
-    let warnings = scheme.gains_energy().then(|| gains(scheme.name())).into_iter().collect();
-    let windows = [WINDOW * crossing_time(model).unwrap_or(0.0), PEAK_CELLS * wave_time(model.body())];
-    let frames = spec.frames;
-    Ok(Some(Dynamics { problem, scheme, step, steps, frames, windows, watched, supports, obstacles, warnings }))
+    Ok((scheme, form))
 }
 
 /// Mass, damping, loads in time: the motion from rest.
@@ -423,17 +429,16 @@ impl DynamicSpec {
             }
         };
         let count = |step: f64| (self.duration / step * (1.0 - STEP_ROUNDING)).ceil();
-        let too_many = |step: f64| {
-            let message = format!("{:.2e} steps of {} are too many; take a longer step", count(step), number(step));
-            wrong(format!("{PATH}.step"), message)
+        let checked = |step: f64| match count(step) > MOST_STEPS {
+            false => Ok(step),
+            true => {
+                let message = format!("{:.2e} steps of {} are too many; take a longer step", count(step), number(step));
+                Err(wrong(format!("{PATH}.step"), message))
+            }
         };
-        if count(step) > MOST_STEPS {
-            return Err(too_many(step));
-        }
-        let step = exact.filter(|step| step.is_finite()).map_or(step, |exact| exact.min(self.duration));
-        if count(step) > MOST_STEPS {
-            return Err(too_many(step));
-        }
+        let step = checked(step)?;
+        let exact = exact.filter(|step| step.is_finite());
+        let step = checked(exact.map_or(step, |exact| exact.min(self.duration)))?;
         Ok((step, (count(step) as usize).max(1)))
     }
 
