@@ -254,7 +254,8 @@ impl DofMap {
     /// length: motions that nodes follow by least squares; zero for those without nodes.
     #[doc(hidden)]
     pub fn nearest(&self, at: impl Fn(usize) -> [f64; 3]) -> Vec<f64> {
-        let of_dof = |&dof: &usize| dot(self.axes(dof / self.dimension)[dof % self.dimension], at(dof / self.dimension));
+        let of_dof =
+            |&dof: &usize| dot(self.axes(dof / self.dimension)[dof % self.dimension], at(dof / self.dimension));
         let mut values: Vec<f64> = self.free.iter().map(of_dof).collect();
         values.resize(self.count(), 0.0);
         for group in 0..self.groups() {
@@ -604,9 +605,7 @@ pub fn rigid_motions(body: &ElasticBody) -> (usize, impl Fn(usize, [f64; 3]) -> 
     };
     let motion = move |mode: usize, place: [f64; 3]| match mode.checked_sub(dimension) {
         None => COORDINATES[mode],
-        Some(turn) => {
-            cross(COORDINATES[axes[turn]], [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size))
-        }
+        Some(turn) => cross(COORDINATES[axes[turn]], [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size)),
     };
     (dimension + axes.len(), motion)
 }

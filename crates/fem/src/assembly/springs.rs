@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{DofMap, LinearForm};
 use super::element_stiffness::Block;
 use super::load::for_each_point;
+use super::{DofMap, LinearForm};
 use crate::body::ElasticBody;
 use crate::geometry::{length, unit};
 use crate::mesh::Boundary;

@@ -64,7 +64,8 @@ pub fn stiffness_on(body: &ElasticBody, dofs: &DofMap, springs: &[Springs]) -> R
     let bounds: Vec<usize> = groups.iter().map(|&group| starts[pattern.first_column(group)]).collect();
     let congruent = Congruent::of(body);
     on_parts(&mut values, &bounds, |part, values| {
-        let columns = Columns { starts: &starts, rows: &rows, range: groups[part]..groups[part + 1], first: bounds[part] };
+        let columns =
+            Columns { starts: &starts, rows: &rows, range: groups[part]..groups[part + 1], first: bounds[part] };
         columns.add_elements(body, dofs, &congruent, values);
     });
     let all = Columns { starts: &starts, rows: &rows, range: 0..pattern.groups(), first: 0 };

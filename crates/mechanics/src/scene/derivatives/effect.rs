@@ -90,7 +90,10 @@ pub(super) fn effect(scene: &Scene, parameter: &Variable, answer: &Answer, activ
 fn is_proportional(answer: &Answer) -> bool {
     let parts = &answer.model().parts;
     let is_one = parts.body.phases().len() == 1 && !parts.body.has_own_stress();
-    is_one && parts.conditions.springs.is_empty() && parts.conditions.rigid_faces.is_empty() && !parts.conditions.dofs.is_moved()
+    is_one
+        && parts.conditions.springs.is_empty()
+        && parts.conditions.rigid_faces.is_empty()
+        && !parts.conditions.dofs.is_moved()
 }
 
 /// No change of the problem of an answer.
@@ -134,9 +137,8 @@ fn of_rows(scene: &Scene, parameter: &Variable, answer: &Answer, active: &[usize
     for &row in active {
         let ends = model.rows()[row].ends.iter().map(|end| end.0);
         let of_axes = ends.flat_map(|node| (0..dimension).map(move |axis| (node, axis)));
-        let of_ends = of_axes.flat_map(|(node, axis)| {
-            parts.conditions.dofs.along(node, &COORDINATES[axis][..dimension]).free
-        });
+        let of_ends =
+            of_axes.flat_map(|(node, axis)| parts.conditions.dofs.along(node, &COORDINATES[axis][..dimension]).free);
         let travel = parts.travel(model.rows()[row].obstacle);
         let mut of_row: Vec<usize> = of_ends.map(|entry| entry.0).chain(travel).collect();
         of_row.sort_unstable();

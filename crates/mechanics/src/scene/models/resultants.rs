@@ -336,7 +336,8 @@ pub(crate) fn tie_resultants(model: &Model, displacement: &[f64], of_ties: &[f64
         let on = name_of_body(model, first);
         let shortening = ties.shortenings.iter().find(|one| one.tie == index);
         let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
-        let shortening = shortening.map(|one| one.sense * one.form.through(model.dofs(), model.body().dimension()).value(unknowns));
+        let shortening =
+            shortening.map(|one| one.sense * one.form.through(model.dofs(), model.body().dimension()).value(unknowns));
         Resultant { on, shortening, tension, ..sum.resultant(model, of) }
     };
     ties.of_tie.iter().enumerate().map(of_tie).collect()

@@ -75,12 +75,7 @@ impl SpringSpec {
     }
 
     /// The stiffness per area of springs under a boundary, along the axes and along the normal.
-    fn spread_over(
-        &self,
-        path: &str,
-        body: &ElasticBody,
-        boundary: &Boundary,
-    ) -> Result<([f64; 3], f64), Error> {
+    fn spread_over(&self, path: &str, body: &ElasticBody, boundary: &Boundary) -> Result<([f64; 3], f64), Error> {
         let along = self.along_axes(path, body.dimension())?;
         let share = match self.stiffness {
             StiffnessOf::PerArea => 1.0,

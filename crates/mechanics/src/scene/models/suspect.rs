@@ -138,8 +138,7 @@ fn coincident_nodes(body: &ElasticBody, tied: &HashSet<usize>) -> Option<Warning
 pub(crate) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     let dimension = parts.body.dimension();
     let mut warnings = Vec::new();
-    let is_held =
-        |node: usize| (0..dimension).all(|axis| parts.conditions.dofs.is_supported(dimension * node + axis));
+    let is_held = |node: usize| (0..dimension).all(|axis| parts.conditions.dofs.is_supported(dimension * node + axis));
     for (index, obstacle) in parts.obstacles.iter().enumerate() {
         let all = obstacle.candidates();
         let held = all.iter().filter(|candidate| is_held(candidate.0)).count();

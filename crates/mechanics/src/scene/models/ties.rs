@@ -54,12 +54,7 @@ impl Ties {
 }
 
 /// The ties, without equations that supports alone fulfil.
-pub(crate) fn tied(
-    scene: &Scene,
-    body: &ElasticBody,
-    dofs: &DofMap,
-    points: &ReferencePoints,
-) -> Result<Ties, Error> {
+pub(crate) fn tied(scene: &Scene, body: &ElasticBody, dofs: &DofMap, points: &ReferencePoints) -> Result<Ties, Error> {
     if !scene.ties.is_empty() && scene.dynamic().is_some() {
         return Err(wrong("ties", "ties are for equilibria only; a motion has only supports"));
     }

@@ -47,7 +47,8 @@ pub(crate) fn following(dofs: DofMap, body: &ElasticBody, faces: &[RigidFace]) -
     }
     let followers = |face: &RigidFace| {
         let free = || face.motions.iter().filter(|motion| motion.prescribed.is_none());
-        let in_model = |vector: [f64; 3]| [0, 1, 2].map(|axis| if axis < body.dimension() { vector[axis] } else { 0.0 });
+        let in_model =
+            |vector: [f64; 3]| [0, 1, 2].map(|axis| if axis < body.dimension() { vector[axis] } else { 0.0 });
         let moved = |node: usize| {
             let at = dofs.basis.place(body.mesh().nodes(), node);
             let by_one = free().map(|motion| face.displacement(motion, at).map(|part| part * face.unit(motion)));

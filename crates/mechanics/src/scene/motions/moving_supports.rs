@@ -46,9 +46,7 @@ impl MovingSupports {
         let (body, dofs) = (model.body(), model.dofs());
         let dimension = body.dimension();
         // The displacement of a node along an axis, times a value, in the unknowns.
-        let along = |node: usize, axis: usize, value: f64| {
-            dofs.along(node, &along_axis(axis, value)[..dimension])
-        };
+        let along = |node: usize, axis: usize, value: f64| dofs.along(node, &along_axis(axis, value)[..dimension]);
         let is_held = |node: usize| (dimension * node..dimension * (node + 1)).any(|dof| dofs.is_supported(dof));
         let count = if !model.parts.scene.supports.is_empty() { model.mesh().nodes().len() } else { 0 };
         let nodes: Vec<usize> = (0..count).filter(|&node| is_held(node)).collect();

@@ -35,7 +35,6 @@ use crate::fem::body::BodyElement;
 use crate::fem::element::Cell;
 use crate::fem::geometry::{COORDINATES, Symmetric, cross, distance, dot, minus};
 use crate::fem::{Boundary, ElasticBody};
-use crate::scene::{Model, Scene};
 use crate::scene::answers::answer::Answer;
 use crate::scene::input::entry::boundary;
 use crate::scene::input::profile::Profile;
@@ -44,6 +43,7 @@ use crate::scene::input::schema::{PlaceSpec, SupportSpec, TieSpec};
 use crate::scene::models::load::{Acting, acting};
 use crate::scene::models::model::{check_multiplier, place};
 use crate::scene::models::rows::ContactRow;
+use crate::scene::{Model, Scene};
 
 /// The change of R with the place of each node (length `dim * n_nodes`, order `[x_0, y_0, x_1, ...]`), per length.
 pub(crate) fn by_places(scene: &Scene, pairing: &Pairing) -> Result<Vec<f64>, String> {
@@ -99,10 +99,12 @@ pub(crate) fn add_loads(
                 centrifugal_by_places(body, omega, axis, virtual_displacement, gradient)?;
             }
             Acting::Traction { boundary, traction, profile } => {
-                on(boundary).add_traction(traction, profile.as_ref(), gradient);
+                let work = |_: &FacetPoint, moved: [f64; 3]| dot(traction, moved);
+                on(boundary).add_profiled(work, 0.0, profile.as_ref(), gradient);
             }
             Acting::Pressure { boundary, pressure, profile } => {
-                on(boundary).add_pressure(pressure, profile.as_ref(), gradient);
+                let work = |point: &FacetPoint, moved: [f64; 3]| -pressure * dot(point.normal, moved);
+                on(boundary).add_profiled(work, pressure, profile.as_ref(), gradient);
             }
             Acting::Spread { boundary, force } => on(boundary).add_spread(force, gradient),
             Acting::Moment { boundary, moment } => on(boundary).add_moment(moment, gradient),
@@ -111,7 +113,6 @@ pub(crate) fn add_loads(
     Ok(())
 }
 
-/// A boundary under a load, with the virtual displacement of all nodes.
 struct Loaded<'a> {
     body: &'a ElasticBody,
     boundary: &'a Boundary,
@@ -123,27 +124,27 @@ impl Loaded<'_> {
         at_point(self.body, self.virtual_displacement, point)
     }
 
-    fn add_traction(&self, traction: [f64; 3], profile: Option<&Profile>, gradient: &mut [f64]) {
+    /// The `work` of a traction on a displacement, times the factor of a profile; `pressure` is its part that turns
+    /// with the normal.
+    fn add_profiled(
+        &self,
+        work: impl Fn(&FacetPoint, [f64; 3]) -> f64,
+        pressure: f64,
+        profile: Option<&Profile>,
+        gradient: &mut [f64],
+    ) {
         let density = |point: &FacetPoint| {
-            let (factor, slope) = factor(profile, point.at);
-            let work = dot(traction, self.moved(point));
-            Density { value: factor * work, by_place: slope.map(|part| part * work), by_normal: [0.0; 3] }
-        };
-        integral_by_places(self.body, self.boundary, points(profile), density, gradient);
-    }
-
-    fn add_pressure(&self, pressure: f64, profile: Option<&Profile>, gradient: &mut [f64]) {
-        let density = |point: &FacetPoint| {
-            let (factor, slope) = factor(profile, point.at);
+            let (factor, slope) = profile.map_or((1.0, [0.0; 3]), |own| (own.at(point.at), own.by_place(point.at)));
             let moved = self.moved(point);
-            let inwards = -pressure * dot(point.normal, moved);
+            let work = work(point, moved);
             Density {
-                value: factor * inwards,
-                by_place: slope.map(|part| part * inwards),
+                value: factor * work,
+                by_place: slope.map(|part| part * work),
                 by_normal: moved.map(|part| -pressure * factor * part),
             }
         };
-        integral_by_places(self.body, self.boundary, points(profile), density, gradient);
+        let points = profile.map_or(Points::Own, |profile| Points::Fine(profile.kinks()));
+        integral_by_places(self.body, self.boundary, points, density, gradient);
     }
 
     /// The traction is the force over the area, which changes too.
@@ -222,15 +223,6 @@ pub(crate) fn add_springs(
 
 fn at_point(body: &ElasticBody, nodal: &[f64], point: &FacetPoint) -> [f64; 3] {
     interpolated(&body.gather(nodal, point.nodes), &point.shape, point.nodes.len())
-}
-
-/// The factor of a profile at a place, and its change with the place.
-fn factor(profile: Option<&Profile>, at: [f64; 3]) -> (f64, [f64; 3]) {
-    profile.map_or((1.0, [0.0; 3]), |profile| (profile.at(at), profile.by_place(at)))
-}
-
-fn points(profile: Option<&Profile>) -> Points<'_> {
-    profile.map_or(Points::Own, |profile| Points::Fine(profile.kinks()))
 }
 
 impl Smooth {

@@ -354,7 +354,6 @@ fn add_row(
     Ok(())
 }
 
-/// Adds `factor` times a vector at a node.
 pub(super) fn add_at(gradient: &mut [f64], dimension: usize, node: usize, factor: f64, vector: [f64; 3]) {
     let own = &mut gradient[dimension * node..dimension * (node + 1)];
     own.iter_mut().zip(vector).for_each(|(sum, part)| *sum += factor * part);

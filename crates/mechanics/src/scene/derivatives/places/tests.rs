@@ -88,7 +88,6 @@ impl<'a> Moving<'a> {
         (answer, random(unknowns, 3), random(rows, 4))
     }
 
-    /// Checks the residual, and the areas of the rows.
     fn check_with_areas(&self) {
         self.check(0);
         self.check_areas();
@@ -150,24 +149,44 @@ fn assert_close(found: &[f64], expected: &[Option<f64>], most_skipped: usize) {
 
 const MATERIAL: &str = r#""material": {"young": 2, "poisson": 0.3, "density": 1.5, "expansion": 0.1}"#;
 
+/// A rectangle of elements, between two places and in so many parts along x, and along y.
+fn rectangle(element: &str, [x, y]: [([f64; 2], usize); 2]) -> String {
+    let lines = |(points, parts): ([f64; 2], usize)| format!(r#"{{"points": {points:?}, "divisions": [{parts}]}}"#);
+    format!(r#"{{"rectangle": {{"x": {}, "y": {}, "element": "{element}"}}}}"#, lines(x), lines(y))
+}
+
+/// A scene of this body.
+fn of_body(model: &str, body: &str, rest: &str) -> Scene {
+    scene(&format!(r#"{{"model": "{model}", {MATERIAL}, "body": {body}, {rest}}}"#))
+}
+
 /// A rectangle from 1 to 2 and from 0 to 1, with its bottom held.
 fn plane(model: &str, element: &str, rest: &str) -> Scene {
-    scene(&format!(
-        r#"{{"model": "{model}", {MATERIAL},
-            "body": {{"rectangle": {{"x": {{"points": [1, 2], "divisions": [2]}}, "y": {{"points": [0, 1], "divisions": [2]}},
-                "element": "{element}"}}}},
-            "supports": [{{"on": {{"boundary": "bottom"}}, "x": 0.02, "y": -0.01}}], {rest}}}"#
-    ))
+    let held = r#""supports": [{"on": {"boundary": "bottom"}, "x": 0.02, "y": -0.01}]"#;
+    of_body(model, &rectangle(element, [([1.0, 2.0], 2), ([0.0, 1.0], 2)]), &format!("{held}, {rest}"))
 }
 
 /// A box from -0.5 to 0.5 along x and y and from 0 to 1 along z, with its bottom held.
 fn space(element: &str, rest: &str) -> Scene {
-    let across = r#"{"points": [-0.5, 0.5], "divisions": [2]}"#;
-    scene(&format!(
-        r#"{{"model": "space", {MATERIAL},
-            "body": {{"box": {{"x": {across}, "y": {across}, "z": {{"points": [0, 1], "divisions": [1]}}, "element": "{element}"}}}},
-            "supports": [{{"on": {{"boundary": "bottom"}}, "x": 0, "y": 0.01, "z": 0}}], {rest}}}"#
-    ))
+    space_in(2, element, rest)
+}
+
+/// The same in so many parts along x and y.
+fn space_in(parts: usize, element: &str, rest: &str) -> Scene {
+    let across = format!(r#"{{"points": [-0.5, 0.5], "divisions": [{parts}]}}"#);
+    let z = r#"{"points": [0, 1], "divisions": [1]}"#;
+    let body = format!(r#"{{"box": {{"x": {across}, "y": {across}, "z": {z}, "element": "{element}"}}}}"#);
+    let held = r#""supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0.01, "z": 0}]"#;
+    of_body("space", &body, &format!("{held}, {rest}"))
+}
+
+/// A square with its left side on a plane of symmetry, on rollers, in so many columns.
+fn half(columns: usize, shape: &str) -> Scene {
+    let rest = format!(
+        r#""symmetry": ["x"], "supports": [{{"on": {{"boundary": "bottom"}}, "y": 0}}], {}"#,
+        obstacle("+y", "approach", shape)
+    );
+    of_body("plane-strain", &rectangle("q4", [([0.0, 1.0], columns), ([0.0, 1.0], 1)]), &rest)
 }
 
 fn obstacle(approach: &str, rule: &str, shape: &str) -> String {
@@ -277,12 +296,7 @@ fn widths_change_as_differences_say() {
             Moving::of(&scene, |_| true).check_output("width", closed.clone(), 0);
         }
     }
-    let symmetric = scene(&format!(
-        r#"{{"model": "plane-strain", {MATERIAL}, "symmetry": ["x"],
-            "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [4]}}, "y": {{"points": [0, 1], "divisions": [1]}}}}}},
-            "supports": [{{"on": {{"boundary": "bottom"}}, "y": 0}}], {}}}"#,
-        obstacle("+y", "approach", r#"{"circle": {"apex": [0, 1.1], "radius": 1.5}}"#)
-    ));
+    let symmetric = half(4, r#"{"circle": {"apex": [0, 1.1], "radius": 1.5}}"#);
     for closed in [0..1, 0..2, 0..3] {
         Moving::of(&symmetric, |at| at[0] > 0.0).check_output("width", closed, 2);
     }
@@ -309,28 +323,18 @@ fn moments_change_as_differences_say() {
 fn rows_of_coefficients_change_as_differences_say() {
     for (rule, radius) in [("approach", 0.55), ("approach", 2.0), ("closest-point", 2.0)] {
         let shape = format!(r#"{{"sphere": {{"apex": [0.1, 0.05, 1.1], "radius": {radius}}}}}"#);
-        let across = r#"{"points": [-0.5, 0.5], "divisions": [1]}"#;
-        let scene = scene(&format!(
-            r#"{{"model": "space", {MATERIAL},
-                "body": {{"box": {{"x": {across}, "y": {across}, "z": {{"points": [0, 1], "divisions": [1]}}, "element": "hex20"}}}},
-                "supports": [{{"on": {{"boundary": "bottom"}}, "x": 0, "y": 0.01, "z": 0}}], {}}}"#,
-            obstacle("+z", rule, &shape)
-        ));
-        Moving::of(&scene, |_| true).check_with_areas();
+        Moving::of(&space_in(1, "hex20", &obstacle("+z", rule, &shape)), |_| true).check_with_areas();
     }
 }
 
 #[test]
 fn obstacles_under_a_force_inclined_supports_and_planes_of_symmetry_take_part() {
-    let pressed = scene(&format!(
-        r#"{{"model": "plane-strain", {MATERIAL},
-            "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [2]}}, "y": {{"points": [0, 1], "divisions": [2]}}}}}},
-            "symmetry": ["x"],
-            "supports": [{{"on": {{"boundary": "bottom"}}, "normal": [0.0, -1]}},
-                {{"on": {{"boundary": "right"}}, "normal": [1, 0.4], "value": 0.03}}],
-            "obstacles": [{{"boundary": "top", "approach": "+y", "rule": "closest-point", "force": 2,
-                "shape": {{"circle": {{"apex": [0, 1.1], "radius": 1.5}}}}}}]}}"#
-    ));
+    let rest = r#""symmetry": ["x"],
+        "supports": [{"on": {"boundary": "bottom"}, "normal": [0.0, -1]},
+            {"on": {"boundary": "right"}, "normal": [1, 0.4], "value": 0.03}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "rule": "closest-point", "force": 2,
+            "shape": {"circle": {"apex": [0, 1.1], "radius": 1.5}}}]"#;
+    let pressed = of_body("plane-strain", &rectangle("q4", [([0.0, 1.0], 2); 2]), rest);
     // The plane of symmetry stays flat; its three nodes move along it.
     Moving::of(&pressed, |at| at[0] > 0.0).check(3);
 }
@@ -338,15 +342,13 @@ fn obstacles_under_a_force_inclined_supports_and_planes_of_symmetry_take_part() 
 #[test]
 fn nodes_on_an_axis_of_revolution_change_as_differences_say_where_they_can_move() {
     for rule in ["approach", "closest-point"] {
-        let scene = scene(&format!(
-            r#"{{"model": "axisymmetric", {MATERIAL},
-                "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [2]}}, "y": {{"points": [0, 1], "divisions": [2]}},
-                    "element": "t6"}}}},
-                "supports": [{{"on": {{"boundary": "bottom"}}, "y": 0}}],
+        let rest = format!(
+            r#""supports": [{{"on": {{"boundary": "bottom"}}, "y": 0}}],
                 "loads": [{{"pressure": {{"boundary": "top", "value": 0.3}}}}, {{"traction": {{"boundary": "left", "value": [0.2, 0.1]}}}}],
-                {}}}"#,
+                {}"#,
             obstacle("+y", rule, r#"{"circle": {"apex": [0, 1.1], "radius": 1.5}}"#)
-        ));
+        );
+        let scene = of_body("axisymmetric", &rectangle("t6", [([0.0, 1.0], 2); 2]), &rest);
         // Five nodes on the axis move along it.
         Moving::of(&scene, |at| at[0] > 0.0).check(5);
     }
@@ -370,20 +372,16 @@ fn bars_and_equations_between_nodes_take_part() {
 /// A bar of matching blocks; all rows lie along the approach direction.
 #[test]
 fn pairs_of_nodes_along_a_direction_change_as_differences_say() {
-    let rectangle = |low: f64, high: f64| {
-        format!(
-            r#"{{"rectangle": {{"x": {{"points": [0, 1], "divisions": [2]}}, "y": {{"points": [{low}, {high}], "divisions": [1]}}}}}}"#
-        )
-    };
+    let block = |low: f64, high: f64| rectangle("q4", [([0.0, 1.0], 2), ([low, high], 1)]);
     let of = |rule: &str, fit: &str| {
-        scene(&format!(
-            r#"{{"model": "plane-strain", {MATERIAL}, "body": {}, "further-bodies": [{{"name": "upper", "body": {}, {MATERIAL}}}],
+        let rest = format!(
+            r#""further-bodies": [{{"name": "upper", "body": {}, {MATERIAL}}}],
                 "supports": [{{"on": {{"boundary": "bottom"}}, "x": 0, "y": 0}}, {{"on": {{"boundary": "upper.top"}}, "x": 0, "y": 0.1}}],
                 "obstacles": [{{"boundary": "top", "approach": "+y", "rule": "{rule}",
-                    "shape": {{"body": {{"boundary": "upper.bottom", "rows": "pairs" {fit}}}}}}}]}}"#,
-            rectangle(0.0, 1.0),
-            rectangle(1.01, 2.0)
-        ))
+                    "shape": {{"body": {{"boundary": "upper.bottom", "rows": "pairs" {fit}}}}}}}]"#,
+            block(1.01, 2.0)
+        );
+        of_body("plane-strain", &block(0.0, 1.0), &rest)
     };
     for fit in ["", r#", "fit": {"interference": 0.02}"#] {
         let scene = of("approach", fit);
@@ -422,12 +420,7 @@ fn a_corner_of_an_obstacle_is_refused_unless_its_row_takes_no_part() {
 
 #[test]
 fn a_corner_on_a_plane_of_symmetry_counts_as_level() {
-    let scene = scene(&format!(
-        r#"{{"model": "plane-strain", {MATERIAL}, "symmetry": ["x"],
-            "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [2]}}, "y": {{"points": [0, 1], "divisions": [1]}}}}}},
-            "supports": [{{"on": {{"boundary": "bottom"}}, "y": 0}}], {}}}"#,
-        obstacle("+y", "approach", r#"{"wedge": {"apex": [0, 1.1], "slope": 0.4}}"#)
-    ));
+    let scene = half(2, r#"{"wedge": {"apex": [0, 1.1], "slope": 0.4}}"#);
     let (answer, adjoint, mut forces) = Moving::of(&scene, |_| false).answer();
     forces[1..].fill(0.0);
     let of = |forces: &[f64]| by_places(&scene, &Pairing { answer: &answer, adjoint: &adjoint, forces }).unwrap();
@@ -463,26 +456,18 @@ fn an_obstacle_of_a_user_takes_part() {
 fn what_has_no_derivative_yet_is_refused_with_one_sentence() {
     let profile = r#""supports": [{"on": {"boundary": "top"}, "x": 0.1,
         "profile": {"along": [1, 0], "places": [1, 2], "factors": [0, 1]}}]"#;
-    let held = |rest: &str| {
-        scene(&format!(
-            r#"{{"model": "plane-strain", {MATERIAL},
-                "body": {{"rectangle": {{"x": {{"points": [1, 2], "divisions": [2]}},
-                    "y": {{"points": [0, 1], "divisions": [2]}}}}}}, {rest}}}"#
-        ))
-    };
+    let held = |rest: &str| of_body("plane-strain", &rectangle("q4", [([1.0, 2.0], 2), ([0.0, 1.0], 2)]), rest);
     let bottom = r#""supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]"#;
     let faces = format!(r#"{bottom}, "rigid-faces": [{{"boundary": "top", "force": [1, 0]}}]"#);
     let around = held(bottom);
     let with_profile = profile.replace("}}]", r#"}}, {"on": {"boundary": "bottom"}, "x": 0, "y": 0}]"#);
     assert!(reason(&held(&with_profile)).contains("with a profile"));
     assert!(reason(&held(&faces)).contains("rigid faces"));
-    let tied = scene(&format!(
-        r#"{{"model": "plane-strain", {MATERIAL},
-            "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [2]}}, "y": {{"points": [0, 1], "divisions": [1]}}}}}},
-            "further-bodies": [{{"name": "upper", {MATERIAL},
-                "body": {{"rectangle": {{"x": {{"points": [0, 1], "divisions": [3]}}, "y": {{"points": [1, 2], "divisions": [1]}}}}}}}}],
-            {bottom}, TIED}}"#
-    ).replace("TIED", r#""ties": [{"surfaces": {"boundary": "top", "to": "upper.bottom"}}]"#));
+    let [lower, upper] =
+        [(0.0, 2), (1.0, 3)].map(|(low, parts)| rectangle("q4", [([0.0, 1.0], parts), ([low, low + 1.0], 1)]));
+    let further = format!(r#""further-bodies": [{{"name": "upper", {MATERIAL}, "body": {upper}}}]"#);
+    let ties = r#""ties": [{"surfaces": {"boundary": "top", "to": "upper.bottom"}}]"#;
+    let tied = of_body("plane-strain", &lower, &format!("{further}, {bottom}, {ties}"));
     assert!(reason(&tied).contains("ties of surfaces"));
     let mut mortar = tied.clone();
     mortar.ties.clear();
