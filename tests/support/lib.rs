@@ -20,6 +20,7 @@ pub mod impact;
 pub mod key_scenes;
 pub mod manufactured;
 pub mod modal;
+pub mod norms;
 pub mod oracles;
 pub mod pair_scenes;
 pub mod plane_scenes;

@@ -1,5 +1,5 @@
-//! Linear elastic bodies by finite elements: meshes, elements, materials, assembly of K and f, recovery of stresses,
-//! error norms. It depends on no contact problem, no quadratic program and no scene.
+//! Linear elastic bodies by finite elements: meshes, elements, materials, assembly of K and f, recovery of stresses.
+//! It depends on no contact problem, no quadratic program and no scene.
 //!
 //! ```
 //! use signorini_fem::{DofMap, ElasticBody, ElementKind, Formulation, Material, Mesh, stiffness};
@@ -38,8 +38,6 @@ pub mod mesh;
 #[doc(hidden)]
 pub mod mortar;
 #[doc(hidden)]
-pub mod norms;
-#[doc(hidden)]
 pub mod recovery;
 #[doc(hidden)]
 pub mod sum;
@@ -62,7 +60,6 @@ pub use material::Material;
 pub use mesh::gmsh::GmshFile;
 pub use mesh::{Axis, Boundary, Mesh, Zone};
 pub use mortar::{Mortar, MortarRows};
-pub use norms::{ErrorNorms, ExactState, error_norms, error_norms_by};
 pub use recovery::along::{PathPiece, PathPoint};
 pub use recovery::{Stress, StressField, discretisation_error, stress};
 pub use surface::ClosedSurface;

@@ -7,7 +7,7 @@ use crate::body::{BodyElement, ElasticBody};
 use crate::element::{Cell, PerKind, PerNode, QuadraturePoint, Tabulated, between_levels};
 use crate::error::Error;
 use crate::geometry::{cross, dot, inertia, length, minus, principal, shifted, unit};
-use crate::mesh::{Boundary, FacetKind, Mesh};
+use crate::mesh::{Boundary, Mesh};
 
 /// A moment of inertia of a boundary below this times the largest is rounding: the boundary is a straight line about
 /// that axis.
@@ -295,12 +295,12 @@ pub fn outward(body: &ElasticBody, boundary: &Boundary) -> Boundary {
 fn sense(mesh: &Mesh, facet: &[usize], (element, number): (usize, usize)) -> f64 {
     let (kind, nodes) = (mesh.kind_of(element), mesh.element(element));
     let face: Vec<usize> = kind.reference().faces[number].iter().map(|&local| nodes[local]).collect();
-    let alike = match kind.facet() {
+    let alike = match kind.facet().dimension() {
         // The end of a bar has no order: the normal of its first face is -x.
-        FacetKind::Point1 => number > 0,
-        FacetKind::Line2 | FacetKind::Line3 => facet.first() == face.first(),
-        FacetKind::T3 | FacetKind::Q4 | FacetKind::T6 | FacetKind::Q8 => {
-            let corners = kind.facet().reference().corners;
+        0 => number > 0,
+        1 => facet.first() == face.first(),
+        _ => {
+            let corners = kind.facet().corners();
             let place = face[..corners].iter().position(|node| Some(node) == facet.first()).unwrap_or(0);
             facet.get(1) == face.get((place + 1) % corners)
         }

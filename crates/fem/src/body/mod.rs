@@ -1,13 +1,10 @@
 //! The elastic body: a mesh, its elements, their materials, a formulation; strains and stresses in it.
 
 mod phase;
-mod phases;
 mod point;
 
-pub use phase::PhaseNumber;
-pub use phase::{Phase, Region};
-pub use point::Integration;
-pub use point::{Displaced, LocalPoint};
+pub use phase::{Phase, PhaseNumber, Region};
+pub use point::{Displaced, Integration, LocalPoint};
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -16,7 +13,7 @@ use signorini_linear as linear;
 
 use crate::dense::DenseMatrix;
 use crate::element::{
-    Cell, ElementKind, MAX_NODES, PerKind, PerNode, ReferenceElement, Rule, Tabulated, TabulatedPoint,
+    Cell, ElementKind, MAX_NODES, PerKind, PerNode, QuadratureRule, ReferenceElement, Tabulated, TabulatedPoint,
 };
 use crate::error::Error;
 use crate::formulation::Formulation;
@@ -63,7 +60,6 @@ pub struct BodyElement<'a> {
     /// Its nodes, in the order of its kind.
     pub nodes: &'a [usize],
     pub kind: ElementKind,
-    /// The cell with its coordinates.
     pub cell: Cell,
     /// Its material and its stress without strain.
     pub phase: &'a Phase,
@@ -293,8 +289,8 @@ impl ElasticBody {
     }
 
     /// The quadrature of the formulation.
-    pub(crate) fn rule(&self) -> Rule {
-        if self.formulation.is_axisymmetric() { Rule::Revolved } else { Rule::Straight }
+    pub(crate) fn rule(&self) -> QuadratureRule {
+        if self.formulation.is_axisymmetric() { QuadratureRule::Revolved } else { QuadratureRule::Straight }
     }
 
     /// Every element with its coordinates, region by region.
@@ -448,7 +444,7 @@ pub struct Strained<'a> {
 
 /// A displacement at a point of an element.
 #[derive(Clone, Copy, Debug)]
-pub struct Elastic {
+pub struct ElasticPoint {
     /// As that of [`Displaced`].
     pub slope: [[f64; 3]; 3],
     pub strain: Symmetric,
@@ -481,12 +477,12 @@ impl Strained<'_> {
 
     /// The displacement at a tabulated point: its gradient, its strain, and the stress of this strain alone.
     #[inline]
-    pub fn elastic(&self, at: &TabulatedPoint) -> Elastic {
+    pub fn elastic(&self, at: &TabulatedPoint) -> ElasticPoint {
         let (cell, law) = (&self.element.cell, &self.element.phase.law);
         let point = self.displaced(at);
         let strain = point.strain();
         let dilatation = self.mean_dilatation.unwrap_or_else(|| trace(&strain));
-        Elastic { slope: point.slope, strain, stress: law.stress(&strain, dilatation, || cell.place(&at.shape)) }
+        ElasticPoint { slope: point.slope, strain, stress: law.stress(&strain, dilatation, || cell.place(&at.shape)) }
     }
 
     /// The dilatation that replaces that of every point, if the integration takes its mean.

@@ -1,7 +1,7 @@
 //! A point in an element: gradients, hoop terms, weight; the strain of a displacement there; how elements are
 //! integrated.
 
-use crate::element::{Inverse, PerNode, TabulatedPoint};
+use crate::element::{InverseMap, PerNode, TabulatedPoint};
 use crate::geometry::{Symmetric, dot};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -28,8 +28,7 @@ pub struct Displaced {
     pub hoop: f64,
     /// As that of a [`LocalPoint`].
     pub weight: f64,
-    /// The inverse of the map of the cell.
-    pub inverse: Inverse,
+    pub inverse: InverseMap,
     /// The unit of the cell over the radius; zero except in bodies of revolution.
     pub per_radius: f64,
 }
@@ -45,7 +44,7 @@ impl Displaced {
     /// Adds the force of `stress` on each of some nodes, in powers of the unit of the cell.
     #[inline]
     pub fn add_forces(&self, at: &TabulatedPoint, stress: &Symmetric, forces: &mut [[f64; 3]]) {
-        let Inverse { cofactors, determinant } = self.inverse;
+        let InverseMap { cofactors, determinant } = self.inverse;
         let per_length = self.weight / determinant;
         let [xx, yy, zz, xy, yz, zx] = *stress;
         let on_cofactors = |row: [f64; 3]| cofactors.map(|column| per_length * dot(row, column));

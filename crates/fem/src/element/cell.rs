@@ -55,7 +55,7 @@ pub struct Mapping {
 
 /// The inverse of the map at one point, in the unit of the cell.
 #[derive(Clone, Copy, Debug)]
-pub struct Inverse {
+pub struct InverseMap {
     /// The columns of J^-1 times `determinant`.
     pub cofactors: [[f64; 3]; 3],
     /// det J.
@@ -179,7 +179,7 @@ impl Cell {
     #[inline]
     pub fn map(&self, derivative: &PerNode<[f64; 3]>) -> Mapping {
         let dimension = self.reference.dimension;
-        let Inverse { cofactors, determinant } = self.inverse(derivative);
+        let InverseMap { cofactors, determinant } = self.inverse(derivative);
         let mut gradients = [[0.0; 3]; MAX_NODES];
         for (gradient, slope) in gradients.iter_mut().zip(derivative).take(self.reference.nodes.len()) {
             for axis in 0..dimension {
@@ -191,7 +191,7 @@ impl Cell {
     }
 
     #[inline]
-    fn inverse(&self, derivative: &PerNode<[f64; 3]>) -> Inverse {
+    fn inverse(&self, derivative: &PerNode<[f64; 3]>) -> InverseMap {
         match self.reference.dimension {
             1 => self.inverse_in::<1>(derivative),
             2 => self.inverse_in::<2>(derivative),
@@ -200,7 +200,7 @@ impl Cell {
     }
 
     #[inline]
-    fn inverse_in<const D: usize>(&self, derivative: &PerNode<[f64; 3]>) -> Inverse {
+    fn inverse_in<const D: usize>(&self, derivative: &PerNode<[f64; 3]>) -> InverseMap {
         let mut j = [[0.0; 3]; 3];
         for (slope, x) in derivative.iter().zip(&self.coordinates).take(self.reference.nodes.len()) {
             for (row, slope) in j.iter_mut().zip(slope).take(D) {
@@ -212,13 +212,13 @@ impl Cell {
             2 => [[j[1][1], -j[1][0], 0.0], [-j[0][1], j[0][0], 0.0], [0.0; 3]],
             _ => [cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])],
         };
-        Inverse { cofactors, determinant: determinant(&j, D) }
+        InverseMap { cofactors, determinant: determinant(&j, D) }
     }
 
     /// The derivative of each component of nodal `values` along each axis, per unit, `[i][k]`: component i along axis
     /// k; and the inverse of the map there. The same for all nodes gives exactly zero.
     #[inline]
-    pub fn slope(&self, derivative: &PerNode<[f64; 3]>, values: &PerNode<[f64; 3]>) -> ([[f64; 3]; 3], Inverse) {
+    pub fn slope(&self, derivative: &PerNode<[f64; 3]>, values: &PerNode<[f64; 3]>) -> ([[f64; 3]; 3], InverseMap) {
         match self.reference.dimension {
             1 => self.slope_in::<1>(derivative, values),
             2 => self.slope_in::<2>(derivative, values),
@@ -231,7 +231,7 @@ impl Cell {
         &self,
         derivative: &PerNode<[f64; 3]>,
         values: &PerNode<[f64; 3]>,
-    ) -> ([[f64; 3]; 3], Inverse) {
+    ) -> ([[f64; 3]; 3], InverseMap) {
         let inverse = self.inverse_in::<D>(derivative);
         let mut along = [[0.0; 3]; 3];
         for (slope, value) in derivative.iter().zip(values).take(self.reference.nodes.len()).skip(1) {

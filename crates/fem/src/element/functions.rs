@@ -2,7 +2,7 @@
 //! simplices; on quadratic ones L_a (2 L_a - 1) at corners and 4 L_a L_b at the mid-sides.
 
 use super::reference::{MAX_NODES, PerNode, ReferenceElement};
-use super::{Part, QuadraturePoint, Shape, quadrature};
+use super::{QuadraturePoint, Shape, quadrature};
 use crate::dense::DenseMatrix;
 
 /// The coordinates L at a reference point; a simplex in the plane has the first three.
@@ -124,7 +124,6 @@ pub struct TabulatedPoint {
 }
 
 impl TabulatedPoint {
-    /// The shape functions of `reference` at the reference point `at`.
     pub fn new(reference: &ReferenceElement, at: [f64; 3], weight: f64) -> Self {
         TabulatedPoint { weight, shape: (reference.shape)(at), derivative: (reference.derivative)(at) }
     }
@@ -132,7 +131,7 @@ impl TabulatedPoint {
 
 /// The quadrature of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
+pub enum QuadratureRule {
     /// The rule for bars, plane models and space.
     Straight,
     /// The rule for bodies of revolution: the radius adds one degree.
@@ -146,7 +145,6 @@ pub struct Tabulated {
     pub reference: &'static ReferenceElement,
     /// At the quadrature points.
     pub points: Vec<TabulatedPoint>,
-    /// At the nodes.
     pub nodes: Vec<TabulatedPoint>,
     /// At the centroid, with the weight of the whole element.
     pub centroid: TabulatedPoint,
@@ -155,22 +153,17 @@ pub struct Tabulated {
 
 impl Tabulated {
     /// Tabulates `reference` at the points of its quadrature.
-    pub fn new(reference: &'static ReferenceElement, rule: Rule) -> Self {
+    pub fn new(reference: &'static ReferenceElement, rule: QuadratureRule) -> Self {
         let rule = match rule {
-            Rule::Straight => reference.quadrature,
-            Rule::Revolved => reference.quadrature_revolved,
+            QuadratureRule::Straight => reference.quadrature,
+            QuadratureRule::Revolved => reference.quadrature_revolved,
         };
         Self::with_rule(reference, rule.to_vec())
     }
 
     /// Tabulates `reference` at five points in each direction, for functions that are not polynomials of the element.
     pub fn fine(reference: &'static ReferenceElement) -> Self {
-        Self::fine_in(reference, Part::WHOLE)
-    }
-
-    /// Tabulates a part of `reference` at five points in each direction.
-    pub fn fine_in(reference: &'static ReferenceElement, part: Part) -> Self {
-        Self::with_rule(reference, quadrature::fine(reference.form, reference.dimension, part))
+        Self::with_rule(reference, quadrature::fine(reference.form, reference.dimension))
     }
 
     /// Tabulates `reference` at the points of a quadrature rule for it.

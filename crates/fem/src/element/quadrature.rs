@@ -64,36 +64,39 @@ pub(super) const TRIANGLE_3: [QuadraturePoint; 3] = [
     point(1.0 / 6.0, 2.0 / 3.0, 0.0, 1.0 / 6.0),
 ];
 
+/// Points in orbits about the middle of a simplex, each given by its distance from the sides and a weight: a corner of
+/// the orbit towards each corner of the simplex, the origin first.
+const fn orbits<const K: usize, const N: usize>(dimension: usize, of: [(f64, f64); K]) -> [QuadraturePoint; N] {
+    let mut points = [POINT[0]; N];
+    let mut k = 0;
+    while k < N {
+        let ((a, weight), corner) = (of[k / (dimension + 1)], k % (dimension + 1));
+        points[k] = point(a, a, if dimension == 3 { a } else { 0.0 }, weight);
+        if corner > 0 {
+            points[k].at[corner - 1] = 1.0 - dimension as f64 * a;
+        }
+        k += 1;
+    }
+    points
+}
+
 /// Six points inside the triangle, exact for quartics: two orbits of three points, near the mid-sides and the corners.
 ///
 /// # Source
 /// D. A. Dunavant, High degree efficient symmetrical Gaussian quadrature rules for the triangle, 1985, degree 4.
-pub(super) const TRIANGLE_6: [QuadraturePoint; 6] = {
-    const A: f64 = 0.445_948_490_915_964_9;
-    const WEIGHT_A: f64 = 0.223_381_589_678_011_46 / 2.0;
-    const B: f64 = 0.091_576_213_509_770_74;
-    const WEIGHT_B: f64 = 0.109_951_743_655_321_87 / 2.0;
+pub(super) const TRIANGLE_6: [QuadraturePoint; 6] = orbits(
+    2,
     [
-        point(A, A, 0.0, WEIGHT_A),
-        point(1.0 - 2.0 * A, A, 0.0, WEIGHT_A),
-        point(A, 1.0 - 2.0 * A, 0.0, WEIGHT_A),
-        point(B, B, 0.0, WEIGHT_B),
-        point(1.0 - 2.0 * B, B, 0.0, WEIGHT_B),
-        point(B, 1.0 - 2.0 * B, 0.0, WEIGHT_B),
-    ]
-};
+        (0.445_948_490_915_964_9, 0.223_381_589_678_011_46 / 2.0),
+        (0.091_576_213_509_770_74, 0.109_951_743_655_321_87 / 2.0),
+    ],
+);
 
 /// The centroid of the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1), exact for linear functions.
 pub(super) const TETRAHEDRON_1: [QuadraturePoint; 1] = [point(0.25, 0.25, 0.25, 1.0 / 6.0)];
 
-/// Four points inside the tetrahedron, exact for quadratics.
-pub(super) const TETRAHEDRON_4: [QuadraturePoint; 4] = {
-    /// (5 - sqrt(5))/20, the distance from the faces.
-    const A: f64 = 0.138_196_601_125_010_5;
-    const B: f64 = 1.0 - 3.0 * A;
-    const WEIGHT: f64 = 1.0 / 24.0;
-    [point(A, A, A, WEIGHT), point(B, A, A, WEIGHT), point(A, B, A, WEIGHT), point(A, A, B, WEIGHT)]
-};
+/// Four points inside the tetrahedron, exact for quadratics: (5 - sqrt(5))/20 from the faces.
+pub(super) const TETRAHEDRON_4: [QuadraturePoint; 4] = orbits(3, [(0.138_196_601_125_010_5, 1.0 / 24.0)]);
 
 /// Eight points inside the tetrahedron, exact for cubics: with curved edges the stiffness needs this to pass the patch
 /// test.
@@ -101,22 +104,13 @@ pub(super) const TETRAHEDRON_4: [QuadraturePoint; 4] = {
 /// # Source
 /// Y. Jinyun, *Symmetric Gaussian quadrature formulae for tetrahedronal regions*, Comput. Methods Appl. Mech. Engrg. 43
 /// (1984) 349-353: two orbits of four points.
-pub(super) const TETRAHEDRON_8: [QuadraturePoint; 8] = {
-    const A: f64 = 0.328_054_696_711_426_7;
-    const WEIGHT_A: f64 = 0.138_527_966_511_862_2 / 6.0;
-    const B: f64 = 0.106_952_273_932_930_7;
-    const WEIGHT_B: f64 = 0.111_472_033_488_137_8 / 6.0;
+pub(super) const TETRAHEDRON_8: [QuadraturePoint; 8] = orbits(
+    3,
     [
-        point(A, A, A, WEIGHT_A),
-        point(1.0 - 3.0 * A, A, A, WEIGHT_A),
-        point(A, 1.0 - 3.0 * A, A, WEIGHT_A),
-        point(A, A, 1.0 - 3.0 * A, WEIGHT_A),
-        point(B, B, B, WEIGHT_B),
-        point(1.0 - 3.0 * B, B, B, WEIGHT_B),
-        point(B, 1.0 - 3.0 * B, B, WEIGHT_B),
-        point(B, B, 1.0 - 3.0 * B, WEIGHT_B),
-    ]
-};
+        (0.328_054_696_711_426_7, 0.138_527_966_511_862_2 / 6.0),
+        (0.106_952_273_932_930_7, 0.111_472_033_488_137_8 / 6.0),
+    ],
+);
 
 /// Abscissas and weights of five Gauss points on [-1, 1], exact for degree nine.
 const GAUSS_5: [(f64, f64); 5] = [
@@ -153,41 +147,18 @@ pub fn gauss_legendre(count: usize) -> impl Iterator<Item = (f64, f64)> + Clone 
     })
 }
 
-/// A cube inside [-1, 1]^dimension; repeated halving reaches any point of that cube.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
-    /// Its lowest corner.
-    low: [f64; 3],
-    /// The length of its edges.
-    size: f64,
-}
-
-impl Part {
-    /// The whole cube.
-    pub const WHOLE: Part = Part { low: [-1.0; 3], size: 2.0 };
-
-    /// Its 2^dimension halves along every axis.
-    pub fn halves(self, dimension: usize) -> impl Iterator<Item = Part> {
-        let size = self.size / 2.0;
-        (0..1_usize << dimension).map(move |choice| {
-            let mut low = self.low;
-            (0..dimension).filter(|axis| choice >> axis & 1 == 1).for_each(|axis| low[axis] += size);
-            Part { low, size }
-        })
-    }
-}
-
-/// Five Gauss points in each direction of a part of the cell; on a simplex the points of the product of intervals,
-/// mapped onto the simplex. Exact for polynomials of total degree six and more.
-pub(super) fn fine(form: Shape, dimension: usize, part: Part) -> Vec<QuadraturePoint> {
+/// Five Gauss points in each direction of the cell; on a simplex the points of the product of intervals, mapped onto
+/// the simplex. Exact for polynomials of total degree six and more.
+pub(super) fn fine(form: Shape, dimension: usize) -> Vec<QuadraturePoint> {
     let mut points = vec![point(0.0, 0.0, 0.0, 1.0)];
     for axis in 0..dimension {
         let along = |start: &QuadraturePoint| {
             let start = *start;
             GAUSS_5.map(move |(at, weight)| {
                 let mut next = start;
-                next.at[axis] = part.low[axis] + (1.0 + at) / 2.0 * part.size;
-                next.weight *= weight * part.size / 2.0;
+                // Rounded as the way from the end of the interval.
+                next.at[axis] = (1.0 + at) - 1.0;
+                next.weight *= weight;
                 next
             })
         };
@@ -256,20 +227,20 @@ fn points(dimension: usize, piece: &[Corner]) -> Vec<QuadraturePoint> {
                 at: [0, 1, 2].map(|axis| from[axis] + (1.0 + point.at[0]) / 2.0 * way[axis]),
                 weight: point.weight * way[0].abs() / 2.0,
             };
-            fine(Shape::Product, 1, Part::WHOLE).into_iter().map(place).collect()
+            fine(Shape::Product, 1).into_iter().map(place).collect()
         }
         (2, &[(first, _), ref others @ ..]) => {
             let triangle = |pair: &[Corner]| {
                 let (u, v) = (minus(pair[0].0, first), minus(pair[1].0, first));
                 let twice = (u[0] * v[1] - u[1] * v[0]).abs();
-                fine(Shape::Simplex, 2, Part::WHOLE).into_iter().map(move |point| QuadraturePoint {
+                fine(Shape::Simplex, 2).into_iter().map(move |point| QuadraturePoint {
                     at: [0, 1, 2].map(|axis| first[axis] + point.at[0] * u[axis] + point.at[1] * v[axis]),
                     weight: point.weight * twice,
                 })
             };
             others.windows(2).flat_map(triangle).collect()
         }
-        _ => fine(Shape::Product, 0, Part::WHOLE),
+        _ => fine(Shape::Product, 0),
     }
 }
 

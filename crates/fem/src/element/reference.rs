@@ -1,4 +1,6 @@
-//! The description of an element: each element gives it in its own file.
+//! The description of an element.
+
+use super::ElementKind;
 
 /// The largest number of nodes of an element.
 pub const MAX_NODES: usize = 20;
@@ -29,7 +31,6 @@ pub(super) const fn with_middles<const C: usize, const E: usize, const N: usize>
     nodes
 }
 
-/// The shape of a reference cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// A simplex: origin and unit vectors; linear functions have total degree one.
@@ -47,7 +48,6 @@ pub struct QuadraturePoint {
     pub weight: f64,
 }
 
-/// An element on its reference cell.
 #[derive(Debug)]
 pub struct ReferenceElement {
     /// Short name of the element in messages and tables, as `Q4`.
@@ -63,8 +63,9 @@ pub struct ReferenceElement {
     pub mid_sides: &'static [[usize; 2]],
     /// Local nodes of every face, in the order of the facet's own reference cell, seen from outside counterclockwise.
     pub faces: &'static [&'static [usize]],
-    /// Local nodes in the order along the cell; their own order if the cell is not a line.
-    pub along: &'static [usize],
+    /// Local nodes around each straight cell into which a facet is cut, along the nodes of a line; empty for a cell that
+    /// is no facet.
+    pub straight: &'static [&'static [usize]],
     /// Values of the shape functions at a reference point.
     pub shape: fn([f64; 3]) -> PerNode<f64>,
     /// Derivatives of the shape functions with respect to the reference coordinates, at a reference point.
@@ -75,7 +76,7 @@ pub struct ReferenceElement {
     pub quadrature_revolved: &'static [QuadraturePoint],
     /// The kind of a face of the element; for points and edges, which are no elements of a plane body, the kind of its
     /// ends.
-    pub facet: FacetKind,
+    pub facet: ElementKind,
     /// The number of the element in a file of Gmsh.
     pub gmsh: usize,
     /// The position of each node in an element of a Gmsh file.
@@ -150,23 +151,4 @@ impl ReferenceElement {
         let place = |at: [f64; 3]| self.nodes.iter().position(|&node| node == at);
         self.nodes.iter().enumerate().map(|(local, &at)| place(mirror(at)).unwrap_or(local)).collect()
     }
-}
-
-/// The faces of elements: points in a bar, edges in the plane, triangles and quadrilaterals in space.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FacetKind {
-    /// The end of a bar.
-    Point1,
-    /// Straight edge of two nodes.
-    Line2,
-    /// Quadratic edge: two ends, then the mid-side.
-    Line3,
-    /// Triangle of three nodes.
-    T3,
-    /// Quadrilateral of four nodes, in order around it.
-    Q4,
-    /// Quadratic triangle: three corners, then the mid-sides (0,1), (1,2), (2,0).
-    T6,
-    /// Quadratic quadrilateral: four corners, then the mid-sides (0,1), (1,2), (2,3), (3,0).
-    Q8,
 }

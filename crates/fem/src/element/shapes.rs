@@ -6,11 +6,66 @@ use super::quadrature::{
     TETRAHEDRON_4, TETRAHEDRON_8, TRIANGLE_1, TRIANGLE_3, TRIANGLE_6,
 };
 use super::reference::{
-    CalculixCell, FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape, padded, with_middles,
+    CalculixCell, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape, padded, with_middles,
 };
 
+/// The cells of meshes and the facets of their boundaries, by the number of their nodes: a letter for the shape and the
+/// count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementKind {
+    /// The end of a bar.
+    Point1,
+    /// Bar or straight edge of two nodes.
+    Line2,
+    /// Quadratic edge: two ends, then the mid-side.
+    Line3,
+    /// Linear triangle, three nodes counterclockwise.
+    T3,
+    /// Quadratic triangle: three corners counterclockwise, then the mid-sides (0,1), (1,2), (2,0).
+    T6,
+    /// Bilinear quadrilateral, four nodes counterclockwise.
+    Q4,
+    /// Serendipity quadrilateral: four corners counterclockwise, then the mid-sides (0,1), (1,2), (2,3), (3,0).
+    Q8,
+    /// Linear tetrahedron: the first three nodes are counterclockwise seen from the fourth.
+    Tet4,
+    /// Trilinear hexahedron: the lower face counterclockwise seen from above, then the upper one (VTK order).
+    Hex8,
+    /// Quadratic tetrahedron: four corners as those of `Tet4`, then the mid-sides (0,1), (1,2), (2,0), (0,3), (1,3),
+    /// (2,3) (VTK order).
+    Tet10,
+    /// Serendipity hexahedron: eight corners as those of `Hex8`, then the mid-sides of the lower face, of the upper
+    /// one, and of the edges between them (VTK order).
+    Hex20,
+}
+
+impl ElementKind {
+    /// The elements of which a mesh can consist.
+    pub const ALL: [ElementKind; 9] = {
+        use ElementKind::{Hex8, Hex20, Line2, Q4, Q8, T3, T6, Tet4, Tet10};
+        [Line2, T3, T6, Q4, Q8, Tet4, Hex8, Tet10, Hex20]
+    };
+
+    /// The reference cell: its nodes, faces, shape functions and quadrature.
+    pub fn reference(self) -> &'static ReferenceElement {
+        match self {
+            ElementKind::Point1 => &POINT1,
+            ElementKind::Line2 => &LINE2,
+            ElementKind::Line3 => &LINE3,
+            ElementKind::T3 => &T3,
+            ElementKind::T6 => &T6,
+            ElementKind::Q4 => &Q4,
+            ElementKind::Q8 => &Q8,
+            ElementKind::Tet4 => &TET4,
+            ElementKind::Hex8 => &HEX8,
+            ElementKind::Tet10 => &TET10,
+            ElementKind::Hex20 => &HEX20,
+        }
+    }
+}
+
 /// Point1, the end of a bar: N = 1.
-pub(super) static POINT1: ReferenceElement = ReferenceElement {
+static POINT1: ReferenceElement = ReferenceElement {
     name: "Point1",
     form: Shape::Simplex,
     dimension: 0,
@@ -18,12 +73,12 @@ pub(super) static POINT1: ReferenceElement = ReferenceElement {
     corners: 1,
     mid_sides: &[],
     faces: &[],
-    along: &[0],
+    straight: &[&[0]],
     shape: |_| padded([1.0]),
     derivative: |_| [[0.0; 3]; MAX_NODES],
     quadrature: &POINT,
     quadrature_revolved: &POINT,
-    facet: FacetKind::Point1,
+    facet: ElementKind::Point1,
     gmsh: 15,
     gmsh_order: &[0],
     vtk: 1,
@@ -34,7 +89,7 @@ pub(super) static POINT1: ReferenceElement = ReferenceElement {
 const ENDS: &[[f64; 3]] = &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
 
 /// Line2, the bar or straight edge of two nodes: N = (1 - xi, 1 + xi)/2.
-pub(super) static LINE2: ReferenceElement = ReferenceElement {
+static LINE2: ReferenceElement = ReferenceElement {
     name: "Line2",
     form: Shape::Product,
     dimension: 1,
@@ -42,12 +97,12 @@ pub(super) static LINE2: ReferenceElement = ReferenceElement {
     corners: 2,
     mid_sides: &[],
     faces: &[&[0], &[1]],
-    along: &[0, 1],
+    straight: &[&[0, 1]],
     shape: |at| multilinear(ENDS, at),
     derivative: |at| multilinear_slopes(ENDS, at),
     quadrature: &INTERVAL_1,
     quadrature_revolved: &INTERVAL_2,
-    facet: FacetKind::Point1,
+    facet: ElementKind::Point1,
     gmsh: 1,
     gmsh_order: &[0, 1],
     vtk: 3,
@@ -56,7 +111,7 @@ pub(super) static LINE2: ReferenceElement = ReferenceElement {
 };
 
 /// Line3, the quadratic edge: N = (xi (xi - 1)/2, xi (xi + 1)/2, 1 - xi^2), ends first.
-pub(super) static LINE3: ReferenceElement = ReferenceElement {
+static LINE3: ReferenceElement = ReferenceElement {
     name: "Line3",
     form: Shape::Product,
     dimension: 1,
@@ -64,12 +119,12 @@ pub(super) static LINE3: ReferenceElement = ReferenceElement {
     corners: 2,
     mid_sides: &[[0, 1]],
     faces: &[&[0], &[1]],
-    along: &[0, 2, 1],
+    straight: &[&[0, 2], &[2, 1]],
     shape: shape_of_line3,
     derivative: derivative_of_line3,
     quadrature: &INTERVAL_3,
     quadrature_revolved: &INTERVAL_3,
-    facet: FacetKind::Point1,
+    facet: ElementKind::Point1,
     gmsh: 8,
     gmsh_order: &[0, 1, 2],
     vtk: 21,
@@ -89,7 +144,7 @@ fn derivative_of_line3([xi, ..]: [f64; 3]) -> PerNode<[f64; 3]> {
 ///
 /// In a body of revolution it takes three points: with one point, a rotation about the centroid would have no strain
 /// energy.
-pub(super) static T3: ReferenceElement = ReferenceElement {
+static T3: ReferenceElement = ReferenceElement {
     name: "T3",
     form: Shape::Simplex,
     dimension: 2,
@@ -97,12 +152,12 @@ pub(super) static T3: ReferenceElement = ReferenceElement {
     corners: 3,
     mid_sides: &[],
     faces: &[&[0, 1], &[1, 2], &[2, 0]],
-    along: &[0, 1, 2],
+    straight: &[&[0, 1, 2]],
     shape: |at| linear(3, at),
     derivative: |_| linear_slopes(3),
     quadrature: &TRIANGLE_1,
     quadrature_revolved: &TRIANGLE_3,
-    facet: FacetKind::Line2,
+    facet: ElementKind::Line2,
     gmsh: 2,
     gmsh_order: &[0, 1, 2],
     vtk: 5,
@@ -114,14 +169,14 @@ pub(super) static T3: ReferenceElement = ReferenceElement {
 const SIDES_OF_SQUARE: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
 
 /// The corners, which are those of the bilinear quadrilateral too.
-pub(super) const SQUARE: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+const SQUARE: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
 
 /// Coordinates of the 4 corners, then of the 4 mid-side nodes.
 const NODES_OF_Q8: [[f64; 3]; 8] = with_middles(SQUARE, SIDES_OF_SQUARE);
 
 /// Q8, the serendipity quadrilateral, integrated with 3 x 3 Gauss points: N = (1 + xi_a xi)(1 + eta_a eta)(xi_a xi +
 /// eta_a eta - 1)/4 at corners, (1 - xi^2)(1 + eta_a eta)/2 or (1 + xi_a xi)(1 - eta^2)/2 at the mid-sides.
-pub(super) static Q8: ReferenceElement = ReferenceElement {
+static Q8: ReferenceElement = ReferenceElement {
     name: "Q8",
     form: Shape::Product,
     dimension: 2,
@@ -129,12 +184,12 @@ pub(super) static Q8: ReferenceElement = ReferenceElement {
     corners: 4,
     mid_sides: &SIDES_OF_SQUARE,
     faces: &[&[0, 1, 4], &[1, 2, 5], &[2, 3, 6], &[3, 0, 7]],
-    along: &[0, 1, 2, 3, 4, 5, 6, 7],
+    straight: &[&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7], &[4, 5, 6, 7]],
     shape: shape_of_q8,
     derivative: derivative_of_q8,
     quadrature: &SQUARE_3X3,
     quadrature_revolved: &SQUARE_3X3,
-    facet: FacetKind::Line3,
+    facet: ElementKind::Line3,
     gmsh: 16,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],
     vtk: 23,
@@ -168,7 +223,7 @@ fn derivative_of_q8([xi, eta, _]: [f64; 3]) -> PerNode<[f64; 3]> {
 }
 
 /// Q4, the bilinear quadrilateral: N_a = (1 + xi_a xi)(1 + eta_a eta)/4, integrated with 2 x 2 Gauss points.
-pub(super) static Q4: ReferenceElement = ReferenceElement {
+static Q4: ReferenceElement = ReferenceElement {
     name: "Q4",
     form: Shape::Product,
     dimension: 2,
@@ -176,12 +231,12 @@ pub(super) static Q4: ReferenceElement = ReferenceElement {
     corners: 4,
     mid_sides: &[],
     faces: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
-    along: &[0, 1, 2, 3],
+    straight: &[&[0, 1, 2, 3]],
     shape: |at| multilinear(&SQUARE, at),
     derivative: |at| multilinear_slopes(&SQUARE, at),
     quadrature: &SQUARE_2X2,
     quadrature_revolved: &SQUARE_2X2,
-    facet: FacetKind::Line2,
+    facet: ElementKind::Line2,
     gmsh: 3,
     gmsh_order: &[0, 1, 2, 3],
     vtk: 9,
@@ -195,7 +250,7 @@ const SIDES_OF_TRIANGLE: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 /// T6, the quadratic triangle: N = L_a (2 L_a - 1) at corners, 4 L_a L_b at the mid-sides, L = (1 - xi - eta, xi, eta).
 /// Its rule integrates the stiffness exactly if the sides are straight, in bodies of revolution too, except the hoop
 /// terms.
-pub(super) static T6: ReferenceElement = ReferenceElement {
+static T6: ReferenceElement = ReferenceElement {
     name: "T6",
     form: Shape::Simplex,
     dimension: 2,
@@ -203,12 +258,12 @@ pub(super) static T6: ReferenceElement = ReferenceElement {
     corners: 3,
     mid_sides: &SIDES_OF_TRIANGLE,
     faces: &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
-    along: &[0, 1, 2, 3, 4, 5],
+    straight: &[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]],
     shape: |at| quadratic(3, &SIDES_OF_TRIANGLE, at),
     derivative: |at| quadratic_slopes(3, &SIDES_OF_TRIANGLE, at),
     quadrature: &TRIANGLE_6,
     quadrature_revolved: &TRIANGLE_6,
-    facet: FacetKind::Line3,
+    facet: ElementKind::Line3,
     gmsh: 9,
     gmsh_order: &[0, 1, 2, 3, 4, 5],
     vtk: 22,
@@ -217,10 +272,10 @@ pub(super) static T6: ReferenceElement = ReferenceElement {
 };
 
 /// The corners, which are those of the quadratic tetrahedron too.
-pub(super) const TETRAHEDRON: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const TETRAHEDRON: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Tet4, the linear tetrahedron: N = (1 - xi - eta - zeta, xi, eta, zeta); strain and stress are constant.
-pub(super) static TET4: ReferenceElement = ReferenceElement {
+static TET4: ReferenceElement = ReferenceElement {
     name: "Tet4",
     form: Shape::Simplex,
     dimension: 3,
@@ -228,12 +283,12 @@ pub(super) static TET4: ReferenceElement = ReferenceElement {
     corners: 4,
     mid_sides: &[],
     faces: &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],
-    along: &[0, 1, 2, 3],
+    straight: &[],
     shape: |at| linear(4, at),
     derivative: |_| linear_slopes(4),
     quadrature: &TETRAHEDRON_1,
     quadrature_revolved: &TETRAHEDRON_1,
-    facet: FacetKind::T3,
+    facet: ElementKind::T3,
     gmsh: 4,
     gmsh_order: &[0, 1, 2, 3],
     vtk: 10,
@@ -248,7 +303,7 @@ const NODES_OF_TET10: [[f64; 3]; 10] = with_middles(TETRAHEDRON, EDGES_OF_TETRAH
 
 /// Tet10, the quadratic tetrahedron: N = L_a (2 L_a - 1) at corners, 4 L_a L_b at the mid-sides, L = (1 - xi - eta -
 /// zeta, xi, eta, zeta). Its rule integrates a constant stress over curved edges exactly.
-pub(super) static TET10: ReferenceElement = ReferenceElement {
+static TET10: ReferenceElement = ReferenceElement {
     name: "Tet10",
     form: Shape::Simplex,
     dimension: 3,
@@ -256,12 +311,12 @@ pub(super) static TET10: ReferenceElement = ReferenceElement {
     corners: 4,
     mid_sides: &EDGES_OF_TETRAHEDRON,
     faces: &[&[0, 2, 1, 6, 5, 4], &[0, 1, 3, 4, 8, 7], &[1, 2, 3, 5, 9, 8], &[0, 3, 2, 7, 9, 6]],
-    along: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9],
+    straight: &[],
     shape: |at| quadratic(4, &EDGES_OF_TETRAHEDRON, at),
     derivative: |at| quadratic_slopes(4, &EDGES_OF_TETRAHEDRON, at),
     quadrature: &TETRAHEDRON_8,
     quadrature_revolved: &TETRAHEDRON_8,
-    facet: FacetKind::T6,
+    facet: ElementKind::T6,
     gmsh: 11,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8],
     vtk: 24,
@@ -274,7 +329,7 @@ const EDGES_OF_CUBE: [[usize; 2]; 12] =
     [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
 /// The corners, which are those of the trilinear hexahedron too.
-pub(super) const CUBE: [[f64; 3]; 8] = [
+const CUBE: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -290,7 +345,7 @@ const NODES_OF_HEX20: [[f64; 3]; 20] = with_middles(CUBE, EDGES_OF_CUBE);
 
 /// Hex20, the serendipity hexahedron, integrated with 3 x 3 x 3 Gauss points: with s = 1 + xi_a xi and so on, N = s_1
 /// s_2 s_3 (xi_a xi + eta_a eta + zeta_a zeta - 2)/8 at corners, (1 - xi^2) s_2 s_3/4 and so on at the mid-sides.
-pub(super) static HEX20: ReferenceElement = ReferenceElement {
+static HEX20: ReferenceElement = ReferenceElement {
     name: "Hex20",
     form: Shape::Product,
     dimension: 3,
@@ -305,12 +360,12 @@ pub(super) static HEX20: ReferenceElement = ReferenceElement {
         &[2, 3, 7, 6, 10, 19, 14, 18],
         &[3, 0, 4, 7, 11, 16, 15, 19],
     ],
-    along: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19],
+    straight: &[],
     shape: shape_of_hex20,
     derivative: derivative_of_hex20,
     quadrature: &CUBE_3X3X3,
     quadrature_revolved: &CUBE_3X3X3,
-    facet: FacetKind::Q8,
+    facet: ElementKind::Q8,
     gmsh: 17,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15],
     vtk: 25,
@@ -356,7 +411,7 @@ fn middle(node: [f64; 3]) -> Option<usize> {
 }
 
 /// Hex8, the trilinear hexahedron: N_a = (1 + xi_a xi)(1 + eta_a eta)(1 + zeta_a zeta)/8, 2 x 2 x 2 Gauss points.
-pub(super) static HEX8: ReferenceElement = ReferenceElement {
+static HEX8: ReferenceElement = ReferenceElement {
     name: "Hex8",
     form: Shape::Product,
     dimension: 3,
@@ -364,12 +419,12 @@ pub(super) static HEX8: ReferenceElement = ReferenceElement {
     corners: 8,
     mid_sides: &[],
     faces: &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]],
-    along: &[0, 1, 2, 3, 4, 5, 6, 7],
+    straight: &[],
     shape: |at| multilinear(&CUBE, at),
     derivative: |at| multilinear_slopes(&CUBE, at),
     quadrature: &CUBE_2X2X2,
     quadrature_revolved: &CUBE_2X2X2,
-    facet: FacetKind::Q4,
+    facet: ElementKind::Q4,
     gmsh: 5,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],
     vtk: 12,

@@ -42,7 +42,11 @@ impl Boundary {
 
     /// The node indices, each once, from 0, in the order of their first appearance along the facets.
     pub fn nodes(&self) -> Vec<usize> {
-        let along = self.kind.reference().along;
+        let reference = self.kind.reference();
+        let along: Vec<usize> = match reference.dimension {
+            1 => reference.straight.concat(),
+            _ => (0..self.kind.nodes()).collect(),
+        };
         let mut seen = vec![false; self.connectivity.iter().max().map_or(0, |&last| last + 1)];
         let in_order = self.facets().flat_map(|facet| along.iter().map(|&local| facet[local]));
         in_order.filter(|&node| !std::mem::replace(&mut seen[node], true)).collect()

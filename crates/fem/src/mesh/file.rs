@@ -2,7 +2,7 @@
 
 use super::faces::chained;
 use super::{Boundary, ElementGroup, Mesh};
-use crate::element::{Cell, ElementKind, NonPositiveJacobian, Rule, Tabulated};
+use crate::element::{Cell, ElementKind, NonPositiveJacobian, QuadratureRule, Tabulated};
 use crate::error::Error;
 
 /// The number in the mesh of each node of the file, if it is in the body.
@@ -82,7 +82,7 @@ fn flatten(dimension: usize, nodes: &mut [[f64; 3]]) -> Result<(), (usize, usize
 
 /// The first element that is inverted or without volume, and why.
 fn unfit(kind: ElementKind, nodes: &[[f64; 3]], connectivity: &[usize]) -> Option<(usize, NonPositiveJacobian)> {
-    let table = Tabulated::new(kind.reference(), Rule::Straight);
+    let table = Tabulated::new(kind.reference(), QuadratureRule::Straight);
     connectivity.chunks_exact(kind.nodes()).enumerate().find_map(|(element, own)| {
         let cell = Cell::at(kind.reference(), |local| nodes[own[local]]);
         Some((element, cell.check(&table).err()?))

@@ -28,7 +28,7 @@ pub const MAX_NODES: usize = 100_000_000;
 pub struct Mesh {
     nodes: Vec<[f64; 3]>,
     /// In the order of their elements; neighbours differ in kind.
-    blocks: Vec<Block>,
+    blocks: Vec<ElementBlock>,
     connectivity: Vec<usize>,
     boundaries: Vec<Boundary>,
     groups: Vec<ElementGroup>,
@@ -39,7 +39,7 @@ pub struct Mesh {
 
 /// Consecutive elements of one kind.
 #[derive(Clone, Debug, PartialEq)]
-struct Block {
+struct ElementBlock {
     kind: ElementKind,
     elements: Range<usize>,
     /// Index of the first node of the block in the connectivity of the mesh.
@@ -65,13 +65,16 @@ impl Mesh {
         boundaries: Vec<Boundary>,
     ) -> Result<Self, Error> {
         let each = kind.nodes();
+        if !ElementKind::ALL.contains(&kind) {
+            return fail(format!("a mesh does not consist of {}, which is a facet alone", kind.name()));
+        }
         if !connectivity.len().is_multiple_of(each) {
             let length = connectivity.len();
             return fail(format!(
                 "the connectivity has length {length}, which is not a multiple of the {each} nodes of an element"
             ));
         }
-        let blocks = vec![Block { kind, elements: 0..connectivity.len() / each, first: 0 }];
+        let blocks = vec![ElementBlock { kind, elements: 0..connectivity.len() / each, first: 0 }];
         let (groups, node_names, element_numbers) = (Vec::new(), NodeNames::default(), Vec::new());
         Mesh { nodes, blocks, connectivity, boundaries, groups, node_names, element_numbers }.checked()
     }
@@ -165,7 +168,7 @@ impl Mesh {
     }
 
     #[inline]
-    fn block_of(&self, element: usize) -> &Block {
+    fn block_of(&self, element: usize) -> &ElementBlock {
         // There are as many blocks as bodies at most.
         &self.blocks[self.blocks.iter().take_while(|block| block.elements.end <= element).count()]
     }
@@ -273,7 +276,7 @@ impl Mesh {
             let Range { start, end } = block.elements;
             match self.blocks.last_mut().filter(|last| last.kind == block.kind) {
                 Some(last) => last.elements.end = elements + end,
-                None => self.blocks.push(Block {
+                None => self.blocks.push(ElementBlock {
                     kind: block.kind,
                     elements: elements + start..elements + end,
                     first: entries + block.first,

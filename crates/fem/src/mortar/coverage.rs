@@ -1,7 +1,7 @@
 //! The covered part of a surface, facet by facet, the functions of the multipliers on it, and what facets of both
 //! share.
 
-use super::facet::Facet;
+use super::facet::PlacedFacet;
 use crate::dense::DenseMatrix;
 use crate::element::PerNode;
 use crate::geometry::sorted;
@@ -21,7 +21,7 @@ const TWICE: f64 = 0.1;
 
 /// The integrals over the covered part of one slave facet.
 pub(super) struct Covered<'a> {
-    pub facet: &'a Facet<'a>,
+    pub facet: &'a PlacedFacet<'a>,
     /// Its covered area, its whole area, and the area of all that it faces.
     pub area: f64,
     pub whole: f64,
@@ -36,7 +36,7 @@ pub(super) struct Covered<'a> {
 }
 
 impl<'a> Covered<'a> {
-    pub fn new(facet: &'a Facet<'a>) -> Self {
+    pub fn new(facet: &'a PlacedFacet<'a>) -> Self {
         Covered {
             facet,
             area: 0.0,
@@ -116,7 +116,7 @@ impl<'a> Covered<'a> {
 
 /// The parts of the rows of all kept nodes of a surface, by node.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Part {
+pub(super) struct RowPart {
     /// The covered area of the node, with what dropped nodes hand over; its whole area.
     pub area: f64,
     pub full: f64,
@@ -160,8 +160,8 @@ pub(super) fn kept(covered: &[Covered], nodes: usize, may_carry: &dyn Fn(usize) 
 }
 
 /// The parts of the rows, by node; `None` for nodes that carry none.
-pub(super) fn parts(covered: &[Covered], kept: &[bool]) -> Vec<Option<Part>> {
-    let mut parts: Vec<Option<Part>> = vec![None; kept.len()];
+pub(super) fn parts(covered: &[Covered], kept: &[bool]) -> Vec<Option<RowPart>> {
+    let mut parts: Vec<Option<RowPart>> = vec![None; kept.len()];
     for facet in covered.iter().filter(|facet| facet.is_covered()) {
         let nodes = facet.facet.nodes;
         let is_kept: Vec<bool> = nodes.iter().map(|&node| kept[node]).collect();
@@ -205,7 +205,7 @@ const STEP: f64 = 0.1;
 
 /// The integrals over what a slave facet shares with one facet of the other surface.
 pub(super) struct Shared<'a> {
-    pub other: &'a Facet<'a>,
+    pub other: &'a PlacedFacet<'a>,
     pub area: f64,
     /// Of the distance, along the direction of the slave facet.
     gap: f64,
@@ -219,7 +219,7 @@ pub(super) struct Shared<'a> {
 }
 
 impl<'a> Shared<'a> {
-    pub fn new(other: &'a Facet<'a>) -> Self {
+    pub fn new(other: &'a PlacedFacet<'a>) -> Self {
         let products = [[0.0; MOST]; MOST];
         Shared { other, area: 0.0, gap: 0.0, places: [[0.0; 3]; 2], functions: [0.0; MOST], products, with: products }
     }

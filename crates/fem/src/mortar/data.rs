@@ -1,6 +1,6 @@
 //! Two surfaces, their nodes, and the rows between them: plain data.
 
-use super::facet::{Facet, SurfaceMesh};
+use super::facet::{PlacedFacet, SurfaceMesh};
 use super::skin::TwoSkins;
 use crate::element::FacetKind;
 use crate::formulation::Formulation;
@@ -31,10 +31,16 @@ pub struct Mortar<'a> {
     pub(super) formulation: Formulation,
     pub(super) direction: Option<[f64; 3]>,
     pub(super) reach: f64,
-    pub(super) may_carry: Option<&'a dyn Fn(usize) -> bool>,
-    pub(super) has_coefficient: Option<&'a dyn Fn(usize) -> bool>,
+    /// Which slave nodes may carry a row; all without it.
+    #[doc(hidden)]
+    pub may_carry: Option<&'a dyn Fn(usize) -> bool>,
+    /// Which mid-side nodes of slave faces in space have a coefficient of the positive basis; all without it.
+    #[doc(hidden)]
+    pub has_coefficient: Option<&'a dyn Fn(usize) -> bool>,
     pub(super) between: Option<TwoSkins<'a>>,
-    pub(super) has_sides: bool,
+    /// A node at a corner has a row for each side, as contact needs it: what sticks together does not.
+    #[doc(hidden)]
+    pub has_sides: bool,
 }
 
 /// The rows of a [`Mortar`] in the nodal displacements: `contact * [u_slave, u_master] <= gap`.
@@ -88,7 +94,7 @@ pub struct Opposite {
 
 /// All rows with what the search for them found.
 #[derive(Clone, Debug, Default)]
-pub struct Found {
+pub struct FoundRows {
     pub rows: Vec<MortarRow>,
     /// The covered share of the area of the slave surface, and the share of the master nodes, each counted with its
     /// facets, that face it.
@@ -125,7 +131,8 @@ impl Sided {
     /// A surface in which a node at a corner is several nodes at one place, one for each side.
     pub fn of(surface: &SurfaceMesh) -> Self {
         let count = surface.kind.nodes();
-        let facets: Vec<Facet> = surface.facets.chunks_exact(count).map(|nodes| Facet::new(surface, nodes)).collect();
+        let facets: Vec<PlacedFacet> =
+            surface.facets.chunks_exact(count).map(|nodes| PlacedFacet::new(surface, nodes)).collect();
         let mut around: Vec<Vec<usize>> = vec![Vec::new(); surface.nodes.len()];
         for (number, facet) in facets.iter().enumerate() {
             facet.nodes.iter().for_each(|&node| around[node].push(number));
@@ -169,7 +176,7 @@ impl Sided {
 }
 
 /// The same with the nodes of both surfaces.
-pub(super) fn named(mut found: Found, [slave, master]: [&[usize]; 2]) -> Found {
+pub(super) fn named(mut found: FoundRows, [slave, master]: [&[usize]; 2]) -> FoundRows {
     let renamed = |list: &mut Vec<(usize, f64)>, nodes: &[usize]| {
         let mut sums: Vec<(usize, f64)> = Vec::with_capacity(list.len());
         for (node, share) in list.drain(..) {

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::facet::{Facet, STRAIGHT, SharedPoint, area_vector};
+use super::facet::{PlacedFacet, STRAIGHT, SharedPoint, area_vector};
 use crate::element::{Cell, FacetKind, ReferenceElement, Shape, gauss_legendre};
 use crate::geometry::{cross, dot, length, minus, unit};
 
@@ -111,7 +111,7 @@ enum Map {
 }
 
 /// The map from the plane to the reference coordinates of a face.
-struct Inverse {
+struct InverseProjection {
     reference: &'static ReferenceElement,
     places: Vec<Point>,
     map: Map,
@@ -119,8 +119,8 @@ struct Inverse {
     distortion: f64,
 }
 
-impl Inverse {
-    fn of(facet: &Facet, plane: &Plane) -> Self {
+impl InverseProjection {
+    fn of(facet: &PlacedFacet, plane: &Plane) -> Self {
         let (reference, places) = (facet.reference(), plane.polygon(facet.places()));
         let quarter = |signs: [f64; 4]| {
             [0, 1].map(|axis| (0..4).map(|corner| signs[corner] * places[corner][axis]).sum::<f64>() / 4.0)
@@ -145,7 +145,7 @@ impl Inverse {
             ]),
             _ => Map::Linear([origin, first, second]),
         };
-        Inverse { reference, places, map, distortion }
+        InverseProjection { reference, places, map, distortion }
     }
 
     /// The reference coordinates of a point; `None` where the face folds.
@@ -248,10 +248,10 @@ fn for_each_of_polygon(polygon: &[Point], rule: &[(Point, f64)], mut visit: impl
 
 /// A slave face with the plane across its direction.
 pub(super) struct Projected<'a> {
-    facet: &'a Facet<'a>,
+    facet: &'a PlacedFacet<'a>,
     direction: [f64; 3],
     plane: Plane,
-    inverse: Inverse,
+    inverse: InverseProjection,
     /// Its straight pieces, counterclockwise.
     pieces: Vec<Vec<Point>>,
     /// Its area in the plane.
@@ -263,7 +263,7 @@ pub(super) struct Projected<'a> {
 
 impl<'a> Projected<'a> {
     /// The face seen along a unit vector that leads out of it.
-    pub fn new(facet: &'a Facet<'a>, direction: [f64; 3]) -> Self {
+    pub fn new(facet: &'a PlacedFacet<'a>, direction: [f64; 3]) -> Self {
         let plane = Plane::across(direction, facet.middle);
         let piece = |corners: &Vec<[f64; 3]>| {
             let vector = area_vector(corners);
@@ -275,7 +275,7 @@ impl<'a> Projected<'a> {
         let pieces = found.into_iter().map(|(polygon, _)| polygon).collect();
         let cell = Cell::at(facet.reference(), |local| facet.corners[local]);
         let ratio = facet.is_flat().then(|| 1.0 / dot(facet.normal, direction));
-        Projected { facet, direction, inverse: Inverse::of(facet, &plane), plane, pieces, area, cell, ratio }
+        Projected { facet, direction, inverse: InverseProjection::of(facet, &plane), plane, pieces, area, cell, ratio }
     }
 
     /// Calls `visit` for the integration points of the whole face: reference coordinates and area.
@@ -303,8 +303,8 @@ impl<'a> Projected<'a> {
     }
 
     /// Calls `visit` for every integration point of the part that `master` covers, if it is within `reach`.
-    pub fn for_each_point(&self, master: &Facet, reach: f64, visit: &mut dyn FnMut(SharedPoint)) {
-        let inverse = Inverse::of(master, &self.plane);
+    pub fn for_each_point(&self, master: &PlacedFacet, reach: f64, visit: &mut dyn FnMut(SharedPoint)) {
+        let inverse = InverseProjection::of(master, &self.plane);
         let rule = rule(self.inverse.points().max(inverse.points()));
         for piece in &master.pieces {
             let vector = area_vector(piece);
@@ -336,10 +336,10 @@ impl<'a> Projected<'a> {
     }
 
     /// Returns `true` if both faces are farther apart than `reach` in the middle of a polygon.
-    fn is_far(&self, polygon: &[Point], master: &Facet, inverse: &Inverse, reach: f64) -> bool {
+    fn is_far(&self, polygon: &[Point], master: &PlacedFacet, inverse: &InverseProjection, reach: f64) -> bool {
         let count = polygon.len() as f64;
         let centre = [0, 1].map(|axis| polygon.iter().map(|point| point[axis]).sum::<f64>() / count);
-        let height = |facet: &Facet, inverse: &Inverse| {
+        let height = |facet: &PlacedFacet, inverse: &InverseProjection| {
             let shape = (facet.reference().shape)(inverse.at(centre)?);
             let heights = facet.places().iter().map(|&place| dot(minus(place, self.facet.middle), self.direction));
             Some(heights.zip(shape).map(|(height, share)| share * height).sum::<f64>())

@@ -2,6 +2,7 @@
 
 use crate::element::{Cell, FacetKind, MAX_NODES, PerNode, ReferenceElement};
 use crate::geometry::{cross, distance, dot, length, midpoint, minus, plus, unit};
+use crate::mesh::Boundary;
 
 /// Two facets face each other if the angle between one normal and the opposite of the other is below 60 degrees.
 const FACING: f64 = 0.5;
@@ -17,9 +18,15 @@ pub(super) struct SurfaceMesh<'a> {
     pub(super) facets: &'a [usize],
 }
 
+impl<'a> SurfaceMesh<'a> {
+    pub fn of((nodes, boundary): (&'a [[f64; 3]], &'a Boundary)) -> Self {
+        SurfaceMesh { nodes, kind: boundary.kind, facets: &boundary.connectivity }
+    }
+}
+
 /// A facet in place.
 #[derive(Clone, Debug)]
-pub(super) struct Facet<'a> {
+pub(super) struct PlacedFacet<'a> {
     pub kind: FacetKind,
     pub nodes: &'a [usize],
     pub corners: PerNode<[f64; 3]>,
@@ -43,7 +50,7 @@ pub(super) struct SharedPoint {
     pub weight: f64,
 }
 
-impl<'a> Facet<'a> {
+impl<'a> PlacedFacet<'a> {
     pub fn new(surface: &SurfaceMesh<'a>, nodes: &'a [usize]) -> Self {
         let mut places = [[0.0; 3]; MAX_NODES];
         places.iter_mut().zip(nodes).for_each(|(place, &node)| *place = surface.nodes[node]);
@@ -51,8 +58,16 @@ impl<'a> Facet<'a> {
         let middle = [0, 1, 2].map(|axis| own.iter().map(|place| place[axis]).sum::<f64>() / own.len() as f64);
         let radius = own.iter().fold(0.0, |radius: f64, &place| radius.max(distance(place, middle)));
         let (kind, normal) = (surface.kind, [0.0; 3]);
-        let mut facet =
-            Facet { kind, nodes, corners: places, normal, middle, radius, is_straight: false, pieces: Vec::new() };
+        let mut facet = PlacedFacet {
+            kind,
+            nodes,
+            corners: places,
+            normal,
+            middle,
+            radius,
+            is_straight: false,
+            pieces: Vec::new(),
+        };
         facet.is_straight = facet.is_straight();
         facet.pieces = facet.pieces();
         facet.normal = unit(facet.pieces.iter().fold([0.0; 3], |sum, piece| {
@@ -66,7 +81,6 @@ impl<'a> Facet<'a> {
         self.kind.reference()
     }
 
-    /// The coordinates of its nodes.
     pub fn places(&self) -> &[[f64; 3]] {
         &self.corners[..self.nodes.len()]
     }
@@ -95,13 +109,12 @@ impl<'a> Facet<'a> {
         cells.map(|cell| cell.into_iter().map(|local| places[local]).collect()).collect()
     }
 
-    /// Returns `true` if the two facets look at each other.
-    pub fn faces(&self, other: &Facet) -> bool {
+    pub fn faces(&self, other: &PlacedFacet) -> bool {
         dot(self.normal, other.normal) < -FACING
     }
 
     /// Returns `true` if the angle between both normals is below 60 degrees.
-    pub fn is_alike(&self, other: &Facet) -> bool {
+    pub fn is_alike(&self, other: &PlacedFacet) -> bool {
         dot(self.normal, other.normal) > FACING
     }
 
@@ -141,7 +154,7 @@ impl<'a> Facet<'a> {
 /// The largest `h angle / 8` of facets that stand for a curve: `h` is the length of an edge, and the angle that between
 /// the normals at its ends. An edge between normals that turn more than 40 degrees is a corner, and curved facets
 /// follow the curve.
-pub(super) fn sag(facets: &[Facet], normals: &[[f64; 3]]) -> f64 {
+pub(super) fn sag(facets: &[PlacedFacet], normals: &[[f64; 3]]) -> f64 {
     const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
     const ROUNDING: f64 = 1e-7;
     let mut largest: f64 = 0.0;

@@ -1,6 +1,6 @@
 //! What two edges in the plane share: the part of one that the other covers along a field of directions.
 
-use super::facet::{Facet, SharedPoint};
+use super::facet::{PlacedFacet, SharedPoint};
 use crate::element::{ReferenceElement, gauss_legendre};
 use crate::geometry::{dot, minus};
 
@@ -24,7 +24,7 @@ struct Edge<'a> {
 }
 
 impl Edge<'_> {
-    fn of<'a>(facet: &'a Facet, origin: [f64; 3]) -> Edge<'a> {
+    fn of<'a>(facet: &'a PlacedFacet, origin: [f64; 3]) -> Edge<'a> {
         Edge { reference: facet.reference(), places: facet.places(), origin }
     }
 
@@ -57,7 +57,7 @@ impl Edge<'_> {
 }
 
 /// The reference coordinates of the place on an edge from which its directions lead through a point.
-pub(super) fn foot(slave: &Facet, directions: &[[f64; 3]], at: [f64; 3]) -> Option<[f64; 3]> {
+pub(super) fn foot(slave: &PlacedFacet, directions: &[[f64; 3]], at: [f64; 3]) -> Option<[f64; 3]> {
     let xi = Edge::of(slave, slave.middle).foot(directions, minus(at, slave.middle))?;
     Some([xi, 0.0, 0.0])
 }
@@ -88,9 +88,9 @@ fn zero(function: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
 /// Calls `visit` for every integration point of the part of `slave` that `master` covers along the `directions` at the
 /// nodes of `slave`, if it is within `reach`.
 pub(super) fn for_each_point(
-    slave: &Facet,
+    slave: &PlacedFacet,
     directions: &[[f64; 3]],
-    master: &Facet,
+    master: &PlacedFacet,
     reach: f64,
     visit: &mut dyn FnMut(SharedPoint),
 ) {
@@ -135,7 +135,7 @@ pub(super) fn for_each_point(
 
 /// Calls `visit` for the integration points of a whole edge: reference coordinates, and the length that each stands
 /// for.
-pub(super) fn for_each_of_whole(slave: &Facet, visit: &mut dyn FnMut([f64; 3], f64)) {
+pub(super) fn for_each_of_whole(slave: &PlacedFacet, visit: &mut dyn FnMut([f64; 3], f64)) {
     let own = Edge::of(slave, slave.middle);
     for (xi, weight) in gauss_legendre(POINTS) {
         let [_, tangent] = own.at(xi);

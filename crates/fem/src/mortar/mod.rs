@@ -39,20 +39,19 @@ use super::geometry::{dot, minus, unit};
 use super::mesh::Boundary;
 use crate::error::Error;
 use crate::geometry::shifted;
-use coverage::{Covered, Part, kept, parts};
+use coverage::{Covered, RowPart, kept, parts};
 use data::{Sided, named};
-use facet::{Facet, SurfaceMesh};
-use search::{Distances, Sides, Sight};
+use facet::{PlacedFacet, SurfaceMesh};
+use search::{BothSurfaces, Distances, Sight};
 use signorini_linear::SparseMatrix;
 
-pub use data::{Found, MortarRow, Opposite};
+pub use data::{FoundRows, MortarRow, Opposite};
 pub use data::{Mortar, MortarRows};
 pub use skin::{Skin, TwoSkins};
 
 /// A share below this is rounding of zero; one this close to 1 is 1.
 const ROUNDING: f64 = 1e-12;
 
-/// What a search finds.
 #[derive(Clone, Debug)]
 pub struct Seen {
     /// Which slave facets face the master surface within reach.
@@ -70,7 +69,7 @@ impl std::fmt::Debug for Mortar<'_> {
 
 /// Returns `true` if facets of a surface, seen from outside, turn away from each other at a node.
 pub fn has_corners(nodes: &[[f64; 3]], boundary: &Boundary) -> bool {
-    let surface = SurfaceMesh { nodes, kind: boundary.kind, facets: &boundary.connectivity };
+    let surface = SurfaceMesh::of((nodes, boundary));
     surface.kind.reference().dimension > 0 && Sided::of(&surface).has_corners()
 }
 
@@ -86,12 +85,11 @@ impl<'a> Mortar<'a> {
         master: (&'a [[f64; 3]], &'a Boundary),
         formulation: Formulation,
     ) -> Self {
-        let surface = |(nodes, boundary): (&'a [[f64; 3]], &'a Boundary)| SurfaceMesh {
-            nodes,
-            kind: boundary.kind,
-            facets: &boundary.connectivity,
-        };
-        let (slave, master, reach) = (surface(slave), surface(master), f64::INFINITY);
+        Self::of(SurfaceMesh::of(slave), SurfaceMesh::of(master), formulation)
+    }
+
+    fn of(slave: SurfaceMesh<'a>, master: SurfaceMesh<'a>, formulation: Formulation) -> Self {
+        let reach = f64::INFINITY;
         let (direction, between, may_carry, has_coefficient) = (None, None, None, None);
         let has_sides = false;
         Mortar { slave, master, formulation, direction, reach, may_carry, has_coefficient, between, has_sides }
@@ -108,30 +106,11 @@ impl<'a> Mortar<'a> {
         Mortar { reach, ..self }
     }
 
-    /// The same with rows only at slave nodes that may carry one.
-    #[doc(hidden)]
-    pub fn carried_by(self, may_carry: &'a dyn Fn(usize) -> bool) -> Self {
-        Mortar { may_carry: Some(may_carry), ..self }
-    }
-
-    /// The same with coefficients of the positive basis at some of the mid-side nodes of slave faces in space; without
-    /// this, at all.
-    #[doc(hidden)]
-    pub fn with_coefficients(self, has_coefficient: &'a dyn Fn(usize) -> bool) -> Self {
-        Mortar { has_coefficient: Some(has_coefficient), ..self }
-    }
-
     /// The same without rows where something solid lies between the surfaces. They belong to two bodies, `own` and
     /// `other`, of those with these skins.
     #[doc(hidden)]
     pub fn between(self, skins: &'a [Skin], [own, other]: [usize; 2]) -> Self {
         Mortar { between: Some(TwoSkins { skins, own, other }), ..self }
-    }
-
-    /// The same with a row for each side of a node at a corner, as contact needs it: what sticks together does not.
-    #[doc(hidden)]
-    pub fn by_sides(self) -> Self {
-        Mortar { has_sides: true, ..self }
     }
 
     /// The rows in nodal displacements.
@@ -173,15 +152,15 @@ impl<'a> Mortar<'a> {
 
     /// The rows in coefficients of slave nodes and displacements of master nodes.
     #[doc(hidden)]
-    pub fn found(&self) -> Result<Found, Error> {
+    pub fn found(&self) -> Result<FoundRows, Error> {
         self.check()?;
         let alone @ [slave, master] = &[self.slave, self.master].map(|surface| Sided::alone(&surface));
         Ok(named(self.on(alone, |mortar| mortar.found_on_all_nodes())?, [&slave.node, &master.node]))
     }
 
     /// The same for surfaces that have all of their nodes.
-    fn found_on_all_nodes(&self) -> Result<Found, Error> {
-        let sides = Sides::of(self);
+    fn found_on_all_nodes(&self) -> Result<FoundRows, Error> {
+        let sides = BothSurfaces::of(self);
         let Sight { covered, opposite, met } = self.sight(&sides);
         if let Some([slave, master]) = self.between.and_then(|_| sides.without_turned_away(&covered, &met)) {
             let [slave, master] =
@@ -206,7 +185,7 @@ impl<'a> Mortar<'a> {
         let ends = self.ends_of_middles();
         let parts = parts(&covered, &kept);
         let distances = sides.has_curves().then(|| Distances::of(self, &sides, &met));
-        let of_node = |(node, part): (usize, Option<Part>)| {
+        let of_node = |(node, part): (usize, Option<RowPart>)| {
             let row = self.row(node, part?, &sides.normals, &ends)?;
             let gap = distances.as_ref().and_then(|distances| distances.of_row(&row, &ends)).unwrap_or(row.gap);
             Some(MortarRow { gap, ..row })
@@ -216,11 +195,11 @@ impl<'a> Mortar<'a> {
         let area = sum(|facet| facet.area);
         // The other surface counts by its nodes: its area differs from that of what it covers.
         let seen: BTreeSet<usize> = opposite.iter().map(|seen| seen.node).collect();
-        let of_facet = |facet: &Facet| facet.nodes.iter().filter(|node| seen.contains(node)).count() as f64;
+        let of_facet = |facet: &PlacedFacet| facet.nodes.iter().filter(|node| seen.contains(node)).count() as f64;
         let seen_of_master: f64 = sides.master.iter().map(of_facet).sum();
         let of_master = (sides.master.len() * self.master.kind.nodes()) as f64;
         let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 0.0 };
-        Ok(Found {
+        Ok(FoundRows {
             covered: [share(area, sum(|facet| facet.whole)), share(seen_of_master, of_master)],
             facets: covered.iter().filter(|facet| facet.is_covered()).map(Covered::share).collect(),
             opposite,
@@ -242,13 +221,17 @@ impl<'a> Mortar<'a> {
         })
     }
 
+    /// The same on those nodes of both surfaces that facets have.
+    fn alone<T>(&self, find: impl FnOnce(&Mortar) -> T) -> T {
+        self.on(&[self.slave, self.master].map(|surface| Sided::alone(&surface)), find)
+    }
+
     /// What the search finds, without rows; surfaces may lie in several layers before each other.
     #[doc(hidden)]
     pub fn seen(&self) -> Result<Seen, Error> {
         self.check()?;
-        let alone = [self.slave, self.master].map(|surface| Sided::alone(&surface));
-        Ok(self.on(&alone, |mortar| {
-            let sides = Sides::of(mortar);
+        Ok(self.alone(|mortar| {
+            let sides = BothSurfaces::of(mortar);
             let covered = mortar.sight(&sides).covered;
             let has_layers = covered.iter().any(Covered::has_layers);
             Seen { faces: covered.iter().map(Covered::is_covered).collect(), has_layers }
@@ -258,14 +241,12 @@ impl<'a> Mortar<'a> {
     /// The sag of each slave facet, in length.
     #[doc(hidden)]
     pub fn sags(&self) -> Vec<f64> {
-        let alone = [self.slave, self.master].map(|surface| Sided::alone(&surface));
-        self.on(&alone, |mortar| {
-            let sides = Sides::of(mortar);
+        self.alone(|mortar| {
+            let sides = BothSurfaces::of(mortar);
             sides.slave.iter().map(|one| facet::sag(std::slice::from_ref(one), &sides.normals[0])).collect()
         })
     }
 
-    /// Checks that facets and formulation fit.
     fn check(&self) -> Result<(), Error> {
         for surface in [self.slave, self.master] {
             let (reference, count) = (surface.kind.reference(), surface.kind.nodes());
@@ -310,7 +291,7 @@ impl<'a> Mortar<'a> {
     fn row(
         &self,
         node: usize,
-        part: Part,
+        part: RowPart,
         [own, others]: &[Vec<[f64; 3]>; 2],
         ends: &[Option<[usize; 2]>],
     ) -> Option<MortarRow> {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::coverage::{Covered, MOST, Shared};
 use super::data::{Mortar, MortarRow, Opposite};
 use super::face::Projected;
-use super::facet::{self, Facet, SharedPoint, SurfaceMesh};
+use super::facet::{self, PlacedFacet, SharedPoint, SurfaceMesh};
 use super::line;
 use super::skin::Curve;
 use crate::element::{MAX_NODES, PerNode, positive_coefficient, positive_functions};
@@ -20,20 +20,20 @@ const SAME_PLACE: f64 = 1e-9;
 const MEETING_STEPS: usize = 3;
 
 /// The facets of both surfaces, and the mean outward unit normals at the nodes of each.
-pub(super) struct Sides<'a> {
-    pub slave: Vec<Facet<'a>>,
-    pub master: Vec<Facet<'a>>,
+pub(super) struct BothSurfaces<'a> {
+    pub slave: Vec<PlacedFacet<'a>>,
+    pub master: Vec<PlacedFacet<'a>>,
     pub normals: [Vec<[f64; 3]>; 2],
 }
 
-impl<'a> Sides<'a> {
+impl<'a> BothSurfaces<'a> {
     pub fn of(mortar: &Mortar<'a>) -> Self {
         let [slave, master] = [mortar.slave, mortar.master].map(|surface| {
             let facets = surface.facets.chunks_exact(surface.kind.nodes());
-            facets.map(|nodes| Facet::new(&surface, nodes)).collect::<Vec<_>>()
+            facets.map(|nodes| PlacedFacet::new(&surface, nodes)).collect::<Vec<_>>()
         });
         let normals = [normals(&mortar.slave, &slave), normals(&mortar.master, &master)];
-        Sides { slave, master, normals }
+        BothSurfaces { slave, master, normals }
     }
 
     /// The larger sag of both.
@@ -74,8 +74,8 @@ impl<'a> Sides<'a> {
 }
 
 /// A slave facet as the other surface is seen from it.
-struct Site<'f> {
-    facet: &'f Facet<'f>,
+struct FacetView<'f> {
+    facet: &'f PlacedFacet<'f>,
     /// Unit vectors out of the body, of the facet and at its nodes.
     direction: [f64; 3],
     directions: Vec<[f64; 3]>,
@@ -83,12 +83,12 @@ struct Site<'f> {
     projected: Option<Projected<'f>>,
 }
 
-impl<'f> Site<'f> {
-    fn new(facet: &'f Facet<'f>, given: Option<[f64; 3]>, normals: &[[f64; 3]]) -> Self {
+impl<'f> FacetView<'f> {
+    fn new(facet: &'f PlacedFacet<'f>, given: Option<[f64; 3]>, normals: &[[f64; 3]]) -> Self {
         let direction = given.unwrap_or(facet.normal);
         let directions = facet.nodes.iter().map(|&node| given.unwrap_or(normals[node])).collect();
         let is_edge = facet.reference().dimension == 1;
-        Site { facet, direction, directions, projected: (!is_edge).then(|| Projected::new(facet, direction)) }
+        FacetView { facet, direction, directions, projected: (!is_edge).then(|| Projected::new(facet, direction)) }
     }
 
     /// The numbers of the master facets that may face it within reach.
@@ -131,7 +131,7 @@ impl<'f> Site<'f> {
 /// The distances of slave nodes from the curve for which the master facets stand that cover the slave surface.
 pub(super) struct Distances<'a> {
     slave: &'a [[f64; 3]],
-    sides: &'a Sides<'a>,
+    sides: &'a BothSurfaces<'a>,
     /// The numbers of these facets.
     met: &'a BTreeSet<u32>,
     tree: Tree,
@@ -140,7 +140,7 @@ pub(super) struct Distances<'a> {
 }
 
 impl<'a> Distances<'a> {
-    pub fn of(mortar: &Mortar<'a>, sides: &'a Sides<'a>, met: &'a BTreeSet<u32>) -> Self {
+    pub fn of(mortar: &Mortar<'a>, sides: &'a BothSurfaces<'a>, met: &'a BTreeSet<u32>) -> Self {
         let curve = Curve::of(&mortar.master, &sides.master, &sides.normals[1]);
         Distances { slave: mortar.slave.nodes, sides, met, tree: sides.tree(), curve, reach: mortar.reach }
     }
@@ -174,8 +174,8 @@ impl<'a> Distances<'a> {
             if turned <= 0.0 {
                 return None;
             }
-            let met = Site::new(facet, Some(back), &self.sides.normals[1]).opposite(0, from, self.reach)?;
-            let across = Site::new(facet, Some(facet.normal), &self.sides.normals[1]);
+            let met = FacetView::new(facet, Some(back), &self.sides.normals[1]).opposite(0, from, self.reach)?;
+            let across = FacetView::new(facet, Some(facet.normal), &self.sides.normals[1]);
             // The line meets the curve above another point of the facet than the facet itself.
             let mut gap = met.gap;
             for _ in 0..MEETING_STEPS {
@@ -203,7 +203,7 @@ pub(super) struct Sight<'f> {
 
 impl Mortar<'_> {
     /// What the surfaces see of each other within reach, with nothing solid between.
-    pub(super) fn sight<'f>(&self, sides: &'f Sides<'f>) -> Sight<'f> {
+    pub(super) fn sight<'f>(&self, sides: &'f BothSurfaces<'f>) -> Sight<'f> {
         let (tree, mut all_met) = (sides.tree(), BTreeSet::new());
         let is_clear = |[from, to]: [[f64; 3]; 2], outward: [f64; 3]| {
             self.between.is_none_or(|between| between.is_clear(from, to, outward))
@@ -215,7 +215,7 @@ impl Mortar<'_> {
         let mut nearest: BTreeMap<usize, Opposite> = BTreeMap::new();
         let mut all = Vec::with_capacity(sides.slave.len());
         for facet in &sides.slave {
-            let site = Site::new(facet, self.direction, &sides.normals[0]);
+            let site = FacetView::new(facet, self.direction, &sides.normals[0]);
             let mut covered = self.whole(&site);
             let (mut met, mut shared) = (BTreeSet::new(), Vec::new());
             let near = site.near(&tree, self.reach).into_iter().map(|number| (number, &sides.master[number as usize]));
@@ -243,7 +243,7 @@ impl Mortar<'_> {
     }
 
     /// The integrals over the whole facet.
-    fn whole<'f>(&self, site: &Site<'f>) -> Covered<'f> {
+    fn whole<'f>(&self, site: &FacetView<'f>) -> Covered<'f> {
         let (facet, mut covered) = (site.facet, Covered::new(site.facet));
         let mut add = |at: [f64; 3], size: f64| {
             let area = size * self.measure(facet, &(facet.reference().shape)(at));
@@ -257,7 +257,7 @@ impl Mortar<'_> {
     }
 
     /// The integrals over what a slave facet shares with a facet of the other surface; `None` if it is nothing.
-    fn shared<'f>(&self, site: &Site, other: &'f Facet<'f>) -> Option<Shared<'f>> {
+    fn shared<'f>(&self, site: &FacetView, other: &'f PlacedFacet<'f>) -> Option<Shared<'f>> {
         let (facet, mut shared) = (site.facet, Shared::new(other));
         let heights = [facet, other].map(|one| {
             let mut heights: PerNode<f64> = [0.0; MAX_NODES];
@@ -285,7 +285,7 @@ impl Mortar<'_> {
     }
 
     /// The values of the functions of a slave facet.
-    fn functions(&self, facet: &Facet, at: [f64; 3]) -> PerNode<f64> {
+    fn functions(&self, facet: &PlacedFacet, at: [f64; 3]) -> PerNode<f64> {
         let mut values = (facet.reference().shape)(at);
         if facet.reference().dimension == 2 {
             let has = |local: usize| self.has_coefficient.is_none_or(|has| has(facet.nodes[local]));
@@ -295,26 +295,26 @@ impl Mortar<'_> {
     }
 
     /// The factor from length or area to area at a point of a facet.
-    fn measure(&self, facet: &Facet, shape: &PerNode<f64>) -> f64 {
+    fn measure(&self, facet: &PlacedFacet, shape: &PerNode<f64>) -> f64 {
         let radius = facet.places().iter().zip(shape).map(|(place, share)| share * place[0]).sum();
         self.formulation.measure(radius)
     }
 }
 
 /// The facets that see the other surface, and those that do not turn away from one of these at a common node.
-fn kept<'f, 'a>(facets: &'f [Facet<'a>], nodes: usize, sees: impl Fn(usize) -> bool) -> Vec<&'f Facet<'a>> {
+fn kept<'f, 'a>(facets: &'f [PlacedFacet<'a>], nodes: usize, sees: impl Fn(usize) -> bool) -> Vec<&'f PlacedFacet<'a>> {
     let mut seeing: Vec<Vec<usize>> = vec![Vec::new(); nodes];
     for facet in (0..facets.len()).filter(|&facet| sees(facet)) {
         facets[facet].nodes.iter().for_each(|&node| seeing[node].push(facet));
     }
     let turns_away =
-        |one: &Facet| one.nodes.iter().flat_map(|&node| &seeing[node]).any(|&facet| !facets[facet].is_alike(one));
+        |one: &PlacedFacet| one.nodes.iter().flat_map(|&node| &seeing[node]).any(|&facet| !facets[facet].is_alike(one));
     let numbered = facets.iter().enumerate();
     numbered.filter(|&(number, facet)| sees(number) || !turns_away(facet)).map(|(_, facet)| facet).collect()
 }
 
 /// The mean outward unit normal at each node.
-fn normals(surface: &SurfaceMesh, facets: &[Facet]) -> Vec<[f64; 3]> {
+fn normals(surface: &SurfaceMesh, facets: &[PlacedFacet]) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; surface.nodes.len()];
     facets.iter().for_each(|facet| facet.add_normals(&mut sums));
     sums.into_iter().map(unit).collect()

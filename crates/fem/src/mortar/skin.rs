@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::facet::{Facet, SurfaceMesh, area_vector};
+use super::facet::{PlacedFacet, SurfaceMesh, area_vector};
 use crate::element::PerNode;
 use crate::geometry::{cross, dot, key, length, minus, shifted, unit};
 use crate::mesh::{Boundary, extent};
@@ -47,7 +47,7 @@ struct Piece {
 
 /// The sense in which a line crosses a skin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sense {
+enum CrossingSense {
     Into,
     OutOf,
 }
@@ -88,7 +88,7 @@ impl Skin {
 
     /// Returns `true` if a line from a point along a unit vector crosses the skin in this sense at a distance between
     /// two.
-    fn is_crossed(&self, from: [f64; 3], way: [f64; 3], [low, high]: [f64; 2], sense: Sense) -> bool {
+    fn is_crossed(&self, from: [f64; 3], way: [f64; 3], [low, high]: [f64; 2], sense: CrossingSense) -> bool {
         let mut is_crossed = false;
         self.tree.around_line(from, way, [AT_END * high, 0.0, high], |number| {
             let found = || self.pieces[number as usize].crossing(from, way);
@@ -111,18 +111,18 @@ impl Skin {
 
     /// Returns `true` for a point inside the body, by the next crossing of a line along a unit vector.
     fn contains(&self, at: [f64; 3], way: [f64; 3]) -> bool {
-        self.next_crossing(at, way, 0.0).is_some_and(|(_, sense)| sense == Sense::OutOf)
+        self.next_crossing(at, way, 0.0).is_some_and(|(_, sense)| sense == CrossingSense::OutOf)
     }
 
     /// The length of a line from a point of the skin along a unit vector into the body, up to where it leaves the body.
     pub fn thickness(&self, at: [f64; 3], inward: [f64; 3]) -> Option<f64> {
         let rounding = AT_END * self.size;
-        self.next_crossing(at, inward, rounding).filter(|(_, sense)| *sense == Sense::OutOf).map(|(far, _)| far)
+        self.next_crossing(at, inward, rounding).filter(|(_, sense)| *sense == CrossingSense::OutOf).map(|(far, _)| far)
     }
 
     /// The next crossing of a line along a unit vector that is farther than `beyond`, with its distance.
-    fn next_crossing(&self, at: [f64; 3], way: [f64; 3], beyond: f64) -> Option<(f64, Sense)> {
-        let mut next: Option<(f64, Sense)> = None;
+    fn next_crossing(&self, at: [f64; 3], way: [f64; 3], beyond: f64) -> Option<(f64, CrossingSense)> {
+        let mut next: Option<(f64, CrossingSense)> = None;
         self.tree.around_line(at, way, [0.0, 0.0, f64::INFINITY], |number| {
             let found = self.pieces[number as usize].crossing(at, way).filter(|found| found.0 > beyond);
             next = match (next, found) {
@@ -143,7 +143,7 @@ impl Piece {
 
     /// The distance at which a line from a point along a unit vector crosses it, negative behind the point, and the
     /// sense.
-    fn crossing(&self, from: [f64; 3], way: [f64; 3]) -> Option<(f64, Sense)> {
+    fn crossing(&self, from: [f64; 3], way: [f64; 3]) -> Option<(f64, CrossingSense)> {
         let ([a, b, c], normal) = (self.corners, self.normal());
         let turned = dot(normal, way);
         if turned.abs() <= ALONG * length(normal) {
@@ -159,7 +159,7 @@ impl Piece {
             let least = -ON_EDGE * dot(normal, normal);
             [(a, b), (b, c), (c, a)].iter().all(|&(p, q)| dot(cross(minus(q, p), minus(place, p)), normal) >= least)
         };
-        is_inside.then_some((at, if turned > 0.0 { Sense::OutOf } else { Sense::Into }))
+        is_inside.then_some((at, if turned > 0.0 { CrossingSense::OutOf } else { CrossingSense::Into }))
     }
 }
 
@@ -191,17 +191,17 @@ impl TwoSkins<'_> {
             let between = [AT_END * far, (1.0 - AT_END) * far];
             let middle = [0, 1, 2].map(|axis| f64::midpoint(from[axis], to[axis]));
             let blocks = |(body, skin): (usize, &Skin)| {
-                let is_crossed = |sense: Sense| skin.is_crossed(from, way, between, sense);
+                let is_crossed = |sense: CrossingSense| skin.is_crossed(from, way, between, sense);
                 let is_third = body != self.own && body != self.other;
-                (body != self.other && is_crossed(Sense::Into))
-                    || (body != self.own && is_crossed(Sense::OutOf))
+                (body != self.other && is_crossed(CrossingSense::Into))
+                    || (body != self.own && is_crossed(CrossingSense::OutOf))
                     || (is_third && skin.contains(middle, way))
             };
             return !self.skins.iter().enumerate().any(blocks);
         }
         let thin = [AT_END * far, far / OVERLAP];
         let is_thin = |body: usize, at: [f64; 3], inward: [f64; 3]| {
-            self.skins.get(body).is_some_and(|skin| skin.is_crossed(at, inward, thin, Sense::OutOf))
+            self.skins.get(body).is_some_and(|skin| skin.is_crossed(at, inward, thin, CrossingSense::OutOf))
         };
         !is_thin(self.own, from, way) && !is_thin(self.other, to, back)
     }
@@ -218,9 +218,6 @@ impl TwoSkins<'_> {
         !parts_sideways && self.is_clear(from, to, outward)
     }
 }
-
-// The nodes of surfaces: their own alone among those of a mesh; and at corners, where facets turn away from each
-// other, one for each side, with a normal and a row of its own.
 
 // The curves for which straight facets stand: cubic, through the nodes, along the normals there.
 //
@@ -240,7 +237,7 @@ pub(super) struct Curve<'a> {
 
 impl<'a> Curve<'a> {
     /// Through the nodes of a surface, with its `normals` at the nodes.
-    pub fn of(surface: &SurfaceMesh, facets: &[Facet], normals: &'a [[f64; 3]]) -> Self {
+    pub fn of(surface: &SurfaceMesh, facets: &[PlacedFacet], normals: &'a [[f64; 3]]) -> Self {
         let mut is_rim = vec![false; surface.nodes.len()];
         let mut sides: HashMap<[usize; 2], usize> = HashMap::new();
         for facet in facets {
@@ -259,7 +256,7 @@ impl<'a> Curve<'a> {
 
     /// How far the curve lies beyond a point of a straight facet, along the normal of the facet, in length; the point
     /// is given by the `shape` functions there. Zero at nodes, and for a curved facet, which is its own curve.
-    pub fn beyond(&self, facet: &Facet, shape: &PerNode<f64>) -> f64 {
+    pub fn beyond(&self, facet: &PlacedFacet, shape: &PerNode<f64>) -> f64 {
         if !facet.reference().mid_sides.is_empty() {
             return 0.0;
         }
@@ -289,7 +286,7 @@ impl<'a> Curve<'a> {
 
     /// The control point beside node i on the way to node j, beyond the facet. At a corner or at a rim, where the
     /// normal is not that of the curve, the curve turns as at the other end.
-    fn control(&self, facet: &Facet, i: usize, j: usize) -> f64 {
+    fn control(&self, facet: &PlacedFacet, i: usize, j: usize) -> f64 {
         let is_corner = |at: usize| dot(self.normals[facet.nodes[at]], facet.normal) < CORNER.to_radians().cos();
         let is_rim = |at: usize| self.is_rim[facet.nodes[at]];
         let (from, to) = match (is_corner(i), is_corner(j)) {

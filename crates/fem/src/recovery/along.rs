@@ -66,7 +66,9 @@ impl ElasticBody {
     /// elements of one region, the piece of one of them alone.
     pub fn along(&self, displacement: &[f64], ends: [[f64; 3]; 2]) -> Result<Vec<PathPiece>, Error> {
         self.check_nodal("nodal displacement", displacement.len())?;
-        let Some(line) = Line::within(ends, self.mesh().extent(), self.mesh().size()) else { return Ok(Vec::new()) };
+        let Some(line) = PathLine::within(ends, self.mesh().extent(), self.mesh().size()) else {
+            return Ok(Vec::new());
+        };
         let tables = self.tabulated();
         let is_about_axis = self.formulation().is_axisymmetric();
         let mut elements = self.elements().enumerate();
@@ -112,8 +114,7 @@ impl ElasticBody {
 }
 
 /// The part of a straight line near a mesh.
-struct Line {
-    /// Its first point.
+struct PathLine {
     from: [f64; 3],
     /// The distance of that point from the first end of the whole line.
     offset: f64,
@@ -124,7 +125,7 @@ struct Line {
     across: [[f64; 3]; 2],
 }
 
-impl Line {
+impl PathLine {
     /// The part of the line between two different points in a box with room of `size` around it; `None` outside.
     fn within(ends: [[f64; 3]; 2], (low, high): ([f64; 3], [f64; 3]), size: f64) -> Option<Self> {
         let whole = minus(ends[1], ends[0]);
@@ -134,7 +135,7 @@ impl Line {
         let unit = |v: [f64; 3]| v.map(|part| part / length(v));
         let way = unit(scaled);
         let first = if way[0] == 0.0 && way[1] == 0.0 { [1.0, 0.0, 0.0] } else { unit([-way[1], way[0], 0.0]) };
-        let line = Line {
+        let line = PathLine {
             from: ends[0],
             offset: 0.0,
             length: largest * length(scaled),
@@ -142,7 +143,7 @@ impl Line {
             across: [first, unit(cross(way, first))],
         };
         let [start, end] = line.in_box([0, 1, 2].map(|axis| [low[axis] - size, high[axis] + size]))?;
-        Some(Line { from: line.at(start), offset: start, length: end - start, ..line })
+        Some(PathLine { from: line.at(start), offset: start, length: end - start, ..line })
     }
 
     fn at(&self, distance: f64) -> [f64; 3] {
@@ -177,7 +178,6 @@ impl Line {
         self.in_box(ends.map(|[low, high]| [low - room, high + room])).is_some()
     }
 
-    /// The parts of the line in an element.
     fn inside(&self, body: &ElasticBody, element: &BodyElement) -> Vec<[f64; 2]> {
         let kind = element.kind;
         let smallest = SAME * element.cell.unit().min(self.length);

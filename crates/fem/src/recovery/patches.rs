@@ -4,7 +4,7 @@
 use super::StressField;
 use crate::body::{BodyElement, ElasticBody};
 use crate::dense::DenseMatrix;
-use crate::element::{ElementKind, MAX_NODES, PerNode, Rule, Tabulated, TabulatedPoint};
+use crate::element::{ElementKind, MAX_NODES, PerNode, QuadratureRule, Tabulated, TabulatedPoint};
 use crate::error::Error;
 use crate::geometry::{Around, Symmetric, distance, minus};
 use crate::threads::each;
@@ -192,7 +192,7 @@ impl EstimatedError {
         body.check_nodal("nodal displacement", displacement.len())?;
         linear::Error::check_length("nodal stress", field.nodes.len(), body.mesh().nodes().len(), "nodes")?;
         // The rule for bodies of revolution also integrates the squares of linear differences.
-        let tables = body.per_kind(|reference| Tabulated::new(reference, Rule::Revolved));
+        let tables = body.per_kind(|reference| Tabulated::new(reference, QuadratureRule::Revolved));
         let standard = body.tabulated();
         let patches = Patches::of(body, displacement);
 

@@ -21,12 +21,11 @@ use signorini_linear as linear;
 /// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in
 /// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
 pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
-    Ok(State::of(body, displacement)?.stress)
+    Ok(DisplacedState::of(body, displacement)?.stress)
 }
 
-/// The state of a displaced body.
 #[derive(Clone, Debug)]
-pub struct State {
+pub struct DisplacedState {
     pub stress: StressField,
     /// As [`internal_force`](crate::assembly::internal_force).
     pub force: Vec<f64>,
@@ -110,7 +109,7 @@ struct Run {
     centres: Vec<AtCentre>,
 }
 
-impl State {
+impl DisplacedState {
     /// The state at the nodal displacement `displacement` (length `dim * n_nodes`, in length).
     pub fn of(body: &ElasticBody, displacement: &[f64]) -> Result<Self, Error> {
         body.check_nodal("nodal displacement", displacement.len())?;
@@ -164,7 +163,7 @@ impl State {
             |(sum, count): &(Symmetric, usize)| finished(body, sum.map(|component| component / *count as f64));
         let nodes = each(mesh.nodes().len(), |node| average(&sums[node]));
         let sides = sides.iter().map(|(&side, sum)| (side, average(sum))).collect();
-        Ok(State { stress: StressField { elements, nodes, sides }, force, deformation })
+        Ok(DisplacedState { stress: StressField { elements, nodes, sides }, force, deformation })
     }
 }
 

@@ -1,6 +1,6 @@
 //! The closest point of a surface, the normal there, and the signed distance.
 
-use super::facets::Part;
+use super::facets::TrianglePart;
 use super::tree::ClosedSurface;
 use crate::geometry::{distance, dot, length, minus, plus, shifted, unit};
 
@@ -13,7 +13,7 @@ const CANCELLED: f64 = 1e-6;
 
 /// The position of a point relative to a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closest {
+pub struct SignedDistance {
     /// Unit normal out of the solid at the closest point.
     pub outward: [f64; 3],
     /// Signed distance along `outward` from the surface to the point, in length; negative inside.
@@ -22,10 +22,10 @@ pub struct Closest {
 
 /// A closest point, on one triangle.
 #[derive(Clone, Copy, Debug)]
-struct Foot {
+struct TriangleFoot {
     at: [f64; 3],
     distance: f64,
-    part: Part,
+    part: TrianglePart,
     triangle: u32,
 }
 
@@ -43,7 +43,7 @@ impl ClosedSurface {
     /// # Source
     /// J. A. Baerentzen, H. Aanaes, *Signed distance computation using the angle weighted pseudonormal*, IEEE Trans.
     /// Vis. Comput. Graph. 11 (2005) 243-253.
-    pub fn closest(&self, point: [f64; 3], tolerance: f64, towards: [f64; 3]) -> Closest {
+    pub fn closest(&self, point: [f64; 3], tolerance: f64, towards: [f64; 3]) -> SignedDistance {
         let feet = self.feet(point, tolerance);
         let against = |outward: [f64; 3]| -dot(outward, towards);
         let nearest = feet.iter().fold(f64::INFINITY, |nearest: f64, foot| nearest.min(foot.distance));
@@ -54,11 +54,11 @@ impl ClosedSurface {
             let outward = sharpest.map_or([0.0; 3], |foot| self.pseudonormal(foot));
             let outward = if outward == [0.0; 3] { towards.map(|part| -part) } else { outward };
             let at = sharpest.map_or(point, |foot| foot.at);
-            return Closest { outward, height: dot(outward, minus(point, at)) };
+            return SignedDistance { outward, height: dot(outward, minus(point, at)) };
         }
         let sign = if self.contains(point) { -1.0 } else { 1.0 };
         let apart = Self::apart(&feet, point, tolerance);
-        let seen = |foot: &Foot| self.seen(foot, point, sign);
+        let seen = |foot: &TriangleFoot| self.seen(foot, point, sign);
         let sum = apart.iter().map(seen).fold([0.0; 3], |sum, one| plus(sum, one.outward));
         let cancels = length(sum) < CANCELLED * apart.len() as f64;
         let candidates = if apart.len() < MOST_FEET { &apart } else { &feet };
@@ -66,26 +66,26 @@ impl ClosedSurface {
             .iter()
             .map(seen)
             .reduce(|most, other| if against(other.outward) > against(most.outward) { other } else { most });
-        let alone = most.unwrap_or(Closest { outward: towards.map(|part| -part), height: nearest });
+        let alone = most.unwrap_or(SignedDistance { outward: towards.map(|part| -part), height: nearest });
         if apart.len() == 1 || apart.len() == MOST_FEET || cancels {
             return alone;
         }
         let outward = unit(sum);
         // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther
         // away.
-        Closest { outward, height: alone.height / dot(alone.outward, outward) }
+        SignedDistance { outward, height: alone.height / dot(alone.outward, outward) }
     }
 
     /// The closest points on all triangles that have one, within `tolerance` of the closest.
     ///
     /// Insides of triangles come first, then sides, then corners.
-    fn feet(&self, point: [f64; 3], tolerance: f64) -> Vec<Foot> {
-        let (mut nearest, mut feet) = (f64::INFINITY, Vec::<Foot>::new());
+    fn feet(&self, point: [f64; 3], tolerance: f64) -> Vec<TriangleFoot> {
+        let (mut nearest, mut feet) = (f64::INFINITY, Vec::<TriangleFoot>::new());
         self.tree.near(point, |triangle| {
             let (at, part) = self.triangle(triangle).closest(point);
             let distance = distance(at, point);
             if distance <= nearest + tolerance {
-                feet.push(Foot { at, distance, part, triangle });
+                feet.push(TriangleFoot { at, distance, part, triangle });
                 nearest = nearest.min(distance);
             }
             (nearest + tolerance) * (nearest + tolerance)
@@ -97,8 +97,8 @@ impl ClosedSurface {
 
     /// The first feet that lie apart. On one smooth piece, feet that are equally close up to `tolerance` lie within the
     /// square root of twice the tolerance times the distance.
-    fn apart(feet: &[Foot], point: [f64; 3], tolerance: f64) -> Vec<Foot> {
-        let mut apart: Vec<Foot> = Vec::new();
+    fn apart(feet: &[TriangleFoot], point: [f64; 3], tolerance: f64) -> Vec<TriangleFoot> {
+        let mut apart: Vec<TriangleFoot> = Vec::new();
         for &foot in feet {
             let beside = 3.0 * (tolerance * distance(foot.at, point)).sqrt();
             if apart.iter().all(|other| distance(other.at, foot.at) > beside) {
@@ -112,33 +112,33 @@ impl ClosedSurface {
     }
 
     /// The relative position of a point off the surface, by one foot.
-    fn seen(&self, foot: &Foot, point: [f64; 3], sign: f64) -> Closest {
+    fn seen(&self, foot: &TriangleFoot, point: [f64; 3], sign: f64) -> SignedDistance {
         let way = minus(point, foot.at).map(|part| sign * part / foot.distance);
         let triangle = self.triangle(foot.triangle);
         let normal = triangle.normal();
         // Inside several solids the closest triangle may face inwards.
-        if foot.part == Part::Face && dot(normal, way) > 0.0 {
-            return Closest { outward: normal, height: dot(normal, minus(point, triangle.0[0])) };
+        if foot.part == TrianglePart::Face && dot(normal, way) > 0.0 {
+            return SignedDistance { outward: normal, height: dot(normal, minus(point, triangle.0[0])) };
         }
-        Closest { outward: way, height: sign * foot.distance }
+        SignedDistance { outward: way, height: sign * foot.distance }
     }
 
     /// The normal at a foot: unit normals of the triangles that meet there, weighted by their angles. Zero if they
     /// cancel.
-    fn pseudonormal(&self, foot: &Foot) -> [f64; 3] {
+    fn pseudonormal(&self, foot: &TriangleFoot) -> [f64; 3] {
         let corners = self.corners_of(foot.triangle);
         let weighted = |sum: [f64; 3], triangle: u32, weight: f64| {
             let normal = self.triangle(triangle).normal();
             shifted(sum, weight, normal)
         };
         match foot.part {
-            Part::Face => self.triangle(foot.triangle).normal(),
-            Part::Side(corner) => {
+            TrianglePart::Face => self.triangle(foot.triangle).normal(),
+            TrianglePart::Side(corner) => {
                 let ends = [corners[corner], corners[(corner + 1) % 3]];
                 let along = self.around(ends[0]).iter().filter(|&&other| self.corners_of(other).contains(&ends[1]));
                 unit(along.fold([0.0; 3], |sum, &triangle| weighted(sum, triangle, 1.0)))
             }
-            Part::Corner(corner) => {
+            TrianglePart::Corner(corner) => {
                 let vertex = corners[corner];
                 unit(self.around(vertex).iter().fold([0.0; 3], |sum, &triangle| {
                     let own = self.corners_of(triangle).iter().position(|&corner| corner == vertex).unwrap_or(0);
@@ -149,13 +149,13 @@ impl ClosedSurface {
     }
 }
 
-impl Part {
+impl TrianglePart {
     /// Insides first, then sides, then corners.
     fn rank(self) -> u8 {
         match self {
-            Part::Face => 0,
-            Part::Side(_) => 1,
-            Part::Corner(_) => 2,
+            TrianglePart::Face => 0,
+            TrianglePart::Side(_) => 1,
+            TrianglePart::Corner(_) => 2,
         }
     }
 }

@@ -71,7 +71,6 @@ impl Facets {
         self.places.get(triangle).map_or(0, |&place| place as usize)
     }
 
-    /// An error of the file at a position.
     pub fn fault(&self, place: usize, message: impl Into<String>) -> Error {
         let (file, message) = (self.file.clone(), message.into());
         match self.unit {
@@ -113,7 +112,6 @@ pub(super) fn three_numbers<'a>(words: &mut impl Iterator<Item = &'a str>) -> Op
 // Wavefront OBJ: only lines `v` (vertices) and `f` (faces) are read; a polygon is cut into a fan from its first
 // corner.
 
-/// Reads the bytes of a file.
 pub(super) fn read_obj(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
     let text = String::from_utf8_lossy(bytes);
     let mut facets = Facets::new(file, Unit::Lines);
@@ -268,7 +266,7 @@ const FLAT: f64 = 1e-9;
 
 /// The closest part of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Part {
+pub(super) enum TrianglePart {
     /// Its inside.
     Face,
     /// The inside of the side from this corner, 0 to 2, to the next.
@@ -311,7 +309,7 @@ impl Triangle {
     }
 
     /// The closest point to `node`, and the part on which it lies.
-    pub fn closest(&self, node: [f64; 3]) -> ([f64; 3], Part) {
+    pub fn closest(&self, node: [f64; 3]) -> ([f64; 3], TrianglePart) {
         let [a, b, c] = self.0;
         let normal = self.normal();
         if normal != [0.0; 3] {
@@ -319,20 +317,20 @@ impl Triangle {
             let area = dot(cross(ab, ac), normal);
             let (of_b, of_c) = (dot(cross(to_node, ac), normal) / area, dot(cross(ab, to_node), normal) / area);
             if of_b > 0.0 && of_c > 0.0 && of_b + of_c < 1.0 {
-                return ([0, 1, 2].map(|axis| a[axis] + of_b * ab[axis] + of_c * ac[axis]), Part::Face);
+                return ([0, 1, 2].map(|axis| a[axis] + of_b * ab[axis] + of_c * ac[axis]), TrianglePart::Face);
             }
         }
         let sides = [0, 1, 2].map(|corner| {
             let (from, along) = (self.0[corner], minus(self.0[(corner + 1) % 3], self.0[corner]));
             let share = dot(minus(node, from), along) / dot(along, along);
             if share >= 1.0 {
-                return (self.0[(corner + 1) % 3], Part::Corner((corner + 1) % 3));
+                return (self.0[(corner + 1) % 3], TrianglePart::Corner((corner + 1) % 3));
             }
             // A side so short that its square is zero gives NaN as share.
             if share > 0.0 {
-                return (shifted(from, share, along), Part::Side(corner));
+                return (shifted(from, share, along), TrianglePart::Side(corner));
             }
-            (from, Part::Corner(corner))
+            (from, TrianglePart::Corner(corner))
         });
         let far = |at: [f64; 3]| dot(minus(at, node), minus(at, node));
         let [first, second, third] = sides;

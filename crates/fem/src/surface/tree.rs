@@ -39,7 +39,6 @@ pub type Limits = [[f64; 3]; 2];
 /// The limits of an empty set.
 pub(super) const NOWHERE: Limits = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
-/// The limits of both.
 pub(super) fn joined(a: Limits, b: Limits) -> Limits {
     [[0, 1, 2].map(|axis| a[0][axis].min(b[0][axis])), [0, 1, 2].map(|axis| a[1][axis].max(b[1][axis]))]
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use super::deformation;
 use crate::error::Error;
 use crate::fem::geometry::dot;
-use crate::fem::recovery::state::{Deformation, State, at_points, nodal_strain, volume_and_energy};
+use crate::fem::recovery::state::{Deformation, DisplacedState, at_points, nodal_strain, volume_and_energy};
 use crate::fem::recovery::{self, StressField};
 use crate::scene::Model;
 use crate::scene::models::model;
@@ -34,7 +34,7 @@ pub struct Answer {
     of_ties: Vec<f64>,
     contact_set: ContactSet,
     pressure: Vec<f64>,
-    state: OnceLock<State>,
+    state: OnceLock<DisplacedState>,
     beyond: OnceLock<Option<String>>,
     forces: OnceLock<Forces>,
     resultants: OnceLock<Vec<Resultant>>,
@@ -107,7 +107,7 @@ impl Answer {
     }
 
     /// What the elements tell; computed at the first call.
-    fn state(&self) -> Result<&State, Error> {
+    fn state(&self) -> Result<&DisplacedState, Error> {
         once(&self.state, || set_up::state(&self.model, &self.displacement))
     }
 

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::fem::Boundary;
 use crate::fem::assembly::{DofMap, LinearForm};
 use crate::fem::body::ElasticBody;
-use crate::fem::mortar::{Found, MortarRow};
+use crate::fem::mortar::{FoundRows, MortarRow};
 use crate::fem::sum::Component;
 use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, number, positive, wrong};
@@ -27,7 +27,7 @@ pub(super) struct Facing<'a> {
     /// `true` if the second of the given surfaces takes the means.
     pub is_swapped: bool,
     reach: f64,
-    pub found: Found,
+    pub found: FoundRows,
 }
 
 impl<'a> Facing<'a> {
@@ -104,7 +104,7 @@ impl<'a> Facing<'a> {
         self.rows_along(&self.found, |_| along)
     }
 
-    fn rows_along(&self, found: &Found, along: impl Fn(usize) -> [f64; 3]) -> Vec<TieRow> {
+    fn rows_along(&self, found: &FoundRows, along: impl Fn(usize) -> [f64; 3]) -> Vec<TieRow> {
         let (dofs, mesh) = (self.dofs, self.body.mesh());
         let row = |row: &MortarRow| {
             let ends = ends(row, &dofs.basis);

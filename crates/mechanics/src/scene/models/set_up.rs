@@ -6,7 +6,7 @@ use super::rigid_body_modes::RigidBodyModes;
 use crate::error::Error;
 use crate::fem::assembly::{free_mass, internal_force, nodal_mass};
 use crate::fem::geometry::unit;
-use crate::fem::recovery::state::State;
+use crate::fem::recovery::state::DisplacedState;
 use crate::fem::{self, MassForm};
 use crate::scene::input::entry::{located, wrong};
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
@@ -104,11 +104,11 @@ pub(crate) fn forces_at(model: &Model, displacement: &[f64], multiplier: &[f64])
     forces(model, &displacement, &internal_force(model.body(), &displacement)?, multiplier, of_ties)
 }
 
-pub(crate) fn state(model: &Model, displacement: &[f64]) -> Result<State, Error> {
+pub(crate) fn state(model: &Model, displacement: &[f64]) -> Result<DisplacedState, Error> {
     let nodes = model.mesh().nodes();
-    let State { stress, force, deformation } = State::of(model.body(), displacement)?;
+    let DisplacedState { stress, force, deformation } = DisplacedState::of(model.body(), displacement)?;
     let stress = stress.of_whole(model.body(), |node| model.parts.conditions.symmetry.axes_at(&nodes[node]));
-    Ok(State { stress, force, deformation })
+    Ok(DisplacedState { stress, force, deformation })
 }
 
 /// The forces of a nodal displacement, which the forces `internal` hold.

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use super::{Sides, disc, half_ball, half_disc, ring};
 use crate::Error;
-use crate::fem::element::{Cell, Rule, Tabulated};
+use crate::fem::element::{Cell, QuadratureRule, Tabulated};
 use crate::fem::{ElementKind, Mesh, Zone};
 
 const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8];
@@ -15,7 +15,7 @@ const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::
 /// and quadrature points.
 fn measure(mesh: &Mesh) -> (f64, f64) {
     let reference = mesh.kind_of(0).reference();
-    let table = Tabulated::new(reference, Rule::Straight);
+    let table = Tabulated::new(reference, QuadratureRule::Straight);
     let (mut total, mut worst) = (0.0, f64::INFINITY);
     for element in mesh.elements() {
         let cell = Cell::at(reference, |local| mesh.nodes()[element[local]]);

@@ -425,11 +425,10 @@ impl Across {
         pair_of: &[Option<Pair>],
         at: [f64; 3],
     ) -> Option<Self> {
-        let corners = match kind {
-            FacetKind::Point1 => return None,
-            FacetKind::Line2 | FacetKind::Line3 => &facet[..2],
-            FacetKind::T3 | FacetKind::Q4 | FacetKind::T6 | FacetKind::Q8 => &facet[..kind.reference().corners],
-        };
+        let corners = &facet[..kind.corners()];
+        if corners.len() < 2 {
+            return None;
+        }
         let pairs: Option<Vec<Pair>> = corners.iter().map(|&corner| pair_of[corner]).collect();
         let pairs = pairs?;
         let normal = unit(pairs.iter().fold([0.0; 3], |sum, pair| minus(sum, pair.normal.map(|component| -component))));

@@ -6,7 +6,7 @@ use super::order::{Between, BodyRow, facet_size};
 use super::shape::ObstacleSite;
 use crate::error::Error;
 use crate::fem::assembly::{PositiveBasis, outward};
-use crate::fem::mortar::{Found, MortarRow, Opposite};
+use crate::fem::mortar::{FoundRows, MortarRow, Opposite};
 use crate::fem::{self, Boundary, DofMap, ElasticBody, Mortar};
 use crate::scene::Warning;
 use crate::scene::input::entry::wrong;
@@ -79,16 +79,15 @@ pub(crate) fn means(
     (reach, along, has_sides): (f64, Option<[f64; 3]>, bool),
     may_carry: &dyn Fn(usize) -> bool,
     path: &str,
-) -> Result<Found, Error> {
+) -> Result<FoundRows, Error> {
     let [own, other] = [slave, master].map(|boundary| outward(body, boundary));
     let nodes = body.mesh().nodes();
     let has_coefficient = |node: usize| dofs.basis.ends(node).is_some();
-    let mortar = Mortar::new((nodes, &own), (nodes, &other), *body.formulation())
-        .within(reach)
-        .carried_by(may_carry)
-        .with_coefficients(&has_coefficient);
+    let mut mortar = Mortar::new((nodes, &own), (nodes, &other), *body.formulation()).within(reach);
+    mortar.may_carry = Some(may_carry);
+    mortar.has_coefficient = Some(&has_coefficient);
+    mortar.has_sides = has_sides;
     let mortar = along.map_or(mortar, |direction| mortar.along(direction));
-    let mortar = if has_sides { mortar.by_sides() } else { mortar };
     let mortar = match [slave, master].map(|boundary| body.region_of(boundary)) {
         [Some(own), Some(other)] if own != other => mortar.between(body.skins(), [own, other]),
         _ => mortar,
@@ -127,7 +126,7 @@ fn facing(seen: Opposite) -> BodyRow {
 /// The share of a fit that its drawing may miss it by.
 const OF_FIT: f64 = 0.1;
 
-fn warnings(site: &ObstacleSite, [slave, master]: [&Boundary; 2], found: &Found, fit: Option<f64>) -> Vec<Warning> {
+fn warnings(site: &ObstacleSite, [slave, master]: [&Boundary; 2], found: &FoundRows, fit: Option<f64>) -> Vec<Warning> {
     let (obstacle, boundary, other) = (site.obstacle, &slave.name, &master.name);
     let [share, of_other] = found.covered;
     if found.rows.is_empty() {

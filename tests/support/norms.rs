@@ -1,12 +1,12 @@
 //! Norms of the error against an exact solution: `||u - u_h||` in energy and in L2.
 
-use crate::body::{BodyElement, ElasticBody};
-use crate::element::{Part, PerNode, QuadraturePoint, ReferenceElement, Tabulated};
-use crate::error::Error;
-use crate::geometry::{Symmetric, trace};
-use crate::material::Law;
+use signorini::fem::body::BodyElement;
+use signorini::fem::element::{PerKind, ReferenceElement, Shape, Tabulated, gauss_legendre};
+use signorini::fem::geometry::{Symmetric, trace};
+use signorini::fem::material::Law;
+use signorini::fem::{ElasticBody, QuadraturePoint};
 
-/// An exact solution at one point, with which [`error_norms`](crate::error_norms) compares a discrete one.
+/// An exact solution at one point, with which [`error_norms`] compares a discrete one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactState {
     /// Displacement [x, y, z], in length, along the positive axes; zero beyond the dimension of the model.
@@ -41,38 +41,16 @@ const HALVINGS: usize = 12;
 /// Integrals use five quadrature points in each direction of an element and of its halves along each direction. Parts
 /// are halved further as long as the halves change the sum: four digits are correct, also if the exact strain is
 /// singular at a point. The errors are infinite or NaN if the exact solution is zero.
-///
-/// ```
-/// use signorini_fem::{ElasticBody, ElementKind, ExactState, Formulation, Material, Mesh, error_norms};
-///
-/// // u_x = x on one cell; the answer is 0.9 u_x at every node.
-/// let nodes = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
-/// let mesh = Mesh::new(nodes, ElementKind::Q4, vec![0, 1, 2, 3], Vec::new())?;
-/// let nodal: Vec<f64> = mesh.nodes().iter().flat_map(|at| [0.9 * at[0], 0.0]).collect();
-/// let body = ElasticBody::new(mesh, Material::new(1.0, 0.3)?, Formulation::PlaneStrain { thickness: 1.0 })?;
-/// let strain = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-/// let errors = error_norms(&body, &nodal, |[x, _, _]| ExactState { displacement: [x, 0.0, 0.0], strain })?;
-/// assert!((errors.energy - 0.1).abs() < 1e-14);
-/// assert!((errors.l2 - 0.1).abs() < 1e-14);
-/// # Ok::<(), signorini_fem::Error>(())
-/// ```
-pub fn error_norms(
-    body: &ElasticBody,
-    displacement: &[f64],
-    exact: impl Fn([f64; 3]) -> ExactState,
-) -> Result<ErrorNorms, Error> {
-    body.check_nodal("nodal displacement", displacement.len())?;
-    let squares = Squares { body, exact };
-    let tables = body.finely_tabulated();
-    let elements = || body.elements().map(|element| (body.gather(displacement, element.nodes), element));
-    let coarse: Vec<Sums> =
-        elements().map(|(local, element)| squares.over(&element, &local, tables.at(element.kind))).collect();
+pub fn error_norms(body: &ElasticBody, displacement: &[f64], exact: impl Fn([f64; 3]) -> ExactState) -> ErrorNorms {
+    let squares = Squares { body, displacement, tables: body.tabulated(), exact };
+    let tables = per_kind(body, Tabulated::fine);
+    let coarse: Vec<Sums> = body.elements().map(|element| squares.over(&element, tables.at(element.kind))).collect();
     let allowed = Sums::total(&coarse).allowed();
-    let halves = body.per_kind(|reference| Halves::of(reference, Part::WHOLE, HALVINGS));
-    let fine: Vec<Sums> = (elements().zip(&coarse))
-        .map(|((local, element), sums)| squares.refined(&element, &local, *sums, halves.at(element.kind), allowed))
+    let halves = per_kind(body, |reference| Halves::of(reference, Part::WHOLE, HALVINGS));
+    let fine: Vec<Sums> = (body.elements().zip(&coarse))
+        .map(|(element, sums)| squares.refined(&element, *sums, halves.at(element.kind), allowed))
         .collect();
-    Ok(Sums::total(&fine).norms())
+    Sums::total(&fine).norms()
 }
 
 /// The same with one fixed quadrature rule for elements of one kind, whose integration error is not corrected; the
@@ -82,12 +60,15 @@ pub fn error_norms_by(
     body: &ElasticBody,
     displacement: &[f64],
     exact: impl Fn([f64; 3]) -> ExactState,
-) -> Result<ErrorNorms, Error> {
-    body.check_nodal("nodal displacement", displacement.len())?;
-    let squares = Squares { body, exact };
+) -> ErrorNorms {
+    let squares = Squares { body, displacement, tables: body.tabulated(), exact };
     let table = Tabulated::with_rule(body.mesh().kind_of(0).reference(), rule.to_vec());
-    let of_element = |element: BodyElement| squares.over(&element, &body.gather(displacement, element.nodes), &table);
-    Ok(Sums::total(&body.elements().map(of_element).collect::<Vec<_>>()).norms())
+    let of_element = |element: BodyElement| squares.over(&element, &table);
+    Sums::total(&body.elements().map(of_element).collect::<Vec<_>>()).norms()
+}
+
+fn per_kind<T>(body: &ElasticBody, make: impl Fn(&'static ReferenceElement) -> T) -> PerKind<T> {
+    PerKind::of(body.mesh().kinds(), |kind| make(kind.reference()))
 }
 
 /// Integrals of squares: of the error and of the exact solution.
@@ -123,6 +104,61 @@ impl Sums {
     }
 }
 
+/// A cube inside [-1, 1]^dimension; repeated halving reaches any point of that cube.
+#[derive(Clone, Copy)]
+struct Part {
+    /// Its lowest corner.
+    low: [f64; 3],
+    /// The length of its edges.
+    size: f64,
+}
+
+impl Part {
+    const WHOLE: Part = Part { low: [-1.0; 3], size: 2.0 };
+
+    /// Its 2^dimension halves along every axis.
+    fn halves(self, dimension: usize) -> impl Iterator<Item = Part> {
+        let size = self.size / 2.0;
+        (0..1_usize << dimension).map(move |choice| {
+            let mut low = self.low;
+            (0..dimension).filter(|axis| choice >> axis & 1 == 1).for_each(|axis| low[axis] += size);
+            Part { low, size }
+        })
+    }
+
+    /// Five Gauss points in each direction of the part; on a simplex they are mapped onto the simplex.
+    fn table(self, reference: &'static ReferenceElement) -> Tabulated {
+        let mut points = vec![QuadraturePoint { at: [0.0; 3], weight: 1.0 }];
+        for axis in 0..reference.dimension {
+            let along = |start: &QuadraturePoint| {
+                let start = *start;
+                gauss_legendre(5).map(move |(at, weight)| {
+                    let mut next = start;
+                    next.at[axis] = self.low[axis] + (1.0 + at) / 2.0 * self.size;
+                    next.weight *= weight * self.size / 2.0;
+                    next
+                })
+            };
+            points = points.iter().flat_map(along).collect();
+        }
+        if reference.form == Shape::Simplex {
+            points.iter_mut().for_each(|point| onto_simplex(point, reference.dimension));
+        }
+        Tabulated::with_rule(reference, points)
+    }
+}
+
+/// Maps a point of the cube onto the simplex: each coordinate takes its share of what the later ones leave.
+fn onto_simplex(point: &mut QuadraturePoint, dimension: usize) {
+    let mut left = 1.0;
+    for axis in (0..dimension).rev() {
+        let share = (1.0 + point.at[axis]) / 2.0;
+        point.at[axis] = left * share;
+        point.weight *= left / 2.0;
+        left *= 1.0 - share;
+    }
+}
+
 /// The halves of a part of the reference cell, and the number of further halvings allowed.
 struct Halves {
     parts: Vec<Part>,
@@ -133,24 +169,28 @@ struct Halves {
 impl Halves {
     fn of(reference: &'static ReferenceElement, part: Part, left: usize) -> Self {
         let parts: Vec<Part> = part.halves(reference.dimension).collect();
-        let tables = parts.iter().map(|&half| Tabulated::fine_in(reference, half)).collect();
+        let tables = parts.iter().map(|half| half.table(reference)).collect();
         Halves { parts, tables, left }
     }
 }
 
 struct Squares<'a, F> {
     body: &'a ElasticBody,
+    displacement: &'a [f64],
+    tables: PerKind<Tabulated>,
     exact: F,
 }
 
 impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
-    /// The sums over the points of a table of one element with the given displacements of its nodes.
-    fn over(&self, element: &BodyElement, local: &PerNode<[f64; 3]>, table: &Tabulated) -> Sums {
+    /// The sums over the points of a table of one element.
+    fn over(&self, element: &BodyElement, table: &Tabulated) -> Sums {
+        let strained = self.body.strained(&self.tables, self.displacement, element);
+        let local = self.body.gather(self.displacement, element.nodes);
         let (cell, law) = (&element.cell, &element.phase.law);
         let scale = cell.unit().powi(self.body.dimension() as i32);
         let mut sums = Sums::default();
         for at in &table.points {
-            let point = self.body.displaced(cell, at, local);
+            let point = strained.displaced(at);
             let place = cell.place(&at.shape);
             let exact = (self.exact)(place);
             let mut away = exact.displacement;
@@ -172,22 +212,15 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
 
     /// The sums over a part of an element that has `sums` by its own points: those of its halves, halved further if
     /// they differ.
-    fn refined(
-        &self,
-        element: &BodyElement,
-        local: &PerNode<[f64; 3]>,
-        sums: Sums,
-        halves: &Halves,
-        allowed: [f64; 2],
-    ) -> Sums {
-        let parts = halves.tables.iter().map(|table| self.over(element, local, table)).collect::<Vec<_>>();
+    fn refined(&self, element: &BodyElement, sums: Sums, halves: &Halves, allowed: [f64; 2]) -> Sums {
+        let parts = halves.tables.iter().map(|table| self.over(element, table)).collect::<Vec<_>>();
         let total = Sums::total(&parts);
         if halves.left == 0 || !total.away(&sums, allowed) {
             return total;
         }
         let further = |(&half, &sums): (&Part, &Sums)| {
             let halves = Halves::of(element.kind.reference(), half, halves.left - 1);
-            self.refined(element, local, sums, &halves, allowed)
+            self.refined(element, sums, &halves, allowed)
         };
         Sums::total(&halves.parts.iter().zip(&parts).map(further).collect::<Vec<_>>())
     }
