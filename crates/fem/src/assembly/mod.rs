@@ -7,6 +7,8 @@
 
 mod dofs;
 mod element_stiffness;
+mod form;
+mod internal_force;
 mod load;
 mod mass;
 mod positive_basis;
@@ -14,9 +16,11 @@ mod shape_derivative;
 mod springs;
 mod stiffness;
 
-pub use dofs::{Along, Followers, LinearForm, Moved, perpendicular, rigid_motions};
+pub use dofs::{Along, Followers, Moved, perpendicular, rigid_motions};
 pub use dofs::{DofMap, Frame, rigid_body_modes};
 pub use element_stiffness::element_stiffness;
+pub use form::LinearForm;
+pub use internal_force::{add_to_nodes, internal_force, of_cell};
 pub use load::{
     FacetPoint, Kinks, add_centrifugal, add_gravity, add_moment, add_traction_with_kinks, facet_centres, facet_sizes,
     normal_sums, outward, turning_traction,
@@ -33,5 +37,4 @@ pub use shape_derivative::{
     integral_by_places, internal_work_by_places, interpolated, own_energy, own_energy_by_places, own_energy_change,
 };
 pub use springs::{NodalForces, Springs};
-pub use stiffness::{add_to_nodes, of_cell, stiffness_on};
-pub use stiffness::{internal_force, stiffness};
+pub use stiffness::{stiffness, stiffness_on};

@@ -1,6 +1,7 @@
 //! The elastic body: a mesh, its elements, their materials, a formulation; strains and stresses in it.
 
 mod phase;
+mod phases;
 mod point;
 
 pub use phase::{Phase, PhaseNumber, Region};

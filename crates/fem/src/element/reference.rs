@@ -63,8 +63,8 @@ pub struct ReferenceElement {
     pub mid_sides: &'static [[usize; 2]],
     /// Local nodes of every face, in the order of the facet's own reference cell, seen from outside counterclockwise.
     pub faces: &'static [&'static [usize]],
-    /// Local nodes around each straight cell into which a facet is cut, along the nodes of a line; empty for a cell that
-    /// is no facet.
+    /// Local nodes around each straight cell into which a facet is cut, along the nodes of a line; empty for a cell
+    /// that is no facet.
     pub straight: &'static [&'static [usize]],
     /// Values of the shape functions at a reference point.
     pub shape: fn([f64; 3]) -> PerNode<f64>,

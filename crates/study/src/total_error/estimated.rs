@@ -290,7 +290,8 @@ mod tests {
         let whole = 9.0 * 8.0 * 4.0 / 3.0 / (100.0 * 0.7 / (1.3 * 0.4));
         let moved = &solution.displacement;
         let stored = dot(moved, &problem.stiffness().mul(moved));
-        let error = ((whole - 2.0 * dot(problem.load(), moved) + stored) / whole).sqrt();
+        // The difference of an exact answer is rounding, of either sign.
+        let error = ((whole - 2.0 * dot(problem.load(), moved) + stored).abs() / whole).sqrt();
         let last = found.levels.last().unwrap();
         assert!(found.levels.len() == 2 && found.levels[0].total_error > 0.05, "{:?}", found.levels);
         assert!(error < 1e-3 && last.total_error < 0.005, "{error} {last:?}");
