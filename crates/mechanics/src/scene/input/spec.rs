@@ -1,6 +1,6 @@
 //! The types of a scene as it is written.
 
-/// Declares them: an object refuses keys that it does not know, and leaves out a field of an `Option` that has no value;
+/// Declares them: an object refuses keys that it does not know, and leaves out a field of an `Option` without a value;
 /// a choice is written with hyphens.
 macro_rules! specs {
     () => {};

@@ -36,8 +36,8 @@ fn farthest(mesh: &Mesh, name: &str, off: impl Fn([f64; 3]) -> f64) -> f64 {
     boundary.nodes().iter().map(|&node| off(mesh.nodes()[node]).abs()).fold(0.0, f64::max)
 }
 
-/// Checks meshes of refinements that double from 1 on: the ratio of Jacobian determinants in their elements, the order at
-/// which their area or volume converges, and the last error of it.
+/// Checks meshes of refinements that double from 1 on: the ratio of Jacobian determinants in their elements, the order
+/// at which their area or volume converges, and the last error of it.
 fn converges(mesh: impl Fn(usize) -> Mesh, count: u32, exact: f64, [quality, order, last]: [f64; 3], name: &str) {
     let error = |refinement: u32| {
         let (total, worst) = measure(&mesh(1 << refinement));

@@ -1,4 +1,4 @@
-//! Lower halves of discs and balls: a core between lines, and shells of cells around it out to the circle or the sphere.
+//! Lower halves of discs and balls: a core between lines, and shells of cells around it out to the circle or sphere.
 
 use std::f64::consts::FRAC_PI_4;
 
