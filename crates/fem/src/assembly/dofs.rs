@@ -404,8 +404,8 @@ impl DofMap {
         self.expand_with(free, 1.0)
     }
 
-    /// A nodal motion, length `dim * n_nodes`, from that of the unknowns (`free`, one entry each), both in length, or in
-    /// length over time; supported dofs stay at zero.
+    /// A nodal motion, length `dim * n_nodes`, from that of the unknowns (`free`, one entry each), both in length, or
+    /// in length over time; supported dofs stay at zero.
     pub fn expand_motion(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
         self.expand_with(free, 0.0)
     }
@@ -424,8 +424,8 @@ impl DofMap {
         Ok(nodal)
     }
 
-    /// The forces along the unknowns of nodal forces (`nodal`, length `dim * n_nodes`, in force): one entry for each, in
-    /// force.
+    /// The forces along the unknowns of nodal forces (`nodal`, length `dim * n_nodes`, in force): one entry for each,
+    /// in force.
     pub fn restrict(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
         let forces = self.on_coefficients(nodal)?;
         let mut along: Vec<f64> = self.free.iter().map(|&dof| forces[dof]).collect();

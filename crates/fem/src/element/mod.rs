@@ -29,11 +29,6 @@ impl ElementKind {
     /// The tetrahedron with a quadratic displacement.
     pub const QUADRATIC_TETRAHEDRON: ElementKind = ElementKind::Tet10;
 
-    /// The kind of each face; all faces of one element are alike.
-    pub fn facet(self) -> ElementKind {
-        self.reference().facet
-    }
-
     /// Short name of the element type, as `Q4`.
     pub fn name(self) -> &'static str {
         self.reference().name

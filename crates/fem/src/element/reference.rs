@@ -1,7 +1,5 @@
 //! The description of an element.
 
-use super::ElementKind;
-
 /// The largest number of nodes of an element.
 pub const MAX_NODES: usize = 20;
 
@@ -74,9 +72,6 @@ pub struct ReferenceElement {
     pub quadrature: &'static [QuadraturePoint],
     /// The same for a cell of a body of revolution: the radius adds one degree.
     pub quadrature_revolved: &'static [QuadraturePoint],
-    /// The kind of a face of the element; for points and edges, which are no elements of a plane body, the kind of its
-    /// ends.
-    pub facet: ElementKind,
     /// The number of the element in a file of Gmsh.
     pub gmsh: usize,
     /// The position of each node in an element of a Gmsh file.

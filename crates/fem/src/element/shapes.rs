@@ -62,6 +62,19 @@ impl ElementKind {
             ElementKind::Hex20 => &HEX20,
         }
     }
+
+    /// The kind of each face; all faces of one element are alike. Points and lines have ends.
+    pub fn facet(self) -> ElementKind {
+        match self {
+            ElementKind::Point1 | ElementKind::Line2 | ElementKind::Line3 => ElementKind::Point1,
+            ElementKind::T3 | ElementKind::Q4 => ElementKind::Line2,
+            ElementKind::T6 | ElementKind::Q8 => ElementKind::Line3,
+            ElementKind::Tet4 => ElementKind::T3,
+            ElementKind::Tet10 => ElementKind::T6,
+            ElementKind::Hex8 => ElementKind::Q4,
+            ElementKind::Hex20 => ElementKind::Q8,
+        }
+    }
 }
 
 /// Point1, the end of a bar: N = 1.
@@ -78,7 +91,6 @@ static POINT1: ReferenceElement = ReferenceElement {
     derivative: |_| [[0.0; 3]; MAX_NODES],
     quadrature: &POINT,
     quadrature_revolved: &POINT,
-    facet: ElementKind::Point1,
     gmsh: 15,
     gmsh_order: &[0],
     vtk: 1,
@@ -102,7 +114,6 @@ static LINE2: ReferenceElement = ReferenceElement {
     derivative: |at| multilinear_slopes(ENDS, at),
     quadrature: &INTERVAL_1,
     quadrature_revolved: &INTERVAL_2,
-    facet: ElementKind::Point1,
     gmsh: 1,
     gmsh_order: &[0, 1],
     vtk: 3,
@@ -124,7 +135,6 @@ static LINE3: ReferenceElement = ReferenceElement {
     derivative: derivative_of_line3,
     quadrature: &INTERVAL_3,
     quadrature_revolved: &INTERVAL_3,
-    facet: ElementKind::Point1,
     gmsh: 8,
     gmsh_order: &[0, 1, 2],
     vtk: 21,
@@ -157,7 +167,6 @@ static T3: ReferenceElement = ReferenceElement {
     derivative: |_| linear_slopes(3),
     quadrature: &TRIANGLE_1,
     quadrature_revolved: &TRIANGLE_3,
-    facet: ElementKind::Line2,
     gmsh: 2,
     gmsh_order: &[0, 1, 2],
     vtk: 5,
@@ -189,7 +198,6 @@ static Q8: ReferenceElement = ReferenceElement {
     derivative: derivative_of_q8,
     quadrature: &SQUARE_3X3,
     quadrature_revolved: &SQUARE_3X3,
-    facet: ElementKind::Line3,
     gmsh: 16,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],
     vtk: 23,
@@ -236,7 +244,6 @@ static Q4: ReferenceElement = ReferenceElement {
     derivative: |at| multilinear_slopes(&SQUARE, at),
     quadrature: &SQUARE_2X2,
     quadrature_revolved: &SQUARE_2X2,
-    facet: ElementKind::Line2,
     gmsh: 3,
     gmsh_order: &[0, 1, 2, 3],
     vtk: 9,
@@ -263,7 +270,6 @@ static T6: ReferenceElement = ReferenceElement {
     derivative: |at| quadratic_slopes(3, &SIDES_OF_TRIANGLE, at),
     quadrature: &TRIANGLE_6,
     quadrature_revolved: &TRIANGLE_6,
-    facet: ElementKind::Line3,
     gmsh: 9,
     gmsh_order: &[0, 1, 2, 3, 4, 5],
     vtk: 22,
@@ -288,7 +294,6 @@ static TET4: ReferenceElement = ReferenceElement {
     derivative: |_| linear_slopes(4),
     quadrature: &TETRAHEDRON_1,
     quadrature_revolved: &TETRAHEDRON_1,
-    facet: ElementKind::T3,
     gmsh: 4,
     gmsh_order: &[0, 1, 2, 3],
     vtk: 10,
@@ -316,7 +321,6 @@ static TET10: ReferenceElement = ReferenceElement {
     derivative: |at| quadratic_slopes(4, &EDGES_OF_TETRAHEDRON, at),
     quadrature: &TETRAHEDRON_8,
     quadrature_revolved: &TETRAHEDRON_8,
-    facet: ElementKind::T6,
     gmsh: 11,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8],
     vtk: 24,
@@ -365,7 +369,6 @@ static HEX20: ReferenceElement = ReferenceElement {
     derivative: derivative_of_hex20,
     quadrature: &CUBE_3X3X3,
     quadrature_revolved: &CUBE_3X3X3,
-    facet: ElementKind::Q8,
     gmsh: 17,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15],
     vtk: 25,
@@ -424,7 +427,6 @@ static HEX8: ReferenceElement = ReferenceElement {
     derivative: |at| multilinear_slopes(&CUBE, at),
     quadrature: &CUBE_2X2X2,
     quadrature_revolved: &CUBE_2X2X2,
-    facet: ElementKind::Q4,
     gmsh: 5,
     gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],
     vtk: 12,

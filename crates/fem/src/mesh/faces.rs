@@ -70,7 +70,8 @@ impl Mesh {
     /// All faces that belong to one of these elements of one kind only, seen from outside; edges in the order in which
     /// they follow each other.
     pub fn surface(&self, elements: impl Iterator<Item = usize> + Clone) -> Boundary {
-        let reference = self.kind_of(elements.clone().next().unwrap_or(0)).reference();
+        let of_elements = self.kind_of(elements.clone().next().unwrap_or(0));
+        let (reference, kind) = (of_elements.reference(), of_elements.facet());
         let of_element = |element: usize| {
             let nodes = self.element(element);
             reference.faces.iter().map(move |face| face.iter().map(move |&local| nodes[local]))
@@ -80,7 +81,6 @@ impl Mesh {
             *count.entry(key(face)).or_default() += 1;
         }
         let outer = elements.flat_map(of_element).filter(|face| count.get(&key(face.clone())) == Some(&1));
-        let kind = reference.facet;
         Boundary::new("surface", kind, chained(kind, outer.flatten().collect()))
     }
 
@@ -124,14 +124,13 @@ impl Mesh {
     /// The boundary of all faces that have only marked nodes, in a mesh of one kind, seen from outside; edges in the
     /// order in which they follow each other. `None` if there is no such face.
     fn boundary_where(&self, name: &str, marked: impl Fn(usize) -> bool) -> Option<Boundary> {
-        let reference = self.kind_of(0).reference();
+        let (reference, kind) = (self.kind_of(0).reference(), self.kind_of(0).facet());
         let mut connectivity = Vec::new();
         for nodes in self.elements() {
             for face in reference.faces.iter().filter(|face| face.iter().all(|&local| marked(nodes[local]))) {
                 connectivity.extend(face.iter().map(|&local| nodes[local]));
             }
         }
-        let kind = reference.facet;
         (!connectivity.is_empty()).then(|| Boundary::new(name, kind, chained(kind, connectivity)))
     }
 }
