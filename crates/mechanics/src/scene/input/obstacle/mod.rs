@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 use crate::scene::input::body::About;
 use shape::ObstacleShape;
 
-/// Makes the enumeration of the shapes: each with its numbers, its name, and the dimensions of the models that allow it.
+/// Makes the enumeration of the shapes: each with its numbers, its name, and the dimensions of models that allow it.
 macro_rules! shapes {
     ($($(#[$text:meta])* $kind:ident($file:ident::$spec:ident) = $name:literal in $dimensions:expr;)*) => {
         /// The surface of an obstacle, over the coordinates perpendicular to the approach direction.
