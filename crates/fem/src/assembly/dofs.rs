@@ -10,6 +10,7 @@ use crate::dense::DenseMatrix;
 use crate::error::Error;
 use crate::geometry::{COORDINATES, cross, dot, shifted, unit};
 use crate::mesh::Mesh;
+use crate::sum::LinearForm;
 use signorini_linear as linear;
 
 /// Takes the place of the number at a supported dof.
@@ -370,6 +371,18 @@ impl DofMap {
         let along = moved.by_unknown.iter().map(|(unknown, by_one)| (*unknown, part(by_one)));
         let free = along.filter(|along| along.1 != 0.0 && along.1.abs() >= rounding).collect();
         Along { free, prescribed: part(&moved.offset) }
+    }
+
+    /// A linear form in the unknowns; at a node with a coefficient it counts the coefficient.
+    #[doc(hidden)]
+    pub fn through(&self, form: &LinearForm, dimension: usize) -> Along {
+        let mut sum = Along::default();
+        for (node, vector) in &form.terms {
+            let along = self.along(*node, &vector[..dimension]);
+            sum.free.extend(along.free);
+            sum.prescribed += along.prescribed;
+        }
+        sum
     }
 
     /// The nodal dof of each free dof, increasing: entry i is the index, from 0, among the `dim * n_nodes` nodal dofs.

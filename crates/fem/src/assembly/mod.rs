@@ -7,8 +7,6 @@
 
 mod dofs;
 mod element_stiffness;
-mod form;
-mod internal_force;
 mod load;
 mod mass;
 mod positive_basis;
@@ -18,9 +16,7 @@ mod stiffness;
 
 pub use dofs::{Along, Followers, Moved, perpendicular, rigid_motions};
 pub use dofs::{DofMap, Frame, rigid_body_modes};
-pub use element_stiffness::element_stiffness;
-pub use form::LinearForm;
-pub use internal_force::{add_to_nodes, internal_force, of_cell};
+pub use element_stiffness::{add_to_nodes, element_stiffness, internal_force, of_cell};
 pub use load::{
     FacetPoint, Kinks, add_centrifugal, add_gravity, add_moment, add_traction_with_kinks, facet_centres, facet_sizes,
     normal_sums, outward, turning_traction,

@@ -3,12 +3,13 @@
 
 use std::collections::BTreeMap;
 
+use super::DofMap;
 use super::element_stiffness::Block;
 use super::load::for_each_point;
-use super::{DofMap, LinearForm};
 use crate::body::ElasticBody;
 use crate::geometry::{length, unit};
 use crate::mesh::Boundary;
+use crate::sum::LinearForm;
 
 /// Forces on some nodes, in force.
 pub type NodalForces = BTreeMap<usize, [f64; 3]>;

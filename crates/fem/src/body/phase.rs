@@ -163,7 +163,7 @@ impl Phase {
     }
 }
 
-/// One of the bodies that an [`ElasticBody`] is made of; it shares no node with another.
+/// One of the bodies that an [`ElasticBody`](super::ElasticBody) is made of; it shares no node with another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
     name: String,

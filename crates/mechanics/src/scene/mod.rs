@@ -32,7 +32,6 @@ use std::sync::Arc;
 use crate::error::Error;
 use derivatives::parameter;
 use input::absent::absent;
-use input::deck;
 use input::schema::{AnalysisSpec, DynamicSpec, ModesSpec};
 use input::{parse, size};
 use models::build;
@@ -121,7 +120,7 @@ impl Scene {
     /// [`FileSyntax`](signorini_qp::LinearError::FileSyntax) with the line for what is wrong, and for what changes the
     /// answer and is not modelled.
     pub fn read_deck(path: impl AsRef<Path>, permits: &[&str], step: Option<usize>) -> Result<Scene, Error> {
-        deck::read(path.as_ref(), Reading { permits, step, earlier: &[] }).map(|(scene, ..)| scene)
+        parse::read_deck(path.as_ref(), Reading { permits, step, earlier: &[] }).map(|(scene, ..)| scene)
     }
 
     /// Reads one step of a deck, from 1, as [`Scene::read_deck`] does, and what it asks for. `earlier` are the
@@ -138,7 +137,8 @@ impl Scene {
         step: usize,
         earlier: &[HashMap<usize, [f64; 6]>],
     ) -> Result<(Scene, Requests), Error> {
-        let (scene, deck, references) = deck::read(path.as_ref(), Reading { permits, step: Some(step), earlier })?;
+        let (scene, deck, references) =
+            parse::read_deck(path.as_ref(), Reading { permits, step: Some(step), earlier })?;
         Ok((scene, Requests::of(&deck, references)?))
     }
 

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::continuum;
 use super::found::{
     Asked, Bound, Domain, Ended, Guarantee, JudgedMesh, LEAST, Level, LevelKind, MARKED, PER_UNKNOWN, TotalError,
     marked, shortage,
@@ -13,7 +14,6 @@ use signorini_fem::ElementKind;
 use signorini_fem::assembly::internal_force;
 use signorini_guarantee::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh};
 use signorini_mechanics::Error;
-use signorini_mechanics::scene::models::continuum;
 use signorini_mechanics::scene::{Answer, Scene, Warning};
 use signorini_qp as qp;
 use signorini_qp::{Method, Settings, Solution, dot, solve};

@@ -1,6 +1,7 @@
 //! The mesh refined until the error against the continuum is small enough: guaranteed if the scene has a guarantee,
 //! else estimated.
 
+mod continuum;
 mod estimated;
 mod found;
 mod guaranteed;
@@ -15,9 +16,9 @@ use std::time::Instant;
 use signorini_qp::{Settings, Solution};
 
 use crate::Status;
+use continuum::{NoGuarantee, WhyNot};
 use found::Asked;
 use signorini_mechanics::Error;
-use signorini_mechanics::scene::models::continuum::{self, NoGuarantee, WhyNot};
 use signorini_mechanics::scene::{Answer, Model, Scene};
 
 /// Refines the mesh of a scene until its total error is at most `goal`, as with the default settings.

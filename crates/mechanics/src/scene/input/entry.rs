@@ -22,7 +22,7 @@ pub(crate) const PLACE_TOLERANCE: f64 = 1e-9;
 /// Lengths below this times the body's size are rounding of coordinates.
 pub(crate) const COORDINATE_ROUNDING: f64 = 1e-12;
 
-pub(crate) fn wrong(path: impl Into<String>, message: impl Into<String>) -> Error {
+pub fn wrong(path: impl Into<String>, message: impl Into<String>) -> Error {
     Error::Scene { path: path.into(), message: message.into() }
 }
 

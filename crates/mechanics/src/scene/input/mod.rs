@@ -5,7 +5,6 @@ mod spec;
 
 pub mod absent;
 pub mod body;
-pub mod deck;
 pub mod entry;
 mod json;
 pub mod names;

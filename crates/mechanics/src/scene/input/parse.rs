@@ -6,11 +6,13 @@ use std::path::Path;
 use super::absent::other_format;
 use super::entry::{Files, Named};
 use super::json::{Typed, line_and_column, parsed, plain, start_of};
+use super::warning::Warning;
 use crate::error::Error;
+use crate::fem::mesh::deck::Deck;
 use crate::scene::Scene;
 use serde::Deserialize;
 use serde_json::Value;
-use signorini_deck::is_deck;
+use signorini_deck::{DeckScene, Reading, ReferenceNode, is_deck};
 use signorini_qp as qp;
 use signorini_qp::file::read_text_capped;
 
@@ -35,6 +37,15 @@ pub(crate) fn read(path: &Path) -> Result<Scene, Error> {
     let text = read_text_capped(path, MOST_OF_SCENE)?;
     let scene = scene_of(&text, &path.display().to_string())?;
     Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
+}
+
+/// The scene of a deck, with what it is read from.
+pub(crate) fn read_deck(path: &Path, reading: Reading) -> Result<(Scene, Deck, Vec<ReferenceNode>), Error> {
+    let named = path.file_name().unwrap_or_default().to_string_lossy();
+    let DeckScene { text, warnings, references, deck, lines } = DeckScene::read(path, &named, reading)?;
+    let noted = warnings.into_iter().map(|(code, message)| Warning::new(code, message)).collect();
+    let (scene, folder) = (Scene::from_json(&text, &named)?, path.parent().map(Path::to_path_buf));
+    Ok((Scene { folder, noted, lines, ..scene }, deck, references))
 }
 
 pub(crate) fn json_schema() -> String {

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, HashSet};
 
 use crate::error::Error;
 use crate::fem::Boundary;
-use crate::fem::assembly::{DofMap, LinearForm};
+use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::fem::mortar::{FoundRows, MortarRow};
-use crate::fem::sum::Component;
+use crate::fem::sum::{Component, LinearForm};
 use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, number, positive, wrong};
 use crate::scene::input::obstacle::SideOrder;

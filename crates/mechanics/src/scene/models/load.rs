@@ -88,7 +88,7 @@ pub(crate) fn add_load(scene: &Scene, body: &ElasticBody, index: usize, load: &m
 }
 
 /// Load number `index` on a body.
-pub(crate) fn acting<'a>(scene: &Scene, body: &'a ElasticBody, index: usize) -> Result<Acting<'a>, Error> {
+pub fn acting<'a>(scene: &Scene, body: &'a ElasticBody, index: usize) -> Result<Acting<'a>, Error> {
     let placed = |kind: &str| PlacedLoad { body, path: format!("loads[{index}].{kind}"), model: scene.model };
     match &scene.loads[index] {
         LoadSpec::Traction(spec) => placed("traction").traction(spec),
@@ -108,7 +108,7 @@ pub(crate) fn acting<'a>(scene: &Scene, body: &'a ElasticBody, index: usize) -> 
 }
 
 /// The constant traction of a force on a boundary, in force per area.
-pub(crate) fn spread(body: &ElasticBody, boundary: &Boundary, force: [f64; 3], path: &str) -> Result<[f64; 3], Error> {
+pub fn spread(body: &ElasticBody, boundary: &Boundary, force: [f64; 3], path: &str) -> Result<[f64; 3], Error> {
     let area: f64 = tributary_areas(body, boundary).into_iter().map(|(_, area)| area).sum();
     let largest = body.mesh().size().powi(2);
     if body.formulation().is_axisymmetric() && area <= COORDINATE_ROUNDING * largest {

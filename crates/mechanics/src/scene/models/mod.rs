@@ -1,7 +1,6 @@
 //! A discretised scene: mesh and materials, supports, loads and springs, contact rows, and the problem that they make.
 
 pub mod build;
-pub mod continuum;
 pub mod elastic;
 mod facing;
 pub mod held;
@@ -15,7 +14,7 @@ pub mod points;
 mod preload;
 pub mod resultants;
 pub mod rigid_body_modes;
-mod rigid_face;
+pub mod rigid_face;
 pub mod rows;
 pub mod set_up;
 mod springs;
@@ -149,7 +148,7 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::Scene`] for a gap that is not finite or puts a node so deep that it has no closest point,
-    /// [`qp::Error::UnderHeld`](signorini_qp::Error::UnderHeld) if the new rows leave a rigid-body mode free.
+    /// [`qp::Error::UnderHeld`] if the new rows leave a rigid-body mode free.
     pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
         model::with_gap(self, gap)
     }

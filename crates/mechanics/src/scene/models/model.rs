@@ -243,7 +243,7 @@ pub(crate) fn contact_forces(model: &Model, multiplier: &[f64]) -> Result<Vec<f6
 
 /// The point of application of the force of a row for moments: the node, or, in the middle of a curved edge, its
 /// coefficient.
-pub(crate) fn place(model: &Model, node: usize) -> [f64; 3] {
+pub fn place(model: &Model, node: usize) -> [f64; 3] {
     model.parts.conditions.dofs.basis.place(model.mesh().nodes(), node)
 }
 

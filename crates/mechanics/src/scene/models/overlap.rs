@@ -162,7 +162,7 @@ fn drawn_together(model: &Model, unknowns: &[f64]) -> HashMap<[usize; 2], f64> {
     for one in &model.parts.ties.shortenings {
         let ends = [one.form.terms.first(), one.form.terms.last()].map(|term| model.body().region_at(term?.0));
         if let [Some(own), Some(other)] = ends {
-            let shortening = one.sense * one.form.through(dofs, model.body().dimension()).value(unknowns);
+            let shortening = one.sense * dofs.through(&one.form, model.body().dimension()).value(unknowns);
             let known = drawn.entry([own.min(other), own.max(other)]).or_insert(0.0_f64);
             *known = known.max((1.0 + KEPT_APART) * shortening);
         }

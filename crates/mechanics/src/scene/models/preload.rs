@@ -6,9 +6,10 @@
 
 use super::facing::{Facing, TieRow};
 use crate::error::{Error, nearly};
-use crate::fem::assembly::{DofMap, LinearForm};
+use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{cross, dot, length, plus, shifted, unit};
+use crate::fem::sum::LinearForm;
 use crate::scene::Warning;
 use crate::scene::input::entry::{boundary, finite, node_at, nodes_named_once, refused, vector, wrong};
 use crate::scene::input::obstacle::SideOrder;

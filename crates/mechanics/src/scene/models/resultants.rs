@@ -337,7 +337,7 @@ pub(crate) fn tie_resultants(model: &Model, displacement: &[f64], of_ties: &[f64
         let shortening = ties.shortenings.iter().find(|one| one.tie == index);
         let tension = shortening.map(|one| one.sense * dot(sum.force(), one.towards()));
         let shortening =
-            shortening.map(|one| one.sense * one.form.through(model.dofs(), model.body().dimension()).value(unknowns));
+            shortening.map(|one| one.sense * model.dofs().through(&one.form, model.body().dimension()).value(unknowns));
         Resultant { on, shortening, tension, ..sum.resultant(model, of) }
     };
     ties.of_tie.iter().enumerate().map(of_tie).collect()
@@ -350,7 +350,7 @@ pub(crate) fn of_bolt(model: &Model, tie: usize, of_ties: &[f64], unknowns: &[f6
     let Some(one) = ties.shortenings.iter().find(|one| one.tie == tie) else { return [0.0; 2] };
     let (forces, towards) = (model.parts.forces_of_ties(of_ties, Some(tie)), one.towards());
     let force = forces.into_values().map(|force| dot(force, towards)).sum();
-    [one.form.through(model.dofs(), model.body().dimension()).value(unknowns), force]
+    [model.dofs().through(&one.form, model.body().dimension()).value(unknowns), force]
 }
 
 /// The forces from outside on the reference points, with their motions, in the order of the scene; of a point that

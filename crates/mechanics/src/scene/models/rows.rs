@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::parts::Parts;
 use crate::error::Error;
-use crate::fem::assembly::LinearForm;
 use crate::fem::geometry::dot;
+use crate::fem::sum::LinearForm;
 use crate::scene::Warning;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, point, wrong};
 use crate::scene::input::obstacle::{ObstacleRow, PlacedObstacle};
@@ -125,7 +125,7 @@ pub(crate) fn found(parts: &Parts, obstacles: &[PlacedObstacle], scene_gap: f64)
             // Beyond the rim of the obstacle its gap is continued with the value at the node.
             let value = |node: usize| by_node.get(&node).copied().unwrap_or(row.gap);
             let mut remaining = if row.is_mean { row.gap } else { dofs.coefficient(row.node, value) };
-            let along = row.form().through(dofs, dimension);
+            let along = dofs.through(&row.form(), dimension);
             remaining -= along.prescribed;
             free.extend(along.free.into_iter().map(|(column, part)| (rows.len(), column, part)));
             if let Some(travel) = travel {

@@ -6,9 +6,9 @@ use super::facing::{Facing, TieRow};
 use super::points::ReferencePoints;
 use super::preload::{Shortening, drawn, no_point, terms_of};
 use crate::error::Error;
-use crate::fem::assembly::{Along, DofMap, LinearForm};
+use crate::fem::assembly::{Along, DofMap};
 use crate::fem::body::ElasticBody;
-use crate::fem::sum::Sum;
+use crate::fem::sum::{LinearForm, Sum};
 use crate::scene::Warning;
 use crate::scene::input::entry::{COORDINATE_ROUNDING, finite, number, wrong};
 use crate::scene::input::obstacle::SideOrder;
@@ -92,7 +92,7 @@ pub(crate) fn tied(scene: &Scene, body: &ElasticBody, dofs: &DofMap, points: &Re
         };
         let first = rows.len();
         for row in found {
-            let Along { free, prescribed } = row.form.through(dofs, dimension);
+            let Along { free, prescribed } = dofs.through(&row.form, dimension);
             let left = row.value - prescribed;
             if !free.is_empty() {
                 entries.extend(free.into_iter().map(|(column, part)| (rows.len(), column, part)));
@@ -114,7 +114,7 @@ pub(crate) fn tied(scene: &Scene, body: &ElasticBody, dofs: &DofMap, points: &Re
     // Number of rows that follow from no others, with zeros as values: nothing contradicts.
     let independent = |bolts: &[&Shortening]| -> Result<usize, Error> {
         let own = bolts.iter().enumerate().flat_map(|(number, bolt)| {
-            let own = bolt.form.through(dofs, dimension).free;
+            let own = dofs.through(&bolt.form, dimension).free;
             own.into_iter().map(move |(column, part)| (first + number, column, part))
         });
         let all: Vec<_> = entries.iter().copied().chain(own).collect();

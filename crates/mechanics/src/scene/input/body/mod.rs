@@ -45,6 +45,12 @@ macro_rules! bodies {
                 match self { $(BodySpec::$kind(spec) => spec,)* }
             }
 
+            /// The sides that are circles, each with its centre and its radius.
+            #[doc(hidden)]
+            pub fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
+                self.shape().circles()
+            }
+
             /// The same, for changes.
             pub(crate) fn shape_mut(&mut self) -> &mut dyn BodyShape {
                 match self { $(BodySpec::$kind(spec) => spec,)* }

@@ -19,7 +19,8 @@ mod torus;
 mod triangulated;
 
 pub(crate) use facing::shortest_edges;
-pub(crate) use order::{Between, SideOrder};
+pub use order::Between;
+pub(crate) use order::SideOrder;
 pub use placed::{Inertia, PlacedObstacle};
 pub use row::{Obstacle, ObstacleRow};
 

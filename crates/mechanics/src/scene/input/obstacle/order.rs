@@ -88,7 +88,7 @@ pub(crate) fn facet_size(body: &ElasticBody, boundaries: &[&Boundary]) -> f64 {
 
 /// The row of a candidate against another body: the node opposite to it, or the mean over its area.
 #[derive(Clone, Debug)]
-pub(crate) struct BodyRow {
+pub struct BodyRow {
     /// The nodes that it couples, as in a [`ContactRow`](crate::scene::ContactRow).
     pub ends: Vec<(usize, f64)>,
     /// The normal of the row, of length 1, from the candidate's body into the other.
@@ -113,7 +113,7 @@ impl BodyRow {
 
 /// The rows between two bodies.
 #[derive(Clone, Debug)]
-pub(crate) struct Between {
+pub struct Between {
     /// The row of each candidate of the boundary that carries the rows; `None` where nothing faces it.
     pub rows: Vec<Option<BodyRow>>,
     /// Further rows of candidates, by their numbers: a node at a corner has one for each side.

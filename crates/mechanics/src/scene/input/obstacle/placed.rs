@@ -180,7 +180,8 @@ impl PlacedObstacle {
     }
 
     /// The rows against another body; `None` if the obstacle is rigid.
-    pub(crate) fn between(&self) -> Option<&Between> {
+    #[doc(hidden)]
+    pub fn between(&self) -> Option<&Between> {
         match &self.geometry {
             Geometry::Body(between) => Some(between),
             Geometry::Rigid(_) => None,

@@ -35,7 +35,8 @@ impl LoadSpec {
     }
 
     /// Returns `true` for forces at one point or several.
-    pub(crate) fn is_at_points(&self) -> bool {
+    #[doc(hidden)]
+    pub fn is_at_points(&self) -> bool {
         self.is_at_point() || matches!(self, LoadSpec::NodalForces(_))
     }
 }

@@ -5,23 +5,23 @@ mod surface;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::build::model_of;
-use super::rigid_face::{Motion, RigidFace};
-use crate::error::Error;
-use crate::fem::body::{ON_THE_AXIS, Phase};
-use crate::fem::geometry::{COORDINATES, dot};
-use crate::fem::mesh::pieces::Pieces;
-use crate::fem::{self, Formulation, Region};
-use crate::scene::Model;
-use crate::scene::input::entry::wrong;
-use crate::scene::input::obstacle::{Between, PlacedObstacle};
-use crate::scene::input::schema::condition::LoadSpec;
-use crate::scene::input::schema::{Rule, Scene};
-use crate::scene::models::model::place;
+use signorini_fem::body::{ON_THE_AXIS, Phase};
+use signorini_fem::geometry::{COORDINATES, dot};
+use signorini_fem::mesh::pieces::Pieces;
+use signorini_fem::{Formulation, Region};
 use signorini_guarantee::{
     Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, FacingObstacle, Linear, Medium, ObstacleSurface,
     Point, PressingForce, RigidPlate, SimplexMesh, Unjoined, pairs,
 };
+use signorini_mechanics::Error;
+use signorini_mechanics::scene::Model;
+use signorini_mechanics::scene::input::entry::wrong;
+use signorini_mechanics::scene::input::obstacle::{Between, PlacedObstacle};
+use signorini_mechanics::scene::input::schema::LoadSpec;
+use signorini_mechanics::scene::input::schema::{Rule, Scene};
+use signorini_mechanics::scene::models::build::model_of;
+use signorini_mechanics::scene::models::model::place;
+use signorini_mechanics::scene::models::rigid_face::{Motion, RigidFace};
 use surface::none;
 pub use surface::{NoGuarantee, WhyNot};
 
@@ -77,8 +77,10 @@ pub fn problem(scene: &Scene, model: &Model) -> Result<(ContinuumProblem, Simple
             .map(|boundary| (boundary.name.clone(), body.region_of(boundary).unwrap_or(0)))
             .collect(),
     };
-    let at_body = |error: fem::Error| match error {
-        fem::Error::Mesh { message } => none("body", format!("{message}, so that there is no guaranteed bound")),
+    let at_body = |error: signorini_fem::Error| match error {
+        signorini_fem::Error::Mesh { message } => {
+            none("body", format!("{message}, so that there is no guaranteed bound"))
+        }
         other => Error::from(other).into(),
     };
     let mut pieces = Pieces::of(model.mesh()).map_err(at_body)?;

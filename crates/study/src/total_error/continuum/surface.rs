@@ -2,16 +2,16 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use crate::error::Error;
-use crate::fem::Mesh;
-use crate::fem::assembly::turning_traction;
-use crate::fem::geometry::{COORDINATES, cross, dot, minus, sorted, unit};
-use crate::fem::mesh::pieces::Pieces;
-use crate::scene::Model;
-use crate::scene::input::profile::Profile;
-use crate::scene::input::schema::{PlaceSpec, Scene, TieSpec, TiedSurfacesSpec};
-use crate::scene::models::load::{Acting, acting, spread};
+use signorini_fem::Mesh;
+use signorini_fem::assembly::turning_traction;
+use signorini_fem::geometry::{COORDINATES, cross, dot, minus, sorted, unit};
+use signorini_fem::mesh::pieces::Pieces;
 use signorini_guarantee::{Condition, HeldComponent, Linear, Point, SideCircle};
+use signorini_mechanics::Error;
+use signorini_mechanics::scene::Model;
+use signorini_mechanics::scene::input::profile::Profile;
+use signorini_mechanics::scene::input::schema::{PlaceSpec, Scene, TieSpec, TiedSurfacesSpec};
+use signorini_mechanics::scene::models::load::{Acting, acting, spread};
 
 /// A kink of a profile lies at a corner of a facet if it does up to this share of the facet.
 const AT_A_CORNER: f64 = 1e-9;
@@ -83,7 +83,7 @@ pub(super) fn conditions(
         surface.change_known(&boundary.name, |condition| condition.boundaries.push(index));
     }
     // Edges of two bodies that lie opposite to each other stay so only if they are straight.
-    let circles = if scene.further_bodies.is_empty() { scene.body.shape().circles() } else { Vec::new() };
+    let circles = if scene.further_bodies.is_empty() { scene.body.circles() } else { Vec::new() };
     for (name, centre, radius) in circles {
         surface.change_known(name, |condition| {
             let [x, y] = centre;
