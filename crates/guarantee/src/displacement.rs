@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 
 use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
-use super::normal::add;
 use super::problem::{ContinuumProblem, weighted_mean};
 use super::simplex::{
-    Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, values_of_functions, work,
+    MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, values_of_functions, work,
 };
 use super::stress::ContactPlace;
 use super::system::{Affine, CellMatrices, CellMatrix, Row, add_springs};
@@ -215,12 +214,32 @@ impl<'a> Displacements<'a> {
 
     /// The strain of a displacement at a point of a simplex, given in barycentric coordinates.
     pub fn strain(&self, coefficients: &[f64], cell: usize, at: Weights) -> Tensor {
-        let mut sum = [0.0; 6];
-        let strains = self.strains_of_functions(&self.mesh.simplex(cell), at);
-        for (&number, strain) in self.numbers[cell].iter().zip(strains) {
-            add(&mut sum, coefficients[number], &strain);
+        let (simplex, dimension) = (self.mesh.simplex(cell), self.mesh.dimension);
+        // With the coefficients c_ij the displacement is the sum of l_j d_j / 2, and its gradient that of d_j times the
+        // slope of l_j, with d_j = 2 sum of l_i c_ij.
+        let mut along = [[0.0; 3]; MOST_CORNERS];
+        for (pair, numbers) in pairs(dimension + 1).zip(self.numbers[cell].chunks_exact(dimension)) {
+            let [i, j] = pair;
+            for (axis, &number) in numbers.iter().enumerate() {
+                let twice = 2.0 * coefficients[number];
+                along[j][axis] += at[i] * twice;
+                along[i][axis] += if i == j { 0.0 } else { at[j] * twice };
+            }
         }
-        sum
+        let mut gradient = [[0.0; 3]; 3];
+        for (along, slope) in along.iter().zip(simplex.slopes()).take(dimension + 1) {
+            for (line, part) in gradient.iter_mut().zip(along) {
+                line.iter_mut().zip(slope).for_each(|(entry, slope)| *entry += part * slope);
+            }
+        }
+        let shear = |i: usize, j: usize| (gradient[i][j] + gradient[j][i]) / 2.0;
+        let mut hoop = gradient[2][2];
+        if self.problem.is_axisymmetric {
+            // A radial displacement stretches the circle about the axis.
+            let radial: f64 = along.iter().zip(at).map(|(along, weight)| weight * along[0] / 2.0).sum();
+            hoop += radial / simplex.at(at)[0];
+        }
+        [gradient[0][0], gradient[1][1], hoop, shear(0, 1), shear(1, 2), shear(2, 0)]
     }
 
     /// The strains of the functions at a point: `l_i^2` of the corners, then `2 l_i l_j` of the pairs, each along all

@@ -171,12 +171,14 @@ pub fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Res
     for (row, column, value) in nodal.triplets() {
         for &(p, by_p) in &moved_by[row] {
             for &(q, by_q) in &moved_by[column] {
-                let (product, size) = (dot(by_p, by_q), length(by_p) * length(by_q));
+                let product = dot(by_p, by_q);
+                let is_rounding = || product.abs() <= RIGHT_ANGLE * length(by_p) * length(by_q);
+                if product == 0.0 || row == column && p < q || is_rounding() {
+                    continue;
+                }
                 // Entries off the diagonal have a mirror image.
                 let times = if row != column && p == q { 2.0 } else { 1.0 };
-                if product.abs() > RIGHT_ANGLE * size && (row != column || p >= q) {
-                    entries.push((p.max(q), p.min(q), times * value * product));
-                }
+                entries.push((p.max(q), p.min(q), times * value * product));
             }
         }
     }

@@ -61,17 +61,19 @@ pub fn stiffness_on(body: &ElasticBody, dofs: &DofMap, springs: &[Springs]) -> R
         }
     };
     let groups: Vec<usize> = (0..=parts).map(first_group).collect();
-    let bounds: Vec<usize> = groups.iter().map(|&group| starts[pattern.first_column(group)]).collect();
+    let bounds: Vec<usize> = groups.iter().map(|&group| starts[pattern.first[group]]).collect();
     let congruent = Congruent::of(body);
     on_parts(&mut values, &bounds, |part, values| {
-        let columns =
-            Columns { starts: &starts, rows: &rows, range: groups[part]..groups[part + 1], first: bounds[part] };
+        let range = groups[part]..groups[part + 1];
+        let unknowns = pattern.first[range.start]..pattern.first[range.end];
+        let columns = Columns { starts: &starts, rows: &rows, range, unknowns, first: bounds[part] };
         columns.add_elements(body, dofs, &congruent, values);
     });
-    let all = Columns { starts: &starts, rows: &rows, range: 0..pattern.groups(), first: 0 };
+    let (range, unknowns) = (0..pattern.groups(), 0..dofs.count());
+    let all = Columns { starts: &starts, rows: &rows, range, unknowns, first: 0 };
     let moved_by = |node: usize| dofs.displaced_by(node, body.dimension());
     for (a, b, block) in springs.iter().flat_map(|springs| &springs.pairs) {
-        all.add_block((&moved_by(*a), &moved_by(*b)), 0..starts.len(), |i, j| block[i][j], &mut values);
+        all.add_block((&moved_by(*a), &moved_by(*b)), |i, j| block[i][j], &mut values);
     }
     if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
         let at = format!("row {}", rows[entry]);
@@ -85,6 +87,7 @@ struct Columns<'a> {
     starts: &'a [usize],
     rows: &'a [u32],
     range: Range<usize>,
+    unknowns: Range<usize>,
     /// The place of their first entry.
     first: usize,
 }
@@ -93,7 +96,6 @@ impl Columns<'_> {
     /// Adds the elements around these groups, in their order.
     fn add_elements(&self, body: &ElasticBody, dofs: &DofMap, congruent: &Congruent, values: &mut [f64]) {
         let tables = body.tabulated();
-        let columns = [self.range.start, self.range.end].map(|group| first_column(dofs, body.mesh(), group));
         let is_here = |node: &usize| self.range.contains(node) || dofs.group_of(*node).is_some();
         let mut last: Option<(u32, ElementStiffness)> = None;
         for (element, nodes) in body.mesh().elements().enumerate() {
@@ -117,7 +119,7 @@ impl Columns<'_> {
                         for (b, of_b) in moved_by.iter().enumerate() {
                             let block = stiffness.block(a.max(b), a.min(b));
                             let entry = |i: usize, j: usize| if a < b { block[j][i] } else { block[i][j] };
-                            self.add_block((of_a, of_b), columns[0]..columns[1], entry, values);
+                            self.add_block((of_a, of_b), entry, values);
                         }
                     }
                 }
@@ -126,17 +128,16 @@ impl Columns<'_> {
         }
     }
 
-    /// Adds the block of two nodes to the entries of the unknowns that move them, in some of the columns.
+    /// Adds the block of two nodes to the entries of the unknowns that move them.
     fn add_block(
         &self,
         (of_rows, of_columns): (&[ByOne], &[ByOne]),
-        columns: Range<usize>,
         block: impl Fn(usize, usize) -> f64,
         values: &mut [f64],
     ) {
         for &(row, along) in of_rows {
             let force = [0, 1, 2].map(|j| (0..3).map(|i| along[i] * block(i, j)).sum::<f64>());
-            for &(column, by_one) in of_columns.iter().filter(|of| of.0 <= row && columns.contains(&of.0)) {
+            for &(column, by_one) in of_columns.iter().filter(|of| of.0 <= row && self.unknowns.contains(&of.0)) {
                 let of_column = self.starts[column]..self.starts[column + 1];
                 let Ok(place) = self.rows[of_column.clone()].binary_search(&(row as u32)) else { continue };
                 values[of_column.start + place - self.first] += dot(force, by_one);
@@ -184,15 +185,6 @@ impl Columns<'_> {
     }
 }
 
-/// The first unknown of a group: of a node its free dofs, after the nodes the motions of those that follow together.
-fn first_column(dofs: &DofMap, mesh: &Mesh, group: usize) -> usize {
-    match group.checked_sub(mesh.nodes().len()) {
-        None => dofs.free().partition_point(|&dof| dof < group * mesh.dimension()),
-        Some(group) if group < dofs.groups() => dofs.motions(group).start,
-        Some(_) => dofs.count(),
-    }
-}
-
 /// No group has visited this one yet.
 const NEVER: u32 = u32::MAX;
 
@@ -206,6 +198,8 @@ pub(super) struct Pattern<'a> {
     /// The nodes that each spring between nodes couples.
     springs: Vec<Vec<usize>>,
     around: Around,
+    /// The first unknown of each group, and the end: those of a group follow each other.
+    first: Vec<usize>,
 }
 
 /// The groups around one group after another.
@@ -236,7 +230,16 @@ impl Neighbours<'_> {
 impl<'a> Pattern<'a> {
     pub fn of(mesh: &'a Mesh, dofs: &'a DofMap, springs: &[Springs]) -> Self {
         let springs = springs.iter().map(|springs| springs.coupled(dofs)).collect();
-        let mut pattern = Pattern { mesh, dofs, springs, around: Around::default() };
+        let (nodes, dimension) = (mesh.nodes().len(), mesh.dimension());
+        let mut first = Vec::with_capacity(nodes + dofs.groups() + 1);
+        let mut next = 0;
+        for node in 0..nodes {
+            first.push(next);
+            next += (dimension * node..dimension * (node + 1)).filter(|&dof| dofs.number(dof).is_some()).count();
+        }
+        first.extend((0..dofs.groups()).map(|group| dofs.motions(group).start));
+        first.push((0..dofs.groups()).next_back().map_or(next, |last| dofs.motions(last).end));
+        let mut pattern = Pattern { mesh, dofs, springs, around: Around::default(), first };
         let of_cell = |cell: usize| pattern.cell(cell).iter().map(|&node| pattern.group(node));
         let cells = mesh.element_count() + pattern.springs.len();
         pattern.around = Around::new(pattern.groups(), (0..cells).map(of_cell));
@@ -262,16 +265,10 @@ impl<'a> Pattern<'a> {
         }
     }
 
-    fn first_column(&self, group: usize) -> usize {
-        first_column(self.dofs, self.mesh, group)
-    }
-
     /// The unknowns of a group.
-    fn unknowns(&self, group: usize) -> impl Iterator<Item = usize> + use<'_> {
-        let (dimension, after) = (self.mesh.dimension(), group.checked_sub(self.mesh.nodes().len()));
-        let dofs = if after.is_none() { dimension * group..dimension * (group + 1) } else { 0..0 };
-        let motions = after.map_or(0..0, |group| self.dofs.motions(group));
-        dofs.filter_map(|dof| self.dofs.number(dof)).chain(motions)
+    #[inline]
+    fn unknowns(&self, group: usize) -> Range<usize> {
+        self.first[group]..self.first[group + 1]
     }
 
     /// Column starts and sorted rows of the lower triangle in the unknowns.
@@ -285,8 +282,8 @@ impl<'a> Pattern<'a> {
         on_parts(&mut lengths, &groups, |part, lengths| {
             let mut neighbours = neighbours();
             for (group, length) in (groups[part]..).zip(lengths) {
-                if self.unknowns(group).next().is_some() {
-                    *length = neighbours.of(group).iter().map(|&other| self.unknowns(other).count() as u32).sum();
+                if !self.unknowns(group).is_empty() {
+                    *length = neighbours.of(group).iter().map(|&other| self.unknowns(other).len() as u32).sum();
                 }
             }
         });
@@ -296,7 +293,7 @@ impl<'a> Pattern<'a> {
             if groups.get(bounds.len()) == Some(&group) {
                 bounds.push(entries);
             }
-            for column in 0..self.unknowns(group).count() {
+            for column in 0..self.unknowns(group).len() {
                 entries += length as usize - column;
                 starts.push(entries);
             }
@@ -308,7 +305,7 @@ impl<'a> Pattern<'a> {
         on_parts(&mut rows, &bounds, |part, rows| {
             let (mut neighbours, mut rest) = (neighbours(), rows.iter_mut());
             for group in groups[part]..groups[part + 1] {
-                let own = self.unknowns(group).count();
+                let own = self.unknowns(group).len();
                 if own > 0 {
                     let around = neighbours.of(group);
                     around.sort_unstable();

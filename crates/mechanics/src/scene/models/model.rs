@@ -77,8 +77,9 @@ pub(crate) fn matrices(parts: &Parts) -> Result<Matrices, Error> {
     })?;
     let load = parts.load(free_load(&parts.body, dofs, &parts.acting_load()?)?);
     let (count, motion) = rigid_motions(&parts.body);
-    let place = |node: usize| dofs.basis.place(parts.body.mesh().nodes(), node);
-    let modes = (0..count).map(|mode| parts.nearest(|node| motion(mode, place(node)), |_| 0.0)).collect();
+    let nodes = parts.body.mesh().nodes();
+    let places: Vec<[f64; 3]> = (0..nodes.len()).map(|node| dofs.basis.place(nodes, node)).collect();
+    let modes = (0..count).map(|mode| parts.nearest(|node| motion(mode, places[node]), |_| 0.0)).collect();
     Ok((stiffness, load, NearNullSpace::of_modes(modes).map(Arc::new)))
 }
 
