@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::bound::Bracket;
 use super::integration::Sample;
-use super::simplex::{Point, Simplex, Tensor, less, middle, weights_of_centre};
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, less, middle, weights_of_centre};
 use crate::error::Error;
 use signorini_fem::element::Tabulated;
 use signorini_fem::geometry::{key, midpoint};
@@ -133,6 +133,7 @@ impl Bracket<'_> {
         element
     }
 
+    /// The mean over a simplex of both stresses.
     fn mean_stress(&self, cell: usize) -> Tensor {
         let parts = self.mesh.dimension + 1;
         let centre = weights_of_centre(self.mesh.dimension);
@@ -160,25 +161,46 @@ pub struct Judged {
     pub norm: f64,
 }
 
+/// The strain of a displacement in an element of the first mesh.
+pub enum Strain<S> {
+    /// The same everywhere.
+    Constant(Tensor),
+    /// A function of the place that is linear.
+    Linear(S),
+    /// A function of the place.
+    Varying(S),
+}
+
 impl Bracket<'_> {
-    /// Judges a displacement by its strain in an element of the first mesh: a function of the place, and whether it is
-    /// linear or constant. The displacement needs no other property: the bound follows from its distance to the centre
-    /// of the ball and the radius. Integrals of a linear strain are exact; those of others are by five points in each
-    /// direction on each part of a simplex.
-    pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> (S, bool) + Sync) -> Judged {
+    /// Judges a displacement by its strain in an element of the first mesh. The displacement needs no other property:
+    /// the bound follows from its distance to the centre of the ball and the radius. Integrals of a constant or linear
+    /// strain are exact; those of others are by five points in each direction on each part of a simplex.
+    pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> Strain<S> + Sync) -> Judged {
         let fine = self.fine_rule();
         let of_cell = |cell: usize| {
-            let (strain, is_linear) = strain_in(self.mesh.origins[cell]);
+            let (simplex, strain) = (self.mesh.simplex(cell), strain_in(self.mesh.origins[cell]));
+            let mut at_corners = [[0.0; 6]; MOST_CORNERS];
+            match &strain {
+                Strain::Constant(strain) => at_corners.fill(*strain),
+                Strain::Linear(strain) => {
+                    at_corners.iter_mut().zip(simplex.corners()).for_each(|(own, &corner)| *own = strain(corner));
+                }
+                Strain::Varying(_) => {}
+            }
             let squares = |k: usize, at: &Sample| {
-                let (law, own) = (self.law(cell), strain(at.place));
+                let own = match &strain {
+                    Strain::Varying(strain) => strain(at.place),
+                    _ => mean(&at_corners, simplex.in_whole(k, at.weights)),
+                };
+                let law = self.law(cell);
                 let of_bracket = self.strain(&self.primal.values, cell, k, at.weights);
                 let balanced = law.compliance(self.elastic_stress(cell, k, at.weights));
                 [less(own, middle(of_bracket, balanced)), less(own, of_bracket), own]
                     .map(|strain| at.weight * law.square(strain))
             };
-            match is_linear {
-                true => self.sums(cell, &self.rule(), squares),
-                false => self.sums(cell, &fine, squares),
+            match strain {
+                Strain::Varying(_) => self.sums(cell, &fine, squares),
+                _ => self.sums(cell, &self.rule(), squares),
             }
         };
         let of_cells = each(self.mesh.count(), of_cell);
@@ -205,4 +227,12 @@ impl Bracket<'_> {
             rule.iter().map(|point| sample(&point.shape, point.weight)).collect()
         }
     }
+}
+
+fn mean(at_corners: &[Tensor], weights: Weights) -> Tensor {
+    let mut mean = [0.0; 6];
+    for (own, weight) in at_corners.iter().zip(weights) {
+        mean.iter_mut().zip(own).for_each(|(sum, part)| *sum += weight * part);
+    }
+    mean
 }

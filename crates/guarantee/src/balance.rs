@@ -11,7 +11,7 @@ use super::mesh::{OuterFacet, SimplexMesh};
 use super::normal::{Lower, add};
 use super::part_stress::PartStress;
 use super::simplex::Point;
-use super::stress::{ContactPlace, Stresses};
+use super::stress::{Place, Stresses};
 use super::system::Affine;
 use signorini_fem::geometry::{COORDINATES, minus};
 use signorini_qp::dot;
@@ -111,6 +111,7 @@ impl Levers<'_> {
     }
 }
 
+/// The levers of forces of one at places along axes.
 fn levers(about: &Levers, held: &[(usize, Point)]) -> Vec<Resultant> {
     held.iter().map(|&(place, axis)| about.at(place, axis)).collect()
 }
@@ -170,7 +171,7 @@ impl ForcePaths {
         &self,
         stresses: &Stresses,
         (unknowns, displacement): (&Affine, &[f64]),
-        places: &[ContactPlace],
+        places: &[Place],
         pulls: &[f64],
     ) -> Option<Vec<PartStress>> {
         let (mesh, tree) = (stresses.mesh, &self.tree);
@@ -233,9 +234,9 @@ impl ForcePaths {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bodies::{body, held, solved};
+    use super::super::bodies::{body, solved};
     use super::super::bound::Bracket;
-    use super::super::problem::ContinuumProblem;
+    use super::super::problem::{ContinuumProblem, Held, Linear};
     use super::*;
     use signorini_qp::{Method, Penalty, Settings};
 
@@ -279,16 +280,17 @@ mod tests {
     #[test]
     fn guides_along_all_axes_carry_every_force_and_a_roller_does_not() {
         for (mut problem, mesh) in [body(2), body(3)] {
+            let held = |axis: usize| Held { direction: COORDINATES[axis], value: Linear::default() };
             let carries = |problem: &ContinuumProblem| {
                 let stresses = Stresses::new(problem, &mesh).unwrap();
                 ForcePaths::of(&stresses, &stresses.unknowns()).is_some()
             };
-            problem.conditions[0].held = vec![held(problem.dimension - 1, 0.0)];
+            problem.conditions[0].held = vec![held(problem.dimension - 1)];
             assert!(!carries(&problem));
-            problem.conditions[1].held = vec![held(0, 0.0)];
+            problem.conditions[1].held = vec![held(0)];
             if problem.dimension == 3 {
                 assert!(!carries(&problem));
-                problem.conditions[3].held = vec![held(1, 0.0)];
+                problem.conditions[3].held = vec![held(1)];
             }
             let bracket = solved(&problem, &mesh);
             assert!(bracket.balance.is_some() && bracket.defect < 1e-10, "{}", bracket.defect);

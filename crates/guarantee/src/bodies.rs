@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use super::bound::Bracket;
 use super::mesh::{Cells, SimplexMesh};
-use super::problem::{
-    Condition, ContinuumProblem, Distance, Enclosure, FacingObstacle, HeldComponent, Linear, Medium, ObstacleSurface,
-};
+use super::problem::{Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Surface};
 use super::simplex::{Point, Simplex, pairs};
 use signorini_fem::geometry::{COORDINATES, midpoint};
 use signorini_fem::material::{Lame, Stiffness};
@@ -30,13 +28,6 @@ impl Distance for Bowl {
     }
 }
 
-/// What fills an isotropic body without loads.
-pub fn medium(young: f64, poisson: f64) -> Medium {
-    let lambda = young * poisson / (1.0 + poisson) / (1.0 - 2.0 * poisson);
-    let stiffness = Stiffness::Isotropic(Lame { lambda, mu: young / 2.0 / (1.0 + poisson) });
-    Medium { stiffness, own_stress: None, body_force: [0.0; 3] }
-}
-
 /// A body of one isotropic medium without any condition.
 pub fn filled(dimension: usize, lame: Lame, body_force: Point) -> ContinuumProblem {
     ContinuumProblem {
@@ -53,36 +44,31 @@ pub fn filled(dimension: usize, lame: Lame, body_force: Point) -> ContinuumProbl
     }
 }
 
-/// A support along an axis that moves by an amount.
-pub fn held(axis: usize, amount: f64) -> HeldComponent {
-    HeldComponent { direction: COORDINATES[axis], value: Linear::constant(amount) }
-}
-
-/// A facet on supports alone.
-pub fn held_by(held: impl IntoIterator<Item = HeldComponent>) -> Condition {
-    Condition { held: held.into_iter().collect(), ..Condition::default() }
-}
-
-/// A facet that is held along all axes of a dimension.
-pub fn clamped(dimension: usize) -> Condition {
-    held_by((0..dimension).map(|axis| held(axis, 0.0)))
+/// Supports along all axes of a dimension.
+pub fn clamped(dimension: usize) -> Vec<Held> {
+    COORDINATES[..dimension].iter().map(|&direction| Held { direction, value: Linear::default() }).collect()
 }
 
 /// A square or a cube of side 1 on a clamped side, with a traction on the right, a body force, and a bowl above.
 pub fn body(dimension: usize) -> (ContinuumProblem, SimplexMesh) {
-    let free = Condition::default;
+    let side = |held: bool, traction: Point, obstacles: Vec<usize>| Condition {
+        held: if held { clamped(dimension) } else { Vec::new() },
+        traction: traction.map(Linear::constant),
+        obstacles,
+        ..Condition::default()
+    };
     let body_force = if dimension == 2 { [0.01, -0.02, 0.0] } else { [0.01, -0.02, 0.015] };
     let problem = ContinuumProblem {
         thickness: if dimension == 2 { 0.5 } else { 1.0 },
         conditions: vec![
-            clamped(dimension),
-            Condition { traction: [0.03, 0.01, 0.0].map(Linear::constant), ..free() },
-            Condition { obstacles: vec![0], ..free() },
-            free(),
+            side(true, [0.0; 3], vec![]),
+            side(false, [0.03, 0.01, 0.0], vec![]),
+            side(false, [0.0; 3], vec![0]),
+            side(false, [0.0; 3], vec![]),
         ],
-        obstacles: vec![FacingObstacle {
+        obstacles: vec![Facing {
             normal: COORDINATES[dimension - 1],
-            surface: ObstacleSurface::Rigid(Arc::new(Bowl(dimension))),
+            surface: Surface::Rigid(Arc::new(Bowl(dimension))),
             pressed: None,
         }],
         ..filled(dimension, Lame { lambda: 1.5, mu: 1.0 }, body_force)

@@ -14,13 +14,13 @@
 //! balance, and they add half of the work of their forces under `v - w` with it.
 
 use super::balance::ForcePaths;
-use super::displacement::Displacements;
+use super::displacement::{Displacements, values_of_functions};
 use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::SimplexMesh;
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, ElasticLaw, Foundation};
-use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, values_of_functions, work};
-use super::stress::{ContactPlace, Stresses};
+use super::simplex::{Point, Simplex, Tensor, Weights, corners_of_side, less, traction, work};
+use super::stress::{Place, Stresses};
 use super::system::{Affine, Row};
 use crate::error::Error;
 use signorini_fem::geometry::{dot, length, minus};
@@ -45,7 +45,7 @@ pub struct Bracket<'a> {
     pub held_rows: Vec<Row>,
     pub dual: Half,
     /// The places at which the rows of the stress act.
-    pub places: Vec<ContactPlace>,
+    pub places: Vec<Place>,
     pub settings: Settings,
     /// How forces are carried to the supports; `None` if these cannot carry every force.
     pub balance: Option<ForcePaths>,
@@ -135,7 +135,14 @@ impl<'a> Bracket<'a> {
         let displacements = Displacements::new(problem, mesh);
         let unknowns = displacements.unknowns();
         let [rows, held_rows] = displacements.rows(&unknowns)?;
-        let posed = unknowns.problem(&displacements.matrices(), &displacements.load(), &rows)?;
+        let posed = unknowns.problem(
+            mesh.dimension,
+            &displacements.numbers,
+            &displacements.blocks(),
+            &displacements.load(),
+            &rows,
+            &displacements.places(),
+        )?;
         let start = touching.map(|nodes| {
             let (count, edges) = (mesh.nodes.len(), &mesh.edges);
             ContactSet::from_fn(rows.len(), |row| match rows[row].place(mesh.dimension) {
@@ -156,7 +163,14 @@ impl<'a> Bracket<'a> {
             problem.obstacles[place.obstacle].pressed.is_some()
                 || gap - displacements.mean_towards(&primal.values, place) <= largest
         });
-        let posed = of_stress.problem(&stresses.matrices(), &stresses.load(), &rows)?;
+        let posed = of_stress.problem(
+            mesh.dimension,
+            &stresses.numbers,
+            &stresses.blocks(),
+            &stresses.load(),
+            &rows,
+            &stresses.places(),
+        )?;
         let start = touching.map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[places[row].node(mesh)]));
         let mut dual = Half::solved(of_stress, rows, &posed, start, settings)?;
         dual.prepared.take_if(|_| !serves);
@@ -440,8 +454,11 @@ impl<'a> Bracket<'a> {
 /// A point of a facet on springs under a displacement and a stress: a part of the body without volume, whose strain is
 /// the displacement of the facet.
 pub struct OnSprings {
+    /// The point of integration.
     pub at: Sample,
+    /// The simplex of the facet.
     pub cell: usize,
+    /// The displacement.
     pub moved: Point,
     /// The displacement whose forces the springs have in balance with the stress.
     pub balanced: Point,

@@ -1,7 +1,7 @@
 //! The check of a bracket: balance, signs, distances and energies, from the stresses and displacements only.
 
 use super::bound::{Bracket, steepest};
-use super::problem::ObstacleSurface;
+use super::problem::Surface;
 use super::simplex::{mixed, pairs, traction, weights_of_centre};
 use crate::error::Error;
 use signorini_fem::geometry::plus;
@@ -123,11 +123,11 @@ impl Bracket<'_> {
                     pairs(dimension).zip(coefficients).map(|(pair, coefficient)| of_pair(pair) * coefficient).sum()
                 };
                 let gap = match &self.problem.obstacles[obstacle].surface {
-                    ObstacleSurface::Rigid(distance) => {
+                    Surface::Rigid(distance) => {
                         let place = mixed(&corners, &weights);
                         distance.gap(&vec![place; dimension]).map(|gap| gap.coefficients[0])
                     }
-                    ObstacleSurface::Body { .. } => {
+                    Surface::Body { .. } => {
                         self.problem.gap(self.mesh, outer.facet, obstacle).map(|gap| at(&gap.coefficients))
                     }
                 };
@@ -181,7 +181,9 @@ mod tests {
     use super::super::simplex::{Point, Tensor, less, middle};
     use super::super::system::Row;
     use super::*;
+    use crate::answer::Strain;
 
+    /// The message of the check of a bracket.
     fn refusal(bracket: &Bracket) -> String {
         bracket.check().unwrap_err().to_string()
     }
@@ -224,8 +226,8 @@ mod tests {
                 (0..mesh.count()).map(|cell| of_cell(cell, square)).sum::<f64>().sqrt()
             };
             let from_centre = length(&|strain, stress| size(less(own, middle(strain, law.compliance(stress)))));
-            let varying = bracket.judged(|_| (move |_: Point| own, false));
-            let constant = bracket.judged(|_| (move |_: Point| own, true));
+            let varying = bracket.judged(|_| Strain::Varying(move |_: Point| own));
+            let constant = bracket.judged(|_| Strain::<fn(Point) -> Tensor>::Constant(own));
             for judged in [varying, constant] {
                 // The body has the size one.
                 let exact = [
@@ -292,7 +294,9 @@ mod tests {
             let corners_only = mesh.nodes.len();
             let [rows, _] = displacements.rows(&unknowns).unwrap();
             let rows: Vec<Row> = rows.into_iter().filter(|row| row.place(mesh.dimension) < corners_only).collect();
-            let posed = unknowns.problem(&displacements.matrices(), &displacements.load(), &rows).unwrap();
+            let (blocks, load, places) = (displacements.blocks(), displacements.load(), displacements.places());
+            let posed =
+                unknowns.problem(mesh.dimension, &displacements.numbers, &blocks, &load, &rows, &places).unwrap();
             bracket.primal = Half::solved(unknowns, rows, &posed, None, &settings()).unwrap();
             bracket.measure();
             assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));

@@ -6,11 +6,9 @@ use std::collections::BTreeMap;
 use super::integration::{Sample, samples, samples_on_facet};
 use super::mesh::{OuterFacet, Partner, SimplexMesh};
 use super::problem::{ContinuumProblem, weighted_mean};
-use super::simplex::{
-    MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, values_of_functions, work,
-};
-use super::stress::ContactPlace;
-use super::system::{Affine, CellMatrices, CellMatrix, Row, add_springs};
+use super::simplex::{MOST_CORNERS, Point, Simplex, Tensor, Weights, corners_of_side, number_of_pair, pairs, work};
+use super::stress::Place;
+use super::system::{Affine, Block, CellNumbers, Row, add_springs};
 use crate::error::Error;
 use signorini_fem::geometry::{COORDINATES, midpoint};
 use signorini_fem::threads::each;
@@ -21,18 +19,19 @@ pub struct Displacements<'a> {
     problem: &'a ContinuumProblem,
     mesh: &'a SimplexMesh,
     /// The functions of each simplex, each along all axes.
-    pub numbers: Vec<Vec<usize>>,
+    pub numbers: CellNumbers,
 }
 
 impl<'a> Displacements<'a> {
     pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Self {
         let (dimension, nodes) = (mesh.dimension, mesh.nodes.len());
-        let along_axes = |function: usize| dimension * function..dimension * (function + 1);
-        let numbers = |cell: usize| {
-            let functions = mesh.cell(cell).iter().copied().chain(mesh.edges_of(cell).iter().map(|edge| nodes + edge));
-            functions.flat_map(along_axes).collect()
+        let functions = |cell: usize| {
+            mesh.cell(cell).iter().copied().chain(mesh.edges_of(cell).iter().map(move |edge| nodes + edge))
         };
-        Displacements { problem, mesh, numbers: (0..mesh.count()).map(numbers).collect() }
+        let along_axes = |function: usize| dimension * function..dimension * (function + 1);
+        let numbers = (0..mesh.count()).flat_map(functions).flat_map(along_axes).collect();
+        let of_cell = dimension * (dimension + 1) * (dimension + 2) / 2;
+        Displacements { problem, mesh, numbers: CellNumbers { of_cell, numbers } }
     }
 
     /// The places of the functions: a linear displacement has its values there as coefficients.
@@ -45,7 +44,7 @@ impl<'a> Displacements<'a> {
     /// The functions on a facet: those of its corners, then those of their pairs.
     pub fn on_facet(&self, outer: &OuterFacet) -> Vec<usize> {
         let dimension = self.mesh.dimension;
-        let numbers = &self.numbers[outer.cell];
+        let numbers = self.numbers.of(outer.cell);
         local_functions(dimension, outer.local).map(|function| numbers[dimension * function] / dimension).collect()
     }
 
@@ -73,7 +72,7 @@ impl<'a> Displacements<'a> {
     }
 
     /// The mean of a displacement towards an obstacle at a place, as in a row of the stress.
-    pub fn mean_towards(&self, values: &[f64], place: &ContactPlace) -> f64 {
+    pub fn mean_towards(&self, values: &[f64], place: &Place) -> f64 {
         weighted_mean(self.mesh.dimension, place.corner, &self.towards(values, &place.on, place.obstacle))
     }
 
@@ -109,7 +108,9 @@ impl<'a> Displacements<'a> {
         }
         let (mut rows, mut held) = (Vec::with_capacity(gaps.len()), Vec::new());
         for ((number, function, other), gap) in gaps {
-            let row = Row::new(self.problem, number, (function, other, self.function_count()), gap);
+            let normal = self.problem.obstacles[number].normal;
+            let travel = self.problem.travel(number, self.function_count());
+            let row = Row::new((function, other), dimension, normal, travel, gap);
             let (free, prescribed) = unknowns.of_terms(&row.terms);
             match free.is_empty() {
                 true if prescribed > gap => {
@@ -129,7 +130,8 @@ impl<'a> Displacements<'a> {
         self.mesh.nodes.len() + self.mesh.edges.len()
     }
 
-    pub fn matrices(&self) -> CellMatrices<'_> {
+    /// The stiffness of each simplex.
+    pub fn blocks(&self) -> Vec<Block> {
         let mut blocks = each(self.mesh.count(), |cell| self.stiffness(cell));
         let dimension = self.mesh.dimension;
         for outer in self.mesh.surface() {
@@ -147,11 +149,11 @@ impl<'a> Displacements<'a> {
                 add_springs(&mut blocks[outer.cell], dimension, (&springs, normal), &local, &share);
             }
         }
-        CellMatrices { dimension, numbers: &self.numbers, of_cells: blocks, places: self.places() }
+        blocks
     }
 
-    fn stiffness(&self, cell: usize) -> CellMatrix {
-        let (simplex, count) = (self.mesh.simplex(cell), self.numbers[cell].len());
+    fn stiffness(&self, cell: usize) -> Block {
+        let (simplex, count) = (self.mesh.simplex(cell), self.numbers.of(cell).len());
         let law = self.problem.law(self.mesh.origins[cell]);
         let mut block = vec![0.0; count * count];
         let mut strains: Vec<Tensor> = Vec::with_capacity(count);
@@ -218,7 +220,7 @@ impl<'a> Displacements<'a> {
         // With the coefficients c_ij the displacement is the sum of l_j d_j / 2, and its gradient that of d_j times the
         // slope of l_j, with d_j = 2 sum of l_i c_ij.
         let mut along = [[0.0; 3]; MOST_CORNERS];
-        for (pair, numbers) in pairs(dimension + 1).zip(self.numbers[cell].chunks_exact(dimension)) {
+        for (pair, numbers) in pairs(dimension + 1).zip(self.numbers.of(cell).chunks_exact(dimension)) {
             let [i, j] = pair;
             for (axis, &number) in numbers.iter().enumerate() {
                 let twice = 2.0 * coefficients[number];
@@ -261,6 +263,11 @@ impl<'a> Displacements<'a> {
             })
         })
     }
+}
+
+/// The values at a point of the functions of a simplex of this dimension, or of a facet.
+pub fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
+    pairs(dimension + 1).map(move |[i, j]| at[i] * at[j] * if i == j { 1.0 } else { 2.0 })
 }
 
 /// The functions of a simplex on the side opposite to a corner: those of its corners, then those of their pairs.

@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 
 use super::mesh::{Cells, EdgePair, SimplexMesh};
-use super::problem::{Condition, ContinuumProblem, ObstacleSurface};
+use super::problem::{Condition, ContinuumProblem, Surface};
 use super::simplex::{Point, Simplex};
 use signorini_fem::geometry::{distance, dot, key, minus, shifted};
 
@@ -89,8 +89,7 @@ impl SimplexMesh {
     /// how much of the two surfaces of each seam is joined, from 0 to 1. Facets inside, at seams, get conditions of
     /// their own.
     pub fn joined(self, problem: &mut ContinuumProblem) -> Result<(Self, Vec<[f64; 2]>), Unjoined> {
-        let has_contacts =
-            problem.obstacles.iter().any(|facing| matches!(facing.surface, ObstacleSurface::Body { .. }));
+        let has_contacts = problem.obstacles.iter().any(|facing| matches!(facing.surface, Surface::Body { .. }));
         let has_seams = problem.conditions.iter().any(|condition| !condition.seams.is_empty());
         if !has_contacts && !has_seams {
             return Ok((self, Vec::new()));
@@ -121,7 +120,7 @@ impl Cut {
     fn at_contacts(&mut self, problem: &ContinuumProblem) -> Result<Vec<EdgePair>, usize> {
         let mut opposites = Vec::new();
         for (obstacle, facing) in problem.obstacles.iter().enumerate() {
-            let ObstacleSurface::Body { reach, .. } = &facing.surface else { continue };
+            let Surface::Body { reach, .. } = &facing.surface else { continue };
             let along = [-facing.normal[1], facing.normal[0], 0.0];
             let faces = |of: fn(&Condition) -> &[usize], towards: f64| {
                 let has = |condition: usize| of(&problem.conditions[condition]).contains(&obstacle);
@@ -191,6 +190,7 @@ impl Cut {
         chosen.into_iter().filter_map(edge).collect()
     }
 
+    /// Cuts the triangle at an edge in a fan.
     pub fn fan(&mut self, edge: &CutEdge) {
         let nodes: Vec<usize> = edge.stops.iter().map(|stop| stop.1).collect();
         let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else { return };

@@ -17,9 +17,9 @@ use std::collections::BTreeSet;
 
 use super::bound::{Bracket, Half};
 use super::part_stress::PartStress;
-use super::simplex::{less, middle, work};
+use super::simplex::{Point, less, middle, work};
 use super::stress::Stresses;
-use super::system::{CellMatrices, Row};
+use super::system::{Block, CellNumbers, Row};
 use crate::error::Error;
 use signorini_fem::geometry::{midpoint, minus};
 use signorini_fem::threads::{both, each};
@@ -44,15 +44,15 @@ const FAR: f64 = 1e3;
 /// Largest number of rounds that change rows of the wrong sign.
 const ROUNDS: usize = 12;
 
-/// What every pair needs: the matrices of both problems, and the stresses without load.
-struct OfPairs<'a> {
-    displacement: CellMatrices<'a>,
-    stress: CellMatrices<'a>,
-    unloaded: Stresses<'a>,
+/// The matrices of the simplices, and the stresses without load, for every pair.
+struct Blocks<'a> {
+    displacement: Vec<Block>,
+    stress: Vec<Block>,
+    stresses: Stresses<'a>,
 }
 
 /// A stress with the values of its unknowns, and its force at each place.
-type StressUnderContact = (Vec<PartStress>, Vec<f64>, Vec<f64>);
+type Pressed = (Vec<PartStress>, Vec<f64>, Vec<f64>);
 
 /// A pair z, tau_z and the ratios of its rows.
 struct Test {
@@ -87,10 +87,10 @@ impl Bracket<'_> {
         let mut bonded: Vec<bool> = (0..self.primal.rows.len()).map(|row| closed.contains(row)).collect();
         let mut pressed: Vec<bool> = (0..self.places.len()).map(|row| self.pulls[row] < 0.0).collect();
         let unloaded = self.problem.unloaded();
-        let of_pairs = OfPairs {
-            displacement: self.displacements.matrices(),
-            stress: self.stresses.matrices(),
-            unloaded: Stresses::new(&unloaded, self.mesh)?,
+        let blocks = Blocks {
+            displacement: self.displacements.blocks(),
+            stress: self.stresses.blocks(),
+            stresses: Stresses::new(&unloaded, self.mesh)?,
         };
         let mut last: Option<Test> = None;
         let (mut interval, mut scale): (Option<[f64; 2]>, f64) = (None, 0.0);
@@ -103,7 +103,7 @@ impl Bracket<'_> {
                 bonded.iter_mut().zip(&test.ratios[0]).for_each(|(bonded, &ratio)| *bonded |= ratio > most);
                 pressed.iter_mut().zip(&test.ratios[1]).for_each(|(pressed, &ratio)| *pressed &= ratio <= most);
             }
-            let Some(test) = self.test(&mut bonded, &mut pressed, &of_pairs)? else { break };
+            let Some(test) = self.test(&mut bonded, &mut pressed, &blocks)? else { break };
             let (found, natural) = self.interval(&test);
             scale = if last.is_none() { natural } else { scale };
             if found.iter().all(|bound| bound.is_finite()) {
@@ -174,10 +174,10 @@ impl Bracket<'_> {
     }
 
     /// The pair with these rows held; rows of the wrong sign are bonded or released until every row has the right sign.
-    fn test(&self, bonded: &mut [bool], pressed: &mut [bool], of_pairs: &OfPairs) -> Result<Option<Test>, Error> {
+    fn test(&self, bonded: &mut [bool], pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Test>, Error> {
         let (displacement, stress) = both(
-            || self.bonded_displacement(bonded, &of_pairs.displacement),
-            || self.bonded_stress(pressed, &of_pairs.stress, &of_pairs.unloaded),
+            || self.bonded_displacement(bonded, &blocks.displacement),
+            || self.bonded_stress(pressed, &blocks.stress, &blocks.stresses),
         );
         let (Some(displacement), Some((stress, facets, pulls))) = (displacement?, stress?) else { return Ok(None) };
         let (primal, values) = (&self.primal, &self.primal.values);
@@ -192,10 +192,11 @@ impl Bracket<'_> {
 
     /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too, and those that are only a little
     /// below it are moved there.
-    fn bonded_displacement(&self, bonded: &mut [bool], matrices: &CellMatrices) -> Result<Option<Vec<f64>>, Error> {
-        let rows = &self.primal.rows;
+    fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
+        let (rows, places) = (&self.primal.rows, self.displacements.places());
         for _ in 0..ROUNDS {
-            let Some(mut values) = self.held(&self.primal, bonded, matrices)? else { return Ok(None) };
+            let of_mesh = (&self.displacements.numbers, blocks, &places[..]);
+            let Some(mut values) = self.held(&self.primal, bonded, of_mesh)? else { return Ok(None) };
             let open = |row: usize| 1.0 + rows[row].value(&values);
             let wrong: Vec<usize> =
                 (0..bonded.len()).filter(|&row| open(row) < -self.allowed_sign() && !bonded[row]).collect();
@@ -217,11 +218,13 @@ impl Bracket<'_> {
     fn bonded_stress(
         &self,
         pressed: &mut [bool],
-        matrices: &CellMatrices,
+        blocks: &[Block],
         stresses: &Stresses,
-    ) -> Result<Option<StressUnderContact>, Error> {
+    ) -> Result<Option<Pressed>, Error> {
+        let places = self.stresses.places();
         for _ in 0..ROUNDS {
-            let Some(values) = self.held(&self.dual, pressed, matrices)? else { return Ok(None) };
+            let of_mesh = (&self.stresses.numbers, blocks, &places[..]);
+            let Some(values) = self.held(&self.dual, pressed, of_mesh)? else { return Ok(None) };
             let stress = stresses.stresses(&values);
             let mut pulls = self.pulls_of(&stress, &values);
             // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds
@@ -253,7 +256,12 @@ impl Bracket<'_> {
 
     /// All values with supports at zero, under no load, with these rows at -1 towards the obstacle; `None` if they were
     /// not found. If the data of the bracket serve again, rows that would pull go beyond -1, as in contact.
-    fn held(&self, side: &Half, rows: &[bool], matrices: &CellMatrices) -> Result<Option<Vec<f64>>, Error> {
+    fn held(
+        &self,
+        side: &Half,
+        rows: &[bool],
+        (numbers, blocks, places): (&CellNumbers, &[Block], &[Point]),
+    ) -> Result<Option<Vec<f64>>, Error> {
         let (unknowns, found) = match &side.prepared {
             Some(prepared) => {
                 let settings = self.settings.clone().with_accuracy(OF_PAIR);
@@ -265,7 +273,8 @@ impl Bracket<'_> {
             None => {
                 let chosen = side.rows.iter().zip(rows).filter(|row| *row.1).map(|row| row.0);
                 let Some(unknowns) = side.unknowns.with_held(chosen, -1.0) else { return Ok(None) };
-                let posed = unknowns.problem(matrices, &vec![0.0; unknowns.count()], &[])?;
+                let load = vec![0.0; unknowns.count()];
+                let posed = unknowns.problem(self.mesh.dimension, numbers, blocks, &load, &[], places)?;
                 // In space a hierarchy may be the only way.
                 let linear = (self.mesh.dimension == 2).then(|| posed.linear_displacement(&self.settings));
                 if let Some(Ok(free)) = linear {

@@ -19,6 +19,7 @@ const ZEROS: usize = 4;
 /// A point of integration on a simplex or on a facet.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
+    /// Its barycentric coordinates.
     pub weights: Weights,
     pub place: Point,
     /// Its volume, or its area.
@@ -74,6 +75,7 @@ pub fn around(size: f64, triangle: &Simplex) -> Vec<Sample> {
     square().iter().map(of_point).collect()
 }
 
+/// The points of integration on a facet of the surface.
 pub fn samples_on_facet(problem: &ContinuumProblem, corners: &[Point]) -> Vec<Sample> {
     let size = problem.thickness * size_of_facet(corners);
     let radii: Vec<f64> = corners.iter().map(|&corner| problem.radius(corner)).collect();

@@ -13,9 +13,9 @@ use std::sync::OnceLock;
 use super::axis::stresses;
 use super::integration::samples;
 use super::normal::{Lower, add, null_space};
-use super::part_stress::{PartStress, QUADRATIC, add_traction};
+use super::part_stress::{PartStress, QUADRATIC, add_traction, quadratic_factors};
 use super::problem::{ContinuumProblem, ElasticLaw, Medium};
-use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction, values_of_functions};
+use super::simplex::{ENTRIES, Point, Simplex, corners_of_side, traction};
 use signorini_fem::material::engineering;
 use signorini_qp::dot;
 
@@ -194,9 +194,9 @@ fn products_over_radius(problem: &ContinuumProblem, part: &Simplex) -> Products 
     let mut products = [[0.0; QUADRATIC]; QUADRATIC];
     for sample in samples(problem, part) {
         let weight = (sample.weight + sample.extra) / sample.place[0].powi(2);
-        let factors: Vec<f64> = values_of_functions(2, sample.weights).collect();
-        for (line, of_line) in products.iter_mut().zip(&factors) {
-            line.iter_mut().zip(&factors).for_each(|(entry, factor)| *entry += weight * of_line * factor);
+        let factors = quadratic_factors(sample.weights);
+        for (line, of_line) in products.iter_mut().zip(factors) {
+            line.iter_mut().zip(factors).for_each(|(entry, factor)| *entry += weight * of_line * factor);
         }
     }
     products

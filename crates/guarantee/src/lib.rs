@@ -47,7 +47,7 @@ mod two_bodies;
 
 pub use answer::ContinuumAnswer;
 #[doc(hidden)]
-pub use answer::Judged;
+pub use answer::{Judged, Strain};
 #[doc(hidden)]
 pub use bound::Bracket;
 pub use error::Error;
@@ -57,8 +57,7 @@ pub use fans::{SAME_PLACE, Unjoined};
 pub use mesh::{Cells, SimplexMesh};
 #[doc(hidden)]
 pub use problem::{
-    Condition, ContinuumProblem, Distance, Enclosure, FacingObstacle, HeldComponent, Linear, Medium, ObstacleSurface,
-    PressingForce, RigidPlate, SideCircle,
+    Circle, Condition, ContinuumProblem, Distance, Enclosure, Facing, Held, Linear, Medium, Pressed, RigidFace, Surface,
 };
 #[doc(hidden)]
 pub use simplex::{Point, pairs};

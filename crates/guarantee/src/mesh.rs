@@ -21,7 +21,7 @@ const FOLDED: f64 = 0.1;
 const GENERATIONS: usize = 1;
 
 /// Simplices before they are a mesh.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Cells {
     pub nodes: Vec<Point>,
     /// The nodes of each simplex.
@@ -118,7 +118,7 @@ enum Bisection {
 }
 
 /// The conditions of the facets of the surface, by their nodes.
-type FacetConditions = HashMap<[usize; OF_FACET], usize>;
+type Surface = HashMap<[usize; OF_FACET], usize>;
 
 /// Numbers in increasing order; absent ones stand last.
 fn filled<const N: usize>(nodes: impl IntoIterator<Item = usize>) -> [usize; N] {
@@ -195,7 +195,7 @@ impl SimplexMesh {
         nodes: Vec<Point>,
         cells: impl Iterator<Item = [usize; MOST_CORNERS]>,
         origins: Vec<usize>,
-        surface: &FacetConditions,
+        surface: &Surface,
         next: Bisection,
     ) -> Self {
         let cells: Vec<_> = cells.collect();
@@ -348,7 +348,7 @@ impl SimplexMesh {
                 }
             }
         }
-        let (mut nodes, mut surface, mut parents) = (self.nodes.clone(), FacetConditions::new(), Vec::new());
+        let (mut nodes, mut surface, mut parents) = (self.nodes.clone(), Surface::new(), Vec::new());
         for (facet, &condition) in self.facets.iter().zip(&self.conditions) {
             let [a, b, _] = *facet;
             let mut ends = vec![*facet];

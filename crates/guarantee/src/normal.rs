@@ -71,16 +71,19 @@ pub fn add(sum: &mut [f64], factor: f64, other: &[f64]) {
 /// A basis of the null space of all rows, by elimination.
 pub fn null_space(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let count = rows.first().map_or(0, Vec::len);
-    // The column of the pivot of each row.
-    let mut pivots: Vec<Option<usize>> = vec![None; rows.len()];
+    let mut pivots: Vec<(usize, usize)> = Vec::with_capacity(rows.len());
+    let largest_in = |row: &[f64]| {
+        let largest = (0..count).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())).unwrap_or(0);
+        (row[largest].abs(), largest)
+    };
+    // Of the rows without a pivot.
+    let mut largest: Vec<Option<(f64, usize)>> = rows.iter().map(|row| Some(largest_in(row))).collect();
     loop {
-        let left = (0..rows.len()).filter(|&row| pivots[row].is_none());
-        let entries =
-            left.flat_map(|row| rows[row].iter().enumerate().map(move |(column, value)| (value.abs(), row, column)));
+        let left = largest.iter().enumerate().filter_map(|(row, largest)| Some(((*largest)?, row)));
+        let next = left.max_by(|a, b| a.0.0.total_cmp(&b.0.0));
         // What is left of a row that depends on others is rounding.
-        let next = entries.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|largest| largest.0 > DEPENDENT);
-        let Some((_, index, column)) = next else { break };
-        pivots[index] = Some(column);
+        let Some(((_, column), index)) = next.filter(|((size, _), _)| *size > DEPENDENT) else { break };
+        largest[index] = None;
         let scale = rows[index][column];
         rows[index].iter_mut().for_each(|value| *value /= scale);
         let row = rows[index].clone();
@@ -88,18 +91,18 @@ pub fn null_space(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
             let share = rows[other][column];
             if share != 0.0 {
                 add(&mut rows[other], -share, &row);
+                largest[other] = largest[other].map(|_| largest_in(&rows[other]));
             }
         }
+        pivots.push((index, column));
     }
     let vector = |column: usize| {
         let mut vector = vec![0.0; count];
         vector[column] = 1.0;
-        for (row, pivot) in rows.iter().zip(&pivots) {
-            pivot.iter().for_each(|&pivot| vector[pivot] = -row[column]);
-        }
+        pivots.iter().for_each(|&(row, pivot)| vector[pivot] = -rows[row][column]);
         vector
     };
-    (0..count).filter(|column| !pivots.contains(&Some(*column))).map(vector).collect()
+    (0..count).filter(|column| pivots.iter().all(|pivot| pivot.1 != *column)).map(vector).collect()
 }
 
 #[cfg(test)]

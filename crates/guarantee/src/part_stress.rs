@@ -2,7 +2,7 @@
 
 use super::normal::add;
 use super::problem::ContinuumProblem;
-use super::simplex::{Point, Simplex, Tensor, Weights, number_of_pair, pairs, traction, values_of_functions};
+use super::simplex::{Point, Simplex, Tensor, Weights, number_of_pair, pairs, traction};
 
 /// Coefficients of a quadratic function on a triangle.
 pub const QUADRATIC: usize = 6;
@@ -52,6 +52,7 @@ impl PartStress {
         stress
     }
 
+    /// The value at a corner of part k.
     pub fn corner(&self, k: usize, corner: usize) -> Tensor {
         self.values[k * self.of_part + corner]
     }
@@ -60,10 +61,8 @@ impl PartStress {
     pub fn at(&self, k: usize, weights: Weights) -> Tensor {
         let mut sum = [0.0; 6];
         let of_part = &self.values[k * self.of_part..(k + 1) * self.of_part];
-        let mut add = |(value, factor): (&Tensor, f64)| add(&mut sum, factor, value);
-        match self.of_part {
-            QUADRATIC => of_part.iter().zip(values_of_functions(2, weights)).for_each(&mut add),
-            _ => of_part.iter().zip(weights).for_each(&mut add),
+        for (value, factor) in of_part.iter().zip(self.factors(weights)) {
+            sum.iter_mut().zip(value).for_each(|(sum, entry)| *sum += factor * entry);
         }
         sum
     }
@@ -76,6 +75,17 @@ impl PartStress {
         self.corner(k, number_of_pair(3, corner, along)).map(|part| 2.0 * part)
     }
 
+    /// The value of the function of each coefficient at a point.
+    fn factors(&self, weights: Weights) -> [f64; QUADRATIC] {
+        if self.of_part == QUADRATIC {
+            return quadratic_factors(weights);
+        }
+        let mut factors = [0.0; QUADRATIC];
+        factors[..weights.len()].copy_from_slice(&weights);
+        factors
+    }
+
+    /// The same with other values of the coefficients.
     pub fn map(&self, value: impl Fn(Tensor) -> Tensor) -> Self {
         PartStress { of_part: self.of_part, values: self.values.iter().map(|&old| value(old)).collect() }
     }
@@ -84,9 +94,16 @@ impl PartStress {
         self.values.as_flattened()
     }
 
+    /// Adds a multiple of another stress.
     pub fn add(&mut self, factor: f64, other: &PartStress) {
         add(self.values.as_flattened_mut(), factor, other.entries());
     }
+}
+
+/// The values of Bernstein's quadratic functions on a triangle.
+pub fn quadratic_factors(weights: Weights) -> [f64; QUADRATIC] {
+    let [a, b, c, _] = weights;
+    [a * a, b * b, c * c, 2.0 * a * b, 2.0 * a * c, 2.0 * b * c]
 }
 
 /// Adds the traction on a surface with this normal of the values from `first` on, those of these entries of a tensor

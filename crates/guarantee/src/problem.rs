@@ -26,8 +26,8 @@ pub struct ContinuumProblem {
     /// The conditions on facets, most of them on the surface: sides of the outline in the plane.
     pub conditions: Vec<Condition>,
     /// The parts of the surface that move as rigid plates.
-    pub rigid_faces: Vec<RigidPlate>,
-    pub obstacles: Vec<FacingObstacle>,
+    pub rigid_faces: Vec<RigidFace>,
+    pub obstacles: Vec<Facing>,
     /// The names of the parts of the surface, each with the number of its body.
     pub boundaries: Vec<(String, usize)>,
 }
@@ -53,7 +53,8 @@ pub struct Linear {
 /// The condition on a facet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Condition {
-    pub held: Vec<HeldComponent>,
+    /// The prescribed components of the displacement.
+    pub held: Vec<Held>,
     pub rigid_face: Option<usize>,
     /// The traction along each axis, in force per area.
     pub traction: [Linear; 3],
@@ -70,14 +71,15 @@ pub struct Condition {
     /// The named parts of the surface that the facet belongs to.
     pub boundaries: Vec<usize>,
     /// In the plane, the circle on which new nodes are placed; without it they halve the straight side.
-    pub circle: Option<SideCircle>,
+    pub circle: Option<Circle>,
 }
 
 /// A prescribed component of the displacement: `direction . u = value`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeldComponent {
+pub struct Held {
     /// The direction of the prescribed component, of length 1.
     pub direction: Point,
+    /// The prescribed displacement, in length, linear in space.
     pub value: Linear,
 }
 
@@ -104,7 +106,7 @@ impl Foundation {
 
 /// A part of the surface that moves as a rigid plate: by prescribed motions and amounts of free ones.
 #[derive(Clone, Debug)]
-pub struct RigidPlate {
+pub struct RigidFace {
     /// The displacement by the prescribed motions, along each axis, in length.
     pub prescribed: [Linear; 3],
     /// The displacement along each axis by one of each free motion, and the force or the moment along it.
@@ -113,8 +115,10 @@ pub struct RigidPlate {
 
 /// A circle that a side approximates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SideCircle {
+pub struct Circle {
+    /// The centre of the circle, in length.
     pub centre: Point,
+    /// Its radius, in length.
     pub radius: f64,
 }
 
@@ -157,17 +161,17 @@ impl Condition {
 
 /// An obstacle with rows along one direction.
 #[derive(Clone, Debug)]
-pub struct FacingObstacle {
+pub struct Facing {
     /// The unit vector from the body towards the obstacle.
     pub normal: Point,
-    pub surface: ObstacleSurface,
+    pub surface: Surface,
     /// What presses it, if it moves.
-    pub pressed: Option<PressingForce>,
+    pub pressed: Option<Pressed>,
 }
 
 /// What a body meets at an obstacle.
 #[derive(Clone, Debug)]
-pub enum ObstacleSurface {
+pub enum Surface {
     /// A rigid surface with this distance function.
     Rigid(Arc<dyn Distance>),
     /// Another body, in the plane.
@@ -183,7 +187,7 @@ pub enum ObstacleSurface {
 
 /// The force on an obstacle that a force presses, and the direction of its travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PressingForce {
+pub struct Pressed {
     /// The force along its travel.
     pub force: f64,
     /// The part of the travel against the normal: the cosine of their angle.
@@ -245,11 +249,11 @@ impl ContinuumProblem {
 
     /// The gap to an obstacle on a facet; `None` if it is out of reach on all of the facet.
     pub fn gap(&self, mesh: &SimplexMesh, facet: usize, obstacle: usize) -> Option<Enclosure> {
-        let FacingObstacle { normal, surface, .. } = &self.obstacles[obstacle];
+        let Facing { normal, surface, .. } = &self.obstacles[obstacle];
         let corners = mesh.corners_of_facet(facet);
         match surface {
-            ObstacleSurface::Rigid(distance) => distance.gap(&corners),
-            ObstacleSurface::Body { fit, shift, .. } => {
+            Surface::Rigid(distance) => distance.gap(&corners),
+            Surface::Body { fit, shift, .. } => {
                 let partner = mesh.partner(facet, obstacle)?;
                 let others = mesh.corners_of_facet(partner.on.facet);
                 let away = |corner: usize| {
@@ -285,7 +289,7 @@ impl ContinuumProblem {
             return straight;
         }
         let round = mesh.refined(marked, |condition, middle| match self.conditions[condition].circle {
-            Some(SideCircle { centre, radius }) => {
+            Some(Circle { centre, radius }) => {
                 let away = distance(centre, middle);
                 [0, 1, 2].map(|axis| centre[axis] + (middle[axis] - centre[axis]) * radius / away)
             }
@@ -325,8 +329,7 @@ impl ContinuumProblem {
 
     /// The sum of the contact forces, as those that press the obstacles make it; `None` unless all are pressed.
     pub fn pressing_force(&self) -> Option<f64> {
-        let along_normal =
-            |facing: &FacingObstacle| facing.pressed.map(|PressingForce { force, cosine }| force / cosine);
+        let along_normal = |facing: &Facing| facing.pressed.map(|Pressed { force, cosine }| force / cosine);
         if self.obstacles.is_empty() { None } else { self.obstacles.iter().map(along_normal).sum() }
     }
 
@@ -459,7 +462,7 @@ mod tests {
     /// A flat triangle on a chord: the middle of the arc lies beyond its tip, or not.
     #[test]
     fn a_node_goes_onto_its_circle_unless_a_triangle_would_fold() {
-        let on_circle = SideCircle { centre: [0.0, 1.0, 0.0], radius: 2.0_f64.sqrt() };
+        let on_circle = Circle { centre: [0.0, 1.0, 0.0], radius: 2.0_f64.sqrt() };
         let side = |circle| Condition { circle, ..Condition::default() };
         let problem = ContinuumProblem {
             conditions: vec![side(Some(on_circle)), side(None)],

@@ -13,6 +13,7 @@ use signorini_fem::geometry::{distance, dot, minus, shifted, sorted, unit};
 /// Points closer than this share of an edge are one: far above the rounding of coordinates.
 const ONE_PLACE: f64 = 1e-9;
 
+/// The nodes of each facet of a surface.
 type Facets = Vec<Vec<usize>>;
 
 impl Condition {

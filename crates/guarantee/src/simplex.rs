@@ -31,11 +31,6 @@ pub fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> + Clone {
     (0..count).map(|i| [i, i]).chain((0..count).flat_map(move |i| (i + 1..count).map(move |j| [i, j])))
 }
 
-/// The values at a point of Bernstein's functions on a simplex of this dimension, or on a facet.
-pub fn values_of_functions(dimension: usize, at: Weights) -> impl Iterator<Item = f64> {
-    pairs(dimension + 1).map(move |[i, j]| at[i] * at[j] * if i == j { 1.0 } else { 2.0 })
-}
-
 /// The corners of the side opposite to a corner, in their order.
 pub fn corners_of_side(dimension: usize, side: usize) -> impl Iterator<Item = usize> + Clone {
     (0..=dimension).filter(move |&corner| corner != side)
@@ -46,6 +41,7 @@ pub fn number_of_pair(count: usize, one: usize, other: usize) -> usize {
     pairs(count).position(|pair| pair == key(one, other)).unwrap_or(0)
 }
 
+/// The barycentric coordinates of the centre.
 pub fn weights_of_centre(dimension: usize) -> Weights {
     std::array::from_fn(|corner| if corner <= dimension { 1.0 / (dimension + 1) as f64 } else { 0.0 })
 }
@@ -76,6 +72,7 @@ impl Simplex {
         [minus(b, a), minus(c, a), if self.dimension == 2 { [0.0, 0.0, 1.0] } else { minus(d, a) }]
     }
 
+    /// The determinant of the edges.
     fn determinant(&self) -> f64 {
         let [first, second, third] = self.edges();
         dot(first, cross(second, third))

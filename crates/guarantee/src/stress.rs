@@ -13,7 +13,7 @@ use super::mesh::{OuterFacet, SimplexMesh};
 use super::part_stress::PartStress;
 use super::problem::{ContinuumProblem, Medium};
 use super::simplex::{MOST_CORNERS, Point};
-use super::system::{Affine, CellMatrices, Row, add_springs};
+use super::system::{Affine, Block, CellNumbers, Row, add_springs};
 use crate::error::Error;
 use signorini_fem::geometry::COORDINATES;
 use signorini_fem::threads::each;
@@ -24,15 +24,16 @@ pub struct Stresses<'a> {
     pub problem: &'a ContinuumProblem,
     pub mesh: &'a SimplexMesh,
     /// The unknowns of each simplex: of its sides, of their corners, along the axes.
-    pub numbers: Vec<Vec<usize>>,
+    pub numbers: CellNumbers,
     /// The element of each simplex; congruent simplices have one together.
     elements: Vec<Arc<StressElement>>,
 }
 
 /// The place at which a contact row of the stress acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactPlace {
+pub struct Place {
     pub on: OuterFacet,
+    /// The number of its corner.
     pub corner: usize,
     pub obstacle: usize,
 }
@@ -43,10 +44,12 @@ type Congruence = ([[u64; 3]; MOST_CORNERS - 1], usize, Option<[u64; 3]>);
 
 impl<'a> Stresses<'a> {
     pub fn new(problem: &'a ContinuumProblem, mesh: &'a SimplexMesh) -> Result<Self, Error> {
-        let of_facet = mesh.dimension * mesh.dimension;
+        let dimension = mesh.dimension;
+        let of_facet = dimension * dimension;
         // The corners of a side have the order of the nodes of the facet: both increase.
         let of_side = |&facet: &usize| of_facet * facet..of_facet * (facet + 1);
-        let numbers = (0..mesh.count()).map(|cell| mesh.sides(cell).iter().flat_map(of_side).collect()).collect();
+        let numbers = (0..mesh.count()).flat_map(|cell| mesh.sides(cell).iter().flat_map(of_side)).collect();
+        let numbers = CellNumbers { of_cell: (dimension + 1) * of_facet, numbers };
         let mut known: HashMap<Congruence, Arc<StressElement>> = HashMap::new();
         let element = |cell: usize| {
             let simplex = mesh.simplex(cell);
@@ -84,6 +87,7 @@ impl<'a> Stresses<'a> {
         (0..self.mesh.facet_count()).flat_map(of_facet).collect()
     }
 
+    /// The places at the corners of a facet.
     pub fn on_facet(&self, outer: &OuterFacet) -> Vec<usize> {
         (0..self.mesh.dimension).map(|corner| self.place(outer.facet, corner)).collect()
     }
@@ -100,6 +104,7 @@ impl<'a> Stresses<'a> {
         Affine::new(self.problem, self.mesh, &self.places(), held, |outer| self.on_facet(outer))
     }
 
+    /// Number of places on all facets.
     pub fn place_count(&self) -> usize {
         self.place(self.mesh.facet_count(), 0)
     }
@@ -107,13 +112,10 @@ impl<'a> Stresses<'a> {
     /// The contact rows, one for each corner of a facet and obstacle, and their places. The gaps are upper bounds on
     /// the weighted means of the distance. A row that `may_touch` does not hold for, given its place and gap, is left
     /// out: there the stress has no pressure, which keeps it in balance.
-    pub fn rows(
-        &self,
-        unknowns: &Affine,
-        may_touch: impl Fn(&ContactPlace, f64) -> bool,
-    ) -> (Vec<Row>, Vec<ContactPlace>) {
+    pub fn rows(&self, unknowns: &Affine, may_touch: impl Fn(&Place, f64) -> bool) -> (Vec<Row>, Vec<Place>) {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
         for (on, obstacle) in self.problem.facing(self.mesh) {
+            let facing = &self.problem.obstacles[obstacle];
             let gap = self.problem.gap(self.mesh, on.facet, obstacle);
             let Some(gap) = gap.filter(|gap| gap.above.is_finite()) else { continue };
             let corners = self.mesh.corners_of_facet(on.facet);
@@ -121,9 +123,10 @@ impl<'a> Stresses<'a> {
             let means = gap.upper_means(self.mesh.dimension).into_iter().enumerate();
             for (corner, gap) in means.filter(|&(corner, _)| !self.problem.is_on_axis(corners[corner])) {
                 let at = self.place(on.facet, corner);
-                let place = ContactPlace { on, corner, obstacle };
+                let place = Place { on, corner, obstacle };
                 let other = self.opposite(&place).map(|(on, corner)| self.place(on.facet, corner));
-                let row = Row::new(self.problem, obstacle, (at, other, self.place_count()), gap);
+                let travel = self.problem.travel(obstacle, self.place_count());
+                let row = Row::new((at, other), self.mesh.dimension, facing.normal, travel, gap);
                 if !unknowns.of_terms(&row.terms).0.is_empty() && may_touch(&place, gap) {
                     rows.push(row);
                     places.push(place);
@@ -134,17 +137,17 @@ impl<'a> Stresses<'a> {
     }
 
     /// The facet of another body, and its corner, opposite to a place; `None` at a rigid obstacle.
-    fn opposite(&self, place: &ContactPlace) -> Option<(OuterFacet, usize)> {
+    fn opposite(&self, place: &Place) -> Option<(OuterFacet, usize)> {
         let partner = self.mesh.partner(place.on.facet, place.obstacle)?;
         Some((partner.on, partner.corners[place.corner]))
     }
 
     pub fn with_elements(&self) -> impl Iterator<Item = (&[usize], &StressElement)> + '_ {
-        self.numbers.iter().zip(&self.elements).map(|(numbers, element)| (&numbers[..], &**element))
+        self.numbers.iter().zip(&self.elements).map(|(numbers, element)| (numbers, &**element))
     }
 
     /// The stiffness of each simplex, with that of springs.
-    pub fn matrices(&self) -> CellMatrices<'_> {
+    pub fn blocks(&self) -> Vec<Block> {
         let mut blocks = each(self.mesh.count(), |cell| self.elements[cell].block());
         let dimension = self.mesh.dimension;
         for outer in self.on_springs() {
@@ -155,7 +158,7 @@ impl<'a> Stresses<'a> {
             let springs = self.problem.springs(&outer);
             add_springs(&mut blocks[outer.cell], dimension, (&springs, normal), &local, &share);
         }
-        CellMatrices { dimension, numbers: &self.numbers, of_cells: blocks, places: self.places() }
+        blocks
     }
 
     /// The work of loads and of the stress without strain with the unknowns.
@@ -247,7 +250,7 @@ impl<'a> Stresses<'a> {
 
     /// The forces along the unknowns from outside under displacements of the facets: of tractions, springs, and contact
     /// forces at places. What supports take is not among them.
-    pub fn given_forces(&self, displacement: &[f64], places: &[ContactPlace], pulls: &[f64]) -> Vec<f64> {
+    pub fn given_forces(&self, displacement: &[f64], places: &[Place], pulls: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; displacement.len()];
         let mut add = |(unknown, force): (usize, f64)| forces[unknown] += force;
         self.tractions().for_each(&mut add);
@@ -277,7 +280,8 @@ impl<'a> Stresses<'a> {
     }
 }
 
-impl ContactPlace {
+impl Place {
+    /// The node at which the row acts.
     pub fn node(&self, mesh: &SimplexMesh) -> usize {
         mesh.facet(self.on.facet)[self.corner]
     }

@@ -1,13 +1,12 @@
 //! The contact problem of simplices with the same number of unknowns each, which are linear functions of the free ones.
 //!
 //! The unknowns are the components along the axes of a displacement at places, then the free motions of rigid faces and
-//! the travels of pressed obstacles. Supports and rigid faces make those of some places functions of fewer free ones:
-//! `u = C y + u0`.
+//! the travels of pressed obstacles. Supports and rigid faces make those of some places functions of fewer free ones.
 
 use std::collections::BTreeMap;
 
 use super::mesh::{OuterFacet, SimplexMesh};
-use super::problem::{ContinuumProblem, Foundation, Linear};
+use super::problem::{ContinuumProblem, Foundation};
 use super::simplex::Point;
 use crate::error::Error;
 use signorini_fem::assembly::perpendicular;
@@ -19,23 +18,12 @@ use signorini_qp::{ContactProblem, NearNullSpace, SparseMatrix, SymmetricMatrix}
 const DEPENDENT: f64 = 1e-9;
 
 /// The matrix of a simplex, row by row.
-pub type CellMatrix = Vec<f64>;
-
-/// The matrices of all simplices in the unknowns of places.
-#[derive(Debug)]
-pub struct CellMatrices<'a> {
-    pub dimension: usize,
-    /// The unknowns of each simplex.
-    pub numbers: &'a [Vec<usize>],
-    pub of_cells: Vec<CellMatrix>,
-    /// At each of these a linear displacement has the values of the unknowns along the axes.
-    pub places: Vec<Point>,
-}
+pub type Block = Vec<f64>;
 
 /// Adds springs on a facet with this normal to the matrix of its simplex. `share` is the integral of the product of two
 /// of the functions on the facet, and `local` their numbers among those of the simplex.
 pub fn add_springs(
-    block: &mut CellMatrix,
+    block: &mut Block,
     dimension: usize,
     (springs, normal): (&Foundation, Point),
     local: &[usize],
@@ -54,6 +42,24 @@ pub fn add_springs(
     }
 }
 
+/// The unknowns of the simplices, the same number for each.
+#[derive(Clone, Debug)]
+pub struct CellNumbers {
+    pub of_cell: usize,
+    /// Those of all simplices, one after another.
+    pub numbers: Vec<usize>,
+}
+
+impl CellNumbers {
+    pub fn of(&self, cell: usize) -> &[usize] {
+        &self.numbers[cell * self.of_cell..(cell + 1) * self.of_cell]
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &[usize]> + Clone {
+        self.numbers.chunks_exact(self.of_cell)
+    }
+}
+
 /// A bound on a sum of unknowns: `sum of coefficient x <= gap`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
@@ -66,19 +72,19 @@ pub struct Row {
 }
 
 impl Row {
-    /// The bound on the displacement of one of `count` places towards an obstacle, less that of a place of the obstacle
-    /// if it is a body, with the travel of the obstacle.
+    /// The bound on the displacement of a place along a normal, less that of a place of another body, with the travel
+    /// of the obstacle towards the body and the share of it that counts.
     pub fn new(
-        problem: &ContinuumProblem,
-        obstacle: usize,
-        (place, other, count): (usize, Option<usize>, usize),
+        (place, other): (usize, Option<usize>),
+        dimension: usize,
+        normal: Point,
+        travel: Option<(usize, f64)>,
         gap: f64,
     ) -> Self {
-        let (dimension, normal) = (problem.dimension, problem.obstacles[obstacle].normal);
         let mut terms: Vec<_> = along(place, dimension, normal).collect();
         let own = terms.len();
         let other = other.into_iter().flat_map(|place| along(place, dimension, normal));
-        terms.extend(other.map(|(unknown, part)| (unknown, -part)).chain(problem.travel(obstacle, count)));
+        terms.extend(other.map(|(unknown, part)| (unknown, -part)).chain(travel));
         Row { terms, own, gap }
     }
 
@@ -116,14 +122,6 @@ pub struct Affine {
     starts: Vec<u32>,
     /// Free unknowns with their coefficients.
     terms: Vec<(u32, f64)>,
-}
-
-/// What acts at a place: prescribed components, the normal of an obstacle, a rigid face.
-#[derive(Default)]
-struct AtPlace {
-    components: Vec<(Point, f64)>,
-    normal: Option<Point>,
-    face: Option<usize>,
 }
 
 /// The displacement of a supported place.
@@ -173,62 +171,71 @@ impl Affine {
         on: impl Fn(&OuterFacet) -> Vec<usize>,
     ) -> Self {
         let dimension = mesh.dimension;
-        let mut special = BTreeMap::<usize, AtPlace>::new();
-        fixed.for_each(|(place, axis)| special.entry(place).or_default().components.push((axis, 0.0)));
+        let (mut held, mut faces, mut normals) = (BTreeMap::<_, Vec<_>>::new(), BTreeMap::new(), BTreeMap::new());
+        fixed.for_each(|(place, axis)| held.entry(place).or_default().push((axis, 0.0)));
         for outer in mesh.surface() {
             let condition = &problem.conditions[outer.condition];
-            let normal = condition.obstacles.first().map(|&obstacle| problem.obstacles[obstacle].normal);
-            if condition.held.is_empty() && condition.rigid_face.is_none() && normal.is_none() {
-                continue;
-            }
             for place in on(&outer) {
                 let components = condition.held.iter().map(|held| (held.direction, held.value.at(places[place])));
-                let own = special.entry(place).or_default();
-                own.components.extend(components);
-                (own.normal, own.face) = (normal.or(own.normal), condition.rigid_face.or(own.face));
+                if !condition.held.is_empty() {
+                    held.entry(place).or_default().extend(components);
+                }
+                faces.extend(condition.rigid_face.map(|face| (place, face)));
+                normals
+                    .extend(condition.obstacles.first().map(|&obstacle| (place, problem.obstacles[obstacle].normal)));
             }
         }
-        let supported = special.iter().filter(|(_, at)| at.face.is_none());
-        let supported: BTreeMap<usize, Supported> =
-            supported.map(|(&place, at)| (place, Supported::of(dimension, &at.components, at.normal))).collect();
-        let held: usize = supported.values().map(|supported| supported.held.len()).sum();
+        held.retain(|place, _| !faces.contains_key(place));
+        let mut special: BTreeMap<usize, Supported> = BTreeMap::new();
+        for (&place, &normal) in normals.iter().filter(|(place, _)| !faces.contains_key(place)) {
+            special.insert(place, Supported::of(dimension, &[], Some(normal)));
+        }
+        for (&place, components) in &held {
+            special.insert(place, Supported::of(dimension, components, normals.get(&place).copied()));
+        }
+        let prescribed: usize = special.values().map(|supported| supported.held.len()).sum();
         // The motions of rigid faces and the travels come last.
-        let own = dimension * (places.len() + supported.len() - special.len()) - held;
+        let own = dimension * (places.len() - faces.len()) - prescribed;
         let mut motions = vec![own];
         motions.extend(problem.rigid_faces.iter().scan(own, |next, face| {
             *next += face.free.len();
             Some(*next)
         }));
         let free = own + problem.loads_of_motions().len();
-        let mut unknowns = Affine::empty((free, own), !problem.is_axisymmetric && own == free);
+        let count = dimension * places.len() + free - own;
+        let mut unknowns = Affine {
+            free,
+            own,
+            moves_rigidly: !problem.is_axisymmetric && own == free,
+            supports: BTreeMap::new(),
+            prescribed: Vec::with_capacity(count),
+            starts: vec![0],
+            terms: Vec::with_capacity(count),
+        };
         let mut next = 0;
         for (place, &at) in places.iter().enumerate() {
-            let face = special.get(&place).and_then(|special| special.face);
-            // The prescribed part and the displacement by one of each free unknown.
-            let (offset, first, by_one) = match (face, supported.get(&place)) {
-                (Some(face), _) => {
-                    let of = |field: &[Linear; 3]| field.map(|part| part.at(at));
-                    let (first, face) = (motions[face], &problem.rigid_faces[face]);
-                    (of(&face.prescribed), first, face.free.iter().map(|motion| of(&motion.0)).collect())
+            if let Some(&face) = faces.get(&place) {
+                let (first, face) = (motions[face], &problem.rigid_faces[face]);
+                for axis in 0..dimension {
+                    let by_one = face.free.iter().enumerate().map(|(motion, by)| (first + motion, by.0[axis].at(at)));
+                    unknowns.push(face.prescribed[axis].at(at), by_one);
                 }
-                (None, Some(supported)) => (supported.offset, next, supported.free.clone()),
-                (None, None) => ([0.0; 3], next, COORDINATES[..dimension].to_vec()),
-            };
-            next += if face.is_none() { by_one.len() } else { 0 };
-            for axis in 0..dimension {
-                unknowns.push(offset[axis], (first..).zip(by_one.iter().map(|by_one| by_one[axis])));
+            } else if let Some(supported) = special.get(&place) {
+                for axis in 0..dimension {
+                    let along = supported.free.iter().enumerate().map(|(free, along)| (next + free, along[axis]));
+                    unknowns.push(supported.offset[axis], along);
+                }
+                next += supported.free.len();
+            } else {
+                (0..dimension).for_each(|axis| unknowns.push(0.0, std::iter::once((next + axis, 1.0))));
+                next += dimension;
             }
         }
         (own..free).for_each(|motion| unknowns.push(0.0, std::iter::once((motion, 1.0))));
-        let held = supported.into_iter().map(|(place, supported)| (place, supported.held));
-        unknowns.supports = held.filter(|(_, held)| !held.is_empty()).collect();
+        let is_supported =
+            |(place, supported): (usize, Supported)| (!supported.held.is_empty()).then_some((place, supported.held));
+        unknowns.supports = special.into_iter().filter_map(is_supported).collect();
         unknowns
-    }
-
-    /// No unknowns yet, with the numbers of all free ones and of those of places.
-    fn empty((free, own): (usize, usize), moves_rigidly: bool) -> Self {
-        let (supports, prescribed, terms) = (BTreeMap::new(), Vec::new(), Vec::new());
-        Affine { free, own, moves_rigidly, supports, prescribed, starts: vec![0], terms }
     }
 
     fn push(&mut self, offset: f64, terms: impl Iterator<Item = (usize, f64)>) {
@@ -320,9 +327,15 @@ impl Affine {
         if others().any(|other| held.contains_key(&other.0)) {
             return None;
         }
-        let moves_rigidly = self.moves_rigidly && others().next().is_none();
-        let mut unknowns = Affine::empty((self.free - held.len(), self.own - held.len()), moves_rigidly);
-        unknowns.supports = self.supports.clone();
+        let mut unknowns = Affine {
+            free: self.free - held.len(),
+            own: self.own - held.len(),
+            moves_rigidly: self.moves_rigidly && others().next().is_none(),
+            supports: self.supports.clone(),
+            prescribed: Vec::with_capacity(self.count()),
+            starts: vec![0],
+            terms: Vec::with_capacity(self.terms.len()),
+        };
         let mut next = 0..;
         let number = |free: usize| if held.contains_key(&free) { None } else { next.next() };
         let numbers: Vec<Option<usize>> = (0..self.free).map(number).collect();
@@ -344,7 +357,7 @@ impl Affine {
 
     /// The rigid motions as values of the free unknowns; `None` with unknowns other than those of places, and about an
     /// axis.
-    fn rigid_motions(&self, dimension: usize, places: &[Point]) -> Result<Option<NearNullSpace>, Error> {
+    fn rigid_motions(&self, places: &[Point], dimension: usize) -> Result<Option<NearNullSpace>, Error> {
         if !self.moves_rigidly {
             return Ok(None);
         }
@@ -353,11 +366,20 @@ impl Affine {
         Ok(NearNullSpace::of_modes(all.vectors().iter().map(|motion| self.gathered(motion)).collect()))
     }
 
-    /// The problem of simplices in these unknowns, under a load on all unknowns, with rows.
-    pub fn problem(&self, matrices: &CellMatrices, load: &[f64], rows: &[Row]) -> Result<ContactProblem, Error> {
-        let (starts, row_indices) = self.pattern(matrices.numbers);
+    /// The problem of simplices with these unknowns and matrices, under a load on all unknowns, with rows. At each of
+    /// the `places` a linear displacement has the values of the unknowns along the axes.
+    pub fn problem(
+        &self,
+        dimension: usize,
+        numbers: &CellNumbers,
+        blocks: &[Block],
+        load: &[f64],
+        rows: &[Row],
+        places: &[Point],
+    ) -> Result<ContactProblem, Error> {
+        let (starts, row_indices) = self.pattern(numbers);
         let (mut values, mut lifted) = (vec![0.0; row_indices.len()], vec![0.0; self.count()]);
-        for (unknowns, block) in matrices.numbers.iter().zip(&matrices.of_cells) {
+        for (unknowns, block) in numbers.iter().zip(blocks) {
             for (&unknown, line) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
                 for (&other, &value) in unknowns.iter().zip(line) {
                     lifted[unknown] += value * self.prescribed[other];
@@ -390,14 +412,14 @@ impl Affine {
         }
         let contact = SparseMatrix::from_triplets(rows.len(), self.free, &contact)?;
         let posed = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, self.gathered(&left), contact, gap)?;
-        Ok(match self.rigid_motions(matrices.dimension, &matrices.places)? {
+        Ok(match self.rigid_motions(places, dimension)? {
             Some(motions) => posed.with_near_null(motions)?,
             None => posed,
         })
     }
 
     /// Column starts and rows of the lower triangle in the free unknowns.
-    fn pattern(&self, numbers: &[Vec<usize>]) -> (Vec<usize>, Vec<u32>) {
+    fn pattern(&self, numbers: &CellNumbers) -> (Vec<usize>, Vec<u32>) {
         let free = |cell: &[usize]| {
             let mut free: Vec<usize> = Vec::with_capacity(cell.len());
             cell.iter().for_each(|&unknown| free.extend(self.terms(unknown).iter().map(|term| term.0 as usize)));
@@ -410,7 +432,7 @@ impl Affine {
         for column in 0..self.free {
             // The unknowns of one place have the same neighbours.
             if column == 0 || around.at(column) != around.at(column - 1) {
-                let cells = around.at(column).iter().flat_map(|&cell| &numbers[cell as usize]);
+                let cells = around.at(column).iter().flat_map(|&cell| numbers.of(cell as usize));
                 found.clear();
                 found.extend(cells.flat_map(|&other| self.terms(other).iter().map(|term| term.0)));
                 found.sort_unstable();
@@ -425,8 +447,9 @@ impl Affine {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bodies::{body, held};
+    use super::super::bodies::body;
     use super::super::displacement::Displacements;
+    use super::super::problem::{Held, Linear};
     use super::*;
 
     /// Supports along two directions that are not at right angles hold what each of them prescribes.
@@ -447,20 +470,19 @@ mod tests {
         let (mut problem, mesh) = body(2);
         let normal = [0.6, 0.8, 0.0];
         problem.obstacles[0].normal = normal;
-        problem.conditions[2].held = vec![held(0, 0.25)];
+        problem.conditions[2].held = vec![Held { direction: COORDINATES[0], value: Linear::constant(0.25) }];
         let displacements = Displacements::new(&problem, &mesh);
         let unknowns = displacements.unknowns();
         let outer = mesh.surface().find(|outer| outer.condition == 2).unwrap();
-        let place = displacements.on_facet(&outer)[2];
-        let row = Row::new(&problem, 0, (place, None, displacements.places().len()), 0.0);
-        assert_eq!(row.place(2), place);
+        let row = Row::new((displacements.on_facet(&outer)[2], None), 2, normal, None, 0.0);
+        assert_eq!(row.place(2), displacements.on_facet(&outer)[2]);
         let (own, coefficient) = unknowns.own_term(&row).unwrap();
         assert!((coefficient - 0.8).abs() < 1e-14, "{coefficient}");
         let mut values = unknowns.expanded(&vec![0.0; unknowns.free]);
         assert!((row.value(&values) - 0.15).abs() < 1e-14);
         unknowns.move_to(&mut values, &row, 7.0);
         assert!((row.value(&values) - 7.0).abs() < 1e-13, "{}", row.value(&values));
-        // HeldComponent rows have no prescribed part.
+        // Held rows have no prescribed part.
         let held = unknowns.with_held(std::iter::once(&row), -1.0).unwrap();
         assert_eq!(held.free, unknowns.free - 1);
         assert!(own < unknowns.free && (row.value(&held.expanded(&vec![0.5; held.free])) + 1.0).abs() < 1e-14);
@@ -470,7 +492,7 @@ mod tests {
     #[test]
     fn a_support_inside_an_obstacle_names_the_depth() {
         let (mut problem, mesh) = body(2);
-        problem.conditions[2].held = vec![held(1, 0.5)];
+        problem.conditions[2].held = vec![Held { direction: COORDINATES[1], value: Linear::constant(0.5) }];
         let displacements = Displacements::new(&problem, &mesh);
         let error = displacements.rows(&displacements.unknowns()).unwrap_err();
         // The gap is between -0.1 and 0.26 there.

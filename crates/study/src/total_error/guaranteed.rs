@@ -12,7 +12,7 @@ use crate::warnings::{check_motion, of_refined};
 use crate::{ModelSize, Status};
 use signorini_fem::ElementKind;
 use signorini_fem::assembly::internal_force;
-use signorini_guarantee::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh};
+use signorini_guarantee::{Bracket, ContinuumAnswer, ContinuumProblem, Judged, Point, SimplexMesh, Strain};
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::{Answer, Scene, Warning};
 use signorini_qp as qp;
@@ -245,11 +245,13 @@ pub(super) fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
             // The strain across the plane belongs to the material.
             if in_plane { [xx, yy, 0.0, xy, 0.0, 0.0] } else { own }
         };
-        let is_constant = matches!(
-            body.mesh().kind_of(element),
-            ElementKind::LINEAR_TRIANGLE | ElementKind::LINEAR_TETRAHEDRON if !is_axisymmetric
-        );
-        (own, is_constant || in_plane && body.is_parallelogram(element))
+        match body.mesh().kind_of(element) {
+            ElementKind::LINEAR_TRIANGLE | ElementKind::LINEAR_TETRAHEDRON if !is_axisymmetric => {
+                Strain::Constant(own([0.0; 3]))
+            }
+            _ if in_plane && body.is_parallelogram(element) => Strain::Linear(own),
+            _ => Strain::Varying(own),
+        }
     })
 }
 

@@ -10,8 +10,8 @@ use signorini_fem::geometry::{COORDINATES, dot};
 use signorini_fem::mesh::pieces::Pieces;
 use signorini_fem::{Formulation, Region};
 use signorini_guarantee::{
-    Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, FacingObstacle, Linear, Medium, ObstacleSurface,
-    Point, PressingForce, RigidPlate, SimplexMesh, Unjoined, pairs,
+    Cells, ContinuumAnswer, ContinuumProblem, Distance, Enclosure, Facing, Linear, Medium, Point, Pressed,
+    RigidFace as Plate, SimplexMesh, Surface, Unjoined, pairs,
 };
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::Model;
@@ -205,14 +205,14 @@ fn within_reach(problem: ContinuumProblem, mut mesh: SimplexMesh) -> Result<(Con
 }
 
 /// A rigid face by its motions.
-fn rigid_face(face: &RigidFace) -> RigidPlate {
+fn rigid_face(face: &RigidFace) -> Plate {
     let field = |moved: &dyn Fn(Point) -> Point| [0, 1, 2].map(|axis| Linear::of(|place| moved(place)[axis]));
     let free = face.motions.iter().filter(|motion| motion.prescribed.is_none());
     let by_one = |motion: &Motion| {
         let unit = face.unit(motion);
         (field(&|place| face.displacement(motion, place).map(|part| unit * part)), unit * motion.force)
     };
-    RigidPlate { prescribed: field(&|place| face.prescribed(place)), free: free.map(by_one).collect() }
+    Plate { prescribed: field(&|place| face.prescribed(place)), free: free.map(by_one).collect() }
 }
 
 /// The component of a unit vector normal to a coordinate axis below which it is rounding of the written components.
@@ -229,7 +229,7 @@ fn along_axis(direction: [f64; 3]) -> [f64; 3] {
 }
 
 /// Obstacle number `index` of a model, with rows along one direction.
-pub(crate) fn facing(model: &Model, index: usize) -> Result<FacingObstacle, WhyNot> {
+pub(crate) fn facing(model: &Model, index: usize) -> Result<Facing, WhyNot> {
     let (obstacle, path) = (&model.obstacles()[index], format!("obstacles[{index}]"));
     let (shift, approach) = (obstacle.shift(model.gap()), obstacle.approach());
     let rigid = || Shifted { obstacle: obstacle.clone(), gap: shift };
@@ -243,20 +243,20 @@ pub(crate) fn facing(model: &Model, index: usize) -> Result<FacingObstacle, WhyN
             return Err(none(&*path, "two bodies in space have no guaranteed bound: only those in the plane have one"));
         }
         let Between { reach, fit, .. } = *between;
-        let surface = ObstacleSurface::Body { reach, fit, shift: shift * dot(normal, approach) };
+        let surface = Surface::Body { reach, fit, shift: shift * dot(normal, approach) };
         Ok((along_axis(normal), surface))
     };
-    let (normal, surface): (Point, ObstacleSurface) = match (obstacle.rule(), obstacle.between()) {
-        (Some(Rule::Approach), None) => (along_axis(approach), ObstacleSurface::Rigid(Arc::new(rigid()))),
+    let (normal, surface): (Point, Surface) = match (obstacle.rule(), obstacle.between()) {
+        (Some(Rule::Approach), None) => (along_axis(approach), Surface::Rigid(Arc::new(rigid()))),
         (Some(Rule::Approach), Some(between)) => body(approach, between)?,
         (Some(Rule::ClosestPoint), None) => {
-            (along_axis(flat(model, index).ok_or_else(changing)?), ObstacleSurface::Rigid(Arc::new(Closest(rigid()))))
+            (along_axis(flat(model, index).ok_or_else(changing)?), Surface::Rigid(Arc::new(Closest(rigid()))))
         }
         (Some(Rule::ClosestPoint), Some(between)) => body(one_normal(model, index).ok_or_else(changing)?, between)?,
         (None, _) => return Err(none(path, "an obstacle without a rule has no guaranteed bound")),
     };
-    let pressed = |force| PressingForce { force: model.parts.share_of(index, force), cosine: dot(normal, approach) };
-    Ok(FacingObstacle { normal, surface, pressed: obstacle.force().map(pressed) })
+    let pressed = |force| Pressed { force: model.parts.share_of(index, force), cosine: dot(normal, approach) };
+    Ok(Facing { normal, surface, pressed: obstacle.force().map(pressed) })
 }
 
 /// The normal of all rows of an obstacle, if they have one.

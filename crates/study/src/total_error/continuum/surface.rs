@@ -6,7 +6,7 @@ use signorini_fem::Mesh;
 use signorini_fem::assembly::turning_traction;
 use signorini_fem::geometry::{COORDINATES, cross, dot, minus, sorted, unit};
 use signorini_fem::mesh::pieces::Pieces;
-use signorini_guarantee::{Condition, HeldComponent, Linear, Point, SideCircle};
+use signorini_guarantee::{Circle, Condition, Held, Linear, Point};
 use signorini_mechanics::Error;
 use signorini_mechanics::scene::Model;
 use signorini_mechanics::scene::input::profile::Profile;
@@ -87,7 +87,7 @@ pub(super) fn conditions(
     for (name, centre, radius) in circles {
         surface.change_known(name, |condition| {
             let [x, y] = centre;
-            condition.circle = Some(SideCircle { centre: [x, y, 0.0], radius });
+            condition.circle = Some(Circle { centre: [x, y, 0.0], radius });
         });
     }
     Ok(surface.numbered(conditions))
@@ -105,9 +105,9 @@ fn add_supports(model: &Model, surface: &mut Surface) -> Result<(), WhyNot> {
         surface.change(name, |condition, facet| {
             let factor = factor.on(facet)?;
             let components = support.components.iter();
-            condition.held.extend(
-                components.map(|one| HeldComponent { direction: one.direction, value: factor.times(one.value) }),
-            );
+            condition
+                .held
+                .extend(components.map(|one| Held { direction: one.direction, value: factor.times(one.value) }));
             Ok(())
         })?;
     }
@@ -257,7 +257,7 @@ impl<'a> Surface<'a> {
             let Some(condition) = &mut entry.condition else { continue };
             let of_corners: Vec<_> = facet.iter().map(|&node| axes(&self.pieces.nodes[node])).collect();
             for axis in (0..3).filter(|&axis| of_corners.iter().all(|axes| axes[axis])) {
-                condition.held.push(HeldComponent { direction: COORDINATES[axis], value: Linear::default() });
+                condition.held.push(Held { direction: COORDINATES[axis], value: Linear::default() });
             }
         }
     }
