@@ -44,7 +44,7 @@ pub struct DofMap {
     dimension: usize,
     frames: BTreeMap<usize, Frame>,
     /// The nodes whose dofs are not their displacements along the coordinate axes: those with frames, and followers.
-    moved: BTreeMap<usize, Moved>,
+    moved: BTreeMap<usize, NodeMotion>,
     /// The group of each follower.
     group_of: BTreeMap<usize, usize>,
     /// The first motion of each group, the first one without nodes, and the number of all unknowns.
@@ -55,7 +55,7 @@ pub struct DofMap {
 
 /// The displacement of a node, or its coefficient, as a function of unknowns: `offset + sum of y_k v_k`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Moved {
+pub struct NodeMotion {
     /// The part that no unknown changes, [x, y, z], in length.
     pub offset: [f64; 3],
     /// Unknowns y_k, each with the displacement v_k by one of it.
@@ -71,7 +71,7 @@ pub struct Followers {
     /// How many motions are unknown.
     pub motions: usize,
     /// The nodes, with the motions by their numbers from 0.
-    pub nodes: Vec<(usize, Moved)>,
+    pub nodes: Vec<(usize, NodeMotion)>,
 }
 
 /// A linear form in the unknowns: the sum of `coefficient * unknown` and of what is prescribed.
@@ -137,8 +137,8 @@ impl DofMap {
     }
 
     /// The displacement of a node with a frame.
-    fn in_frame(&self, node: usize, frame: &Frame) -> Moved {
-        let mut moved = Moved::default();
+    fn in_frame(&self, node: usize, frame: &Frame) -> NodeMotion {
+        let mut moved = NodeMotion::default();
         for (dof, &axis) in (self.dimension * node..self.dimension * (node + 1)).zip(&frame.axes) {
             match self.number(dof) {
                 Some(number) => moved.by_unknown.push((number, axis)),
@@ -246,11 +246,11 @@ impl DofMap {
     }
 
     /// The displacement of a node, or its coefficient, in the unknowns.
-    fn moved(&self, node: usize, dimension: usize) -> Cow<'_, Moved> {
+    fn moved(&self, node: usize, dimension: usize) -> Cow<'_, NodeMotion> {
         if let Some(moved) = self.moved.get(&node) {
             return Cow::Borrowed(moved);
         }
-        let mut moved = Moved::default();
+        let mut moved = NodeMotion::default();
         for (axis, &along) in COORDINATES.iter().enumerate().take(dimension) {
             let dof = dimension * node + axis;
             match self.number(dof) {

@@ -14,7 +14,7 @@ mod shape_derivative;
 mod springs;
 mod stiffness;
 
-pub use dofs::{Along, Followers, Moved, perpendicular, rigid_motions};
+pub use dofs::{Along, Followers, NodeMotion, perpendicular, rigid_motions};
 pub use dofs::{DofMap, Frame, rigid_body_modes};
 pub use element_stiffness::{add_to_nodes, element_stiffness, internal_force, of_cell};
 pub use load::{

@@ -8,7 +8,7 @@
 use super::parts::Parts;
 use super::rigid_face::RigidFace;
 use crate::error::Error;
-use crate::fem::assembly::{DofMap, Followers, Moved};
+use crate::fem::assembly::{DofMap, Followers, NodeMotion};
 use crate::fem::body::ElasticBody;
 use signorini_qp::{SparseMatrix, SymmetricMatrix};
 
@@ -52,7 +52,7 @@ pub(crate) fn following(dofs: DofMap, body: &ElasticBody, faces: &[RigidFace]) -
         let moved = |node: usize| {
             let at = dofs.basis.place(body.mesh().nodes(), node);
             let by_one = free().map(|motion| face.displacement(motion, at).map(|part| part * face.unit(motion)));
-            Moved { offset: in_model(face.prescribed(at)), by_unknown: by_one.map(in_model).enumerate().collect() }
+            NodeMotion { offset: in_model(face.prescribed(at)), by_unknown: by_one.map(in_model).enumerate().collect() }
         };
         Followers { motions: free().count(), nodes: face.nodes.iter().map(|&node| (node, moved(node))).collect() }
     };
