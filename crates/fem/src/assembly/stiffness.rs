@@ -135,12 +135,23 @@ impl Columns<'_> {
         block: impl Fn(usize, usize) -> f64,
         values: &mut [f64],
     ) {
-        for &(row, along) in of_rows {
-            let force = [0, 1, 2].map(|j| (0..3).map(|i| along[i] * block(i, j)).sum::<f64>());
-            for &(column, by_one) in of_columns.iter().filter(|of| of.0 <= row && self.unknowns.contains(&of.0)) {
-                let of_column = self.starts[column]..self.starts[column + 1];
-                let Ok(place) = self.rows[of_column.clone()].binary_search(&(row as u32)) else { continue };
-                values[of_column.start + place - self.first] += dot(force, by_one);
+        for &(column, by_one) in of_columns.iter().filter(|of| self.unknowns.contains(&of.0)) {
+            let below = || of_rows.iter().filter(|of| of.0 >= column);
+            if below().next().is_none() {
+                continue;
+            }
+            let force = [0, 1, 2].map(|i| (0..3).map(|j| block(i, j) * by_one[j]).sum::<f64>());
+            let of_column = self.starts[column]..self.starts[column + 1];
+            let mut place = of_column.start;
+            for &(row, along) in below() {
+                // Most rows follow the one before.
+                if place + 1 < of_column.end && self.rows[place + 1] == row as u32 {
+                    place += 1;
+                } else {
+                    let Ok(found) = self.rows[of_column.clone()].binary_search(&(row as u32)) else { continue };
+                    place = of_column.start + found;
+                }
+                values[place - self.first] += dot(along, force);
             }
         }
     }
