@@ -48,7 +48,7 @@ pub mod threads;
 
 pub use assembly::{
     DofMap, Frame, MassForm, add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field,
-    free_load, internal_force, mass, rigid_body_modes, stiffness, tributary_areas,
+    free_load, internal_force, mass, stiffness, tributary_areas,
 };
 pub use body::{ElasticBody, Integration, Region};
 pub use element::{ElementKind, FacetKind, QuadraturePoint};

@@ -155,27 +155,6 @@ impl SymmetricMatrix {
         Self::from_lower(SparseMatrix::from_triplets(self.dim(), self.dim(), &entries)?)
     }
 
-    /// The matrix `R'A R`; column i of `rows` holds row i of R (n x m), for A (n x n).
-    ///
-    /// # Errors
-    /// [`Error::Shape`] for a matrix R of another height, [`Error::NotFinite`] if entries overflow.
-    pub fn congruent(&self, rows: &SparseMatrix) -> Result<Self, Error> {
-        check_shape("change of unknowns", (rows.columns(), rows.rows()), (self.dim(), rows.rows()))?;
-        let mut entries = Vec::with_capacity(self.lower.entries());
-        for (i, j, value) in self.lower.triplets() {
-            for (p, a) in rows.column(i) {
-                for (q, b) in rows.column(j) {
-                    // Entries off the diagonal have a mirror image (j, i).
-                    let times = if i != j && p == q { 2.0 } else { 1.0 };
-                    if i != j || p >= q {
-                        entries.push((p.max(q), p.min(q), times * a * value * b));
-                    }
-                }
-            }
-        }
-        Self::from_lower(SparseMatrix::from_triplets(rows.rows(), rows.rows(), &entries)?)
-    }
-
     /// The matrix `a A + b B`, with a place for every entry of both.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ use signorini_linear as linear;
 const SUPPORTED: usize = usize::MAX;
 
 /// A component of a vector along an axis of a frame below this, relative to the vector, is rounding of the frame.
-const NO_COMPONENT: f64 = 1e-14;
+pub(super) const NO_COMPONENT: f64 = 1e-14;
 
 /// Takes the place of the number at a dof of a node that follows motions.
 const FOLLOWING: usize = usize::MAX - 1;
@@ -425,7 +425,7 @@ impl DofMap {
 
     /// As [`expand`](Self::expand), with this share of what is prescribed.
     fn expand_with(&self, free: &[f64], share: f64) -> Result<Vec<f64>, Error> {
-        linear::Error::check_length("displacement", free.len(), self.count(), "free dofs")?;
+        linear::Error::check_length("displacement", free.len(), self.count(), "unknowns")?;
         let value = |(&number, prescribed): (&usize, &f64)| free.get(number).copied().unwrap_or(share * prescribed);
         let mut nodal: Vec<f64> = self.number.iter().zip(&self.prescribed).map(value).collect();
         for (node, moved) in &self.moved {
@@ -571,15 +571,4 @@ pub fn rigid_motions(body: &ElasticBody) -> (usize, impl Fn(usize, [f64; 3]) -> 
         Some(turn) => cross(COORDINATES[axes[turn]], [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size)),
     };
     (dimension + axes.len(), motion)
-}
-
-/// The rigid-body modes at the free dofs, one vector each, one entry per free dof, dimensionless, as
-/// [`rigid_motions`].
-pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
-    let ((count, motion), dimension) = (rigid_motions(body), body.dimension());
-    let along = |mode: usize, dof: usize| {
-        let at = dofs.basis.place(body.mesh().nodes(), dof / dimension);
-        dot(dofs.axes(dof / dimension)[dof % dimension], motion(mode, at))
-    };
-    (0..count).map(|mode| dofs.free().iter().map(|&dof| along(mode, dof)).collect()).collect()
 }

@@ -1,6 +1,7 @@
 //! M = integral of rho N_a N_b, in the free dofs: consistent, lumped, or redistributed so that contact nodes have no
 //! mass.
 
+use super::dofs::NO_COMPONENT;
 use super::{DofMap, element_stiffness};
 use crate::body::{BodyElement, ElasticBody, Region};
 use crate::dense::DenseMatrix;
@@ -159,9 +160,6 @@ fn lumped(element: &ElementMass) -> Vec<f64> {
     if sums.iter().any(is_small) { scaled.collect() } else { sums }
 }
 
-/// A cosine below this is rounding of the axes of a frame.
-const RIGHT_ANGLE: f64 = 1e-14;
-
 /// The mass of the unknowns from that of the nodes, as [`nodal_mass`].
 pub fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
@@ -172,7 +170,7 @@ pub fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Res
         for &(p, by_p) in &moved_by[row] {
             for &(q, by_q) in &moved_by[column] {
                 let product = dot(by_p, by_q);
-                let is_rounding = || product.abs() <= RIGHT_ANGLE * length(by_p) * length(by_q);
+                let is_rounding = || product.abs() <= NO_COMPONENT * length(by_p) * length(by_q);
                 if product == 0.0 || row == column && p < q || is_rounding() {
                     continue;
                 }

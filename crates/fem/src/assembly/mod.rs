@@ -15,7 +15,7 @@ mod springs;
 mod stiffness;
 
 pub use dofs::{Along, Followers, NodeMotion, perpendicular, rigid_motions};
-pub use dofs::{DofMap, Frame, rigid_body_modes};
+pub use dofs::{DofMap, Frame};
 pub use element_stiffness::{add_to_nodes, element_stiffness, internal_force, of_cell};
 pub use load::{
     FacetPoint, Kinks, add_centrifugal, add_gravity, add_moment, add_traction_with_kinks, facet_centres, facet_sizes,

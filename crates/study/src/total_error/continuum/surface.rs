@@ -39,12 +39,12 @@ pub(super) fn conditions(
     }
     for (index, springs) in scene.springs.iter().enumerate() {
         let path = format!("springs[{index}]");
-        let Some(PlaceSpec::Boundary(name)) = &springs.on else {
+        let per_area = model.parts.conditions.springs[index].per_area;
+        let (Some(PlaceSpec::Boundary(name)), Some((along, normal))) = (&springs.on, per_area) else {
             let message = "a spring at a point holds nothing in a continuum, so that there is no guaranteed bound; spread it \
                            over a boundary";
             return Err(none(if springs.on.is_some() { format!("{path}.on") } else { path }, message));
         };
-        let (along, normal) = model.parts.conditions.springs[index].per_area.unwrap_or_default();
         surface.change(name, |condition, _| {
             (0..3).for_each(|axis| condition.springs.along[axis] += along[axis]);
             condition.springs.normal += normal;
